@@ -1,0 +1,22 @@
+# Imported targets of the distribution's Trilinos carry no include directories, hence these wrappers.
+find_package(MPI REQUIRED COMPONENTS C CXX)
+find_package(Trilinos REQUIRED COMPONENTS
+  Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 Amesos2 MueLu Zoltan2 Stratimikos Teko NOX Sacado Kokkos Teuchos)
+add_library(sprekk_trilinos INTERFACE)
+target_include_directories(sprekk_trilinos SYSTEM INTERFACE ${Trilinos_INCLUDE_DIRS})
+target_link_libraries(sprekk_trilinos INTERFACE ${Trilinos_LIBRARIES} MPI::MPI_CXX)
+
+function(sprekk_external target header library)
+  find_path(${target}_INCLUDE ${header} REQUIRED)
+  find_library(${target}_LIBRARY ${library} REQUIRED)
+  add_library(${target} INTERFACE)
+  target_include_directories(${target} SYSTEM INTERFACE ${${target}_INCLUDE})
+  target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
+endfunction()
+sprekk_external(sprekk_metis metis.h metis)
+sprekk_external(sprekk_mumps dmumps_c.h dmumps)
+sprekk_external(sprekk_muparser muParser.h muparser)
+
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)

@@ -1,0 +1,26 @@
+#include "base/check.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+namespace sprekk::base {
+
+void collectively(const Comm& comm, const std::function<void()>& work) {
+  std::string message;
+  int failing_rank = comm.getSize();
+  try {
+    work();
+  } catch (const std::exception& error) {
+    message = error.what();
+    failing_rank = comm.getRank();
+  }
+  int first = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, 1, &failing_rank, &first);
+  if (first == comm.getSize()) return;
+  int length = static_cast<int>(message.size());
+  Teuchos::broadcast(comm, first, 1, &length);
+  message.resize(length);
+  Teuchos::broadcast(comm, first, length, message.data());
+  throw Error(message);
+}
+
+}  // namespace sprekk::base

@@ -1,0 +1,73 @@
+// What a solver needs to know of a problem, and all that it may know: the meeting point of physics and solve.
+#pragma once
+
+#include "fields/block_matrix.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace sprekk::fields {
+
+/// A block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components + component,
+/// in local and in global numbering.
+struct Block {
+  std::string name;
+  RCP<const Map> map;                    ///< owned unknowns
+  int n_components;                      ///< unknowns per entity
+  Real kinematic_scale;                  ///< typical size of an unknown of this block under the present loads
+  Real residual_scale;                   ///< typical size of a row of this block under the present loads
+  RCP<const MultiVector> coordinates;    ///< [owned entity, dim], metre; null where multigrid has no use for it
+  RCP<const MultiVector> near_null_space;  ///< [owned unknown, modes]; null likewise
+};
+
+/// Blocks whose unknowns couple only within one entity among themselves, so that they can be eliminated entity by
+/// entity. The i-th owned entity holds the unknowns i * n_components(b) ... of every block b of the group.
+struct LocalGroup {
+  std::string name;
+  std::vector<int> blocks;
+};
+
+/// One measure of convergence, relative to the loads: converged when every value is at or below the tolerance.
+struct Measure {
+  std::string name;
+  Real value;
+};
+
+/// f(x; committed state, t) = 0. residual and jacobian are pure in x: state changes only by set_time and commit.
+/// All members are collective unless they return stored data.
+class BlockProblem {
+ public:
+  virtual ~BlockProblem() = default;
+
+  virtual RCP<const Comm> comm() const = 0;
+  virtual const std::vector<Block>& blocks() const = 0;
+  virtual const std::vector<LocalGroup>& local_groups() const = 0;
+
+  /// Where the loads of the next solve stand: the end t of the step and its length dt.
+  virtual void set_time(Real t, Real dt) = 0;
+  /// Accepts x as the state at the current time: histories move on. Until then nothing changes, so a step that failed
+  /// is undone by starting again from the last accepted x.
+  virtual void commit(const BlockVector& x) = 0;
+
+  /// r = f(x). The row of a constrained unknown is x - x_D(t).
+  virtual void residual(const BlockVector& x, BlockVector& r) = 0;
+  /// r without the constraints: in the rows of constrained unknowns stand the reactions.
+  virtual void raw_residual(const BlockVector& x, BlockVector& r) = 0;
+  /// Fills matrix() with df/dx at x, without the constraints (rows and columns of constrained unknowns are there).
+  virtual void jacobian(const BlockVector& x) = 0;
+  virtual const BlockMatrix& matrix() const = 0;
+  /// The present matrix() is symmetric after elimination of the local groups.
+  virtual bool symmetric() const = 0;
+  /// The owned unknowns of a block whose value is prescribed: 1, else 0. [owned unknown]
+  virtual ConstView<char*> constrained(int block) const = 0;
+
+  /// How far x, with r = residual(x), is from a solution, in every unit that matters.
+  virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
+  /// A squared energy norm of r, for line searches.
+  virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
+  /// A hash of the discrete state (which faces are open, stick, slip) of x, the same on every rank and for any partition.
+  virtual std::size_t state_hash(const BlockVector& x) = 0;
+};
+
+}  // namespace sprekk::fields

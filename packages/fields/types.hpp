@@ -1,0 +1,37 @@
+// Distributed vectors and matrices as the project names them.
+#pragma once
+
+#include "base/types.hpp"
+
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Vector.hpp>
+
+#include <vector>
+
+namespace sprekk::fields {
+
+using Map = Tpetra::Map<LocalIndex, GlobalIndex>;
+using Vector = Tpetra::Vector<Real, LocalIndex, GlobalIndex>;
+using MultiVector = Tpetra::MultiVector<Real, LocalIndex, GlobalIndex>;
+using CrsGraph = Tpetra::CrsGraph<LocalIndex, GlobalIndex>;
+using CrsMatrix = Tpetra::CrsMatrix<Real, LocalIndex, GlobalIndex>;
+using Import = Tpetra::Import<LocalIndex, GlobalIndex>;
+using Operator = Tpetra::Operator<Real, LocalIndex, GlobalIndex>;
+
+/// One vector per block, in the order of the blocks.
+using BlockVector = std::vector<RCP<Vector>>;
+
+inline BlockVector create_like(const BlockVector& x) {
+  BlockVector y;
+  for (const auto& v : x) y.push_back(rcp(new Vector(v->getMap())));
+  return y;
+}
+
+inline void copy(const BlockVector& from, BlockVector& to) {
+  for (std::size_t b = 0; b < from.size(); ++b) Tpetra::deep_copy(*to[b], *from[b]);
+}
+
+}  // namespace sprekk::fields

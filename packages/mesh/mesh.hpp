@@ -1,0 +1,85 @@
+// The mixed-dimensional mesh: cells, fracture faces with two sides, boundary faces. Plain host data, filled once.
+#pragma once
+
+#include "base/types.hpp"
+#include "mesh/shape.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace sprekk::mesh {
+
+enum Side { minus = 0, plus = 1 };
+
+/// The whole mesh, the same on every rank that holds it. Nodes are already split along the fractures.
+struct GlobalMesh {
+  struct FractureFace {
+    int fracture;                     ///< index into fracture_names
+    std::array<GlobalIndex, 2> cell;  ///< the cell on side minus, plus; the normal points from minus to plus
+    std::array<int, 2> local_face;    ///< the face's number in that cell
+  };
+  struct BoundaryFace {
+    int boundary;  ///< index into boundary_names
+    GlobalIndex cell;
+    int local_face;
+  };
+
+  Shape shape;
+  std::vector<Real> coordinates;   ///< [node * dim + component], metre
+  std::vector<GlobalIndex> cells;  ///< [cell * n_nodes(shape) + local node]
+  std::vector<int> cell_region;    ///< [cell], index into region_names
+  std::vector<FractureFace> fracture_faces;
+  std::vector<BoundaryFace> boundary_faces;
+  std::vector<std::string> region_names, boundary_names, fracture_names;
+
+  int dim() const { return dimension(shape); }
+  GlobalIndex n_cells() const { return static_cast<GlobalIndex>(cell_region.size()); }
+  GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(coordinates.size()) / dim(); }
+};
+
+/// One rank's part. Owned entities come first in every list, ghosts follow; "n_" counts both, "n_owned_" the first part.
+///
+/// Ownership: a cell belongs to its part of the partition, a fracture face to the rank of its minus cell, a node to the
+/// lowest rank that owns a cell around it. Ghost cells are all cells that share a node with an owned cell, and the
+/// opposite cell of every owned fracture face. Local nodes are the nodes of all local cells; local fracture faces are
+/// those with at least one local cell. So rows of owned nodes can be assembled from local cells without communication.
+struct Mesh {
+  struct FractureFace {
+    GlobalIndex id;                        ///< global number
+    int fracture;                          ///< index into fracture_names
+    std::array<LocalIndex, 2> cell;        ///< local cell on side minus, plus; -1 where that cell is not on this rank
+    std::array<int, 2> local_face;         ///< number of the face in that cell
+    std::array<std::array<LocalIndex, 4>, 2> nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
+    Real area;                             ///< length in 2D; metre, metre^2
+    std::array<Real, 3> centre;
+    std::array<std::array<Real, 3>, 3> frame;  ///< rows n, t1[, t2]; 2D t = (n_y, -n_x); 3D t1 = a x n/|a x n|, t2 = n x t1
+  };
+  struct BoundaryFace {
+    int boundary;
+    LocalIndex cell;
+    int local_face;
+    bool owned;  ///< the cell is owned by this rank
+  };
+
+  RCP<const Comm> comm;
+  Shape shape;
+  LocalIndex n_owned_nodes = 0, n_owned_cells = 0, n_owned_fracture_faces = 0;
+  std::vector<GlobalIndex> node_id, cell_id;
+  std::vector<int> cell_owner;             ///< [cell] rank
+  std::vector<Real> coordinates;           ///< [node * dim + component], metre
+  std::vector<LocalIndex> cells;           ///< [cell * nodes per cell + local node]
+  std::vector<int> cell_region;            ///< [cell]
+  std::vector<FractureFace> fracture_faces;
+  std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
+  std::vector<std::string> region_names, boundary_names, fracture_names;
+  GlobalIndex n_global_nodes = 0, n_global_cells = 0, n_global_fracture_faces = 0;
+
+  int dim() const { return dimension(shape); }
+  int nodes_per_cell() const { return mesh::n_nodes(shape); }
+  LocalIndex n_nodes() const { return static_cast<LocalIndex>(node_id.size()); }
+  LocalIndex n_cells() const { return static_cast<LocalIndex>(cell_id.size()); }
+  LocalIndex n_fracture_faces() const { return static_cast<LocalIndex>(fracture_faces.size()); }
+};
+
+}  // namespace sprekk::mesh
