@@ -23,6 +23,6 @@ using View = Kokkos::View<T, Kokkos::LayoutRight, Execution>;
 
 /// A device array that a kernel only reads.
 template <class T>
-using ConstView = Kokkos::View<const T, Kokkos::LayoutRight, Execution>;
+using ConstView = typename Kokkos::View<T, Kokkos::LayoutRight, Execution>::const_type;
 
 }  // namespace sprekk

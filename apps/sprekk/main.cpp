@@ -1,0 +1,65 @@
+// The program: starts MPI and Kokkos, reads the command line, runs.
+#include "base/check.hpp"
+#include "model/run.hpp"
+
+#include <CLI/CLI.hpp>
+#include <Tpetra_Core.hpp>
+
+#include <cstdlib>
+#include <iostream>
+
+#ifndef SPREKK_VERSION
+#define SPREKK_VERSION "unknown"
+#endif
+
+namespace {
+
+int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
+  using namespace sprekk;
+  const bool speaks = comm->getRank() == 0;
+  model::RunOptions options;
+  const char* terminal = std::getenv("SPREKK_TERMINAL");
+  options.terminal = terminal && std::string(terminal) == "1";
+
+  CLI::App app{"Sprekk: deformation of fractured rock", "sprekk"};
+  app.set_version_flag("--version", std::string("sprekk ") + SPREKK_VERSION);
+  app.require_subcommand(1);
+  auto* run = app.add_subcommand("run", "run a scene");
+  auto* check = app.add_subcommand("check", "read and check a scene without running it");
+  auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
+  for (auto* command : {run, check}) {
+    command->add_option("scene", options.scene, "XML file")->required();
+    command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
+        ->allow_extra_args(false);
+  }
+  run->add_option("--output", options.output, "directory for the results; default output/SCENE");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (!speaks) return error.get_exit_code() == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+
+  try {
+    if (reference->parsed()) {
+      if (speaks) std::cout << model::reference();
+      return 0;
+    }
+    if (check->parsed()) {
+      model::check(options, comm);
+      if (speaks) std::cout << options.scene << ": no errors\n";
+      return 0;
+    }
+    return model::run(options, comm) ? 0 : 3;
+  } catch (const std::exception& error) {  // thrown alike on all ranks
+    if (speaks) std::cerr << "sprekk: " << error.what() << std::endl;
+    return 1;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard guard(&argc, &argv);
+  return run_command(argc, argv, Tpetra::getDefaultComm());
+}

@@ -1,0 +1,199 @@
+// One kernel for all modules: gather the unknowns of an entity, call the module's local operator, scatter what it returns.
+#pragma once
+
+#include "assembly/module.hpp"
+
+namespace sprekk::assembly {
+
+/// `Count` groups of `Width` adjacent unknowns of one field.
+template <int Count, int Width>
+struct Slot {
+  static constexpr int count = Count, width = Width, size = Count * Width;
+};
+
+/// The fields that a local operator reads or writes, one slot each, one after the other in its local arrays.
+template <class... S>
+struct Slots {
+  static constexpr int n = sizeof...(S);
+  static constexpr int size = (S::size + ... + 0);
+  KOKKOS_INLINE_FUNCTION static constexpr int count(int i) {
+    const int values[] = {S::count...};
+    return values[i];
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int width(int i) {
+    const int values[] = {S::width...};
+    return values[i];
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int offset(int i) {
+    const int values[] = {S::size...};
+    int sum = 0;
+    for (int k = 0; k < i; ++k) sum += values[k];
+    return sum;
+  }
+};
+
+/// Runs a local operator over a loop. Op is copied into kernels and has
+///   using Columns = Slots<...>, Rows = Slots<...>;                 unknowns read, rows written, in local order
+///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;       device, overwrites r
+///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device, overwrites J
+template <class Op>
+class Assembler {
+ public:
+  using Columns = typename Op::Columns;
+  using OpRows = typename Op::Rows;
+  enum class Positions { keep, once };  ///< keep scatter positions for further assemblies, or drop them
+
+  /// row_fields, column_fields: block numbers in the order of the operator's slots.
+  Assembler(const Context& context, Loop loop, std::vector<int> row_fields, std::vector<int> column_fields,
+            Positions positions)
+      : row_fields_(std::move(row_fields)), column_fields_(std::move(column_fields)), keep_(positions == Positions::keep) {
+    for (int f : row_fields_) {
+      rows_.push_back(context.stencil(loop, f));
+      n_owned_.push_back(context.layout(f).n_owned());
+    }
+    for (int f : column_fields_) columns_.push_back(context.stencil(loop, f));
+    n_entities_ = static_cast<LocalIndex>(columns_.front().first.extent(0));
+  }
+
+  LocalIndex n_entities() const { return n_entities_; }
+
+  /// r[row field] += op.residual over all entities, owned rows only.
+  void add_residual(const Op& op, const State& state, const Rows& r) const {
+    ResidualKernel kernel{gather(op, state), {}, {}, {}};
+    for (int i = 0; i < OpRows::n; ++i) {
+      kernel.first[i] = rows_[i].first;
+      kernel.r[i] = r[row_fields_[i]];
+      kernel.n_owned[i] = n_owned_[i];
+    }
+    Kokkos::parallel_for("residual", Kokkos::RangePolicy<Execution>(0, n_entities_), kernel);
+  }
+
+  /// Calls visit(entity, unknowns) for every entity of the loop; visit is device code.
+  template <class Visit>
+  void for_each(const Op& op, const State& state, const Visit& visit) const {
+    const Gather gathered = gather(op, state);
+    Kokkos::parallel_for(
+        "for each", Kokkos::RangePolicy<Execution>(0, n_entities_), KOKKOS_LAMBDA(int e) {
+          Real x[Columns::size];
+          gathered(e, x);
+          visit(e, x);
+        });
+  }
+
+  /// J(row field, column field) += op.jacobian over all entities, owned rows only; absent blocks are skipped.
+  void add_jacobian(const Op& op, const State& state, fields::BlockMatrix& J) {
+    JacobianKernel kernel{gather(op, state), {}, {}, {}, {}};
+    if (positions_.empty()) find_all_positions(J);
+    for (int i = 0; i < OpRows::n; ++i) {
+      kernel.first[i] = rows_[i].first;
+      for (int k = 0; k < Columns::n; ++k) {
+        const auto& block = J(row_fields_[i], column_fields_[k]);
+        if (block.is_null()) continue;
+        const auto local = block->getLocalMatrixDevice();
+        kernel.row_begin[i][k] = local.graph.row_map;
+        kernel.values[i][k] = local.values;
+        kernel.positions[i][k] = positions_[i * Columns::n + k];
+      }
+    }
+    Kokkos::parallel_for("jacobian", Kokkos::RangePolicy<Execution>(0, n_entities_), kernel);
+    if (!keep_) positions_.clear();
+  }
+
+ private:
+  using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
+  template <class T>
+  using PerRow = Kokkos::Array<T, OpRows::n>;
+  template <class T>
+  using PerColumn = Kokkos::Array<T, Columns::n>;
+
+  /// Copies an entity's unknowns into one local array.
+  struct Gather {
+    Op op;
+    PerColumn<ConstView<LocalIndex**>> first;  // [entity, group]
+    PerColumn<ConstView<Real*>> x;             // [unknown]
+
+    KOKKOS_INLINE_FUNCTION void operator()(int e, Real (&local)[Columns::size]) const {
+      for (int k = 0; k < Columns::n; ++k)
+        for (int g = 0; g < Columns::count(k); ++g)
+          for (int c = 0; c < Columns::width(k); ++c)
+            local[Columns::offset(k) + g * Columns::width(k) + c] = x[k](first[k](e, g) + c);
+    }
+  };
+
+  struct ResidualKernel {
+    Gather gather;
+    PerRow<ConstView<LocalIndex**>> first;  // [entity, group]
+    PerRow<View<Real*>> r;                  // [owned row]
+    PerRow<LocalIndex> n_owned;
+
+    KOKKOS_INLINE_FUNCTION void operator()(int e) const {
+      Real x[Columns::size], local[OpRows::size];
+      gather(e, x);
+      gather.op.residual(e, x, local);
+      for (int i = 0; i < OpRows::n; ++i)
+        for (int g = 0; g < OpRows::count(i); ++g) {
+          const LocalIndex row = first[i](e, g);
+          if (row >= n_owned[i]) continue;
+          for (int c = 0; c < OpRows::width(i); ++c)
+            Kokkos::atomic_add(&r[i](row + c), local[OpRows::offset(i) + g * OpRows::width(i) + c]);
+        }
+    }
+  };
+
+  struct JacobianKernel {
+    Gather gather;
+    PerRow<ConstView<LocalIndex**>> first;                         // [entity, group]
+    PerRow<PerColumn<ConstView<LocalIndex***>>> positions;         // [entity, row group, column group]
+    PerRow<PerColumn<typename LocalMatrix::row_map_type>> row_begin;  // [row]
+    PerRow<PerColumn<typename LocalMatrix::values_type>> values;   // [entry]
+
+    KOKKOS_INLINE_FUNCTION void operator()(int e) const {
+      Real x[Columns::size], local[OpRows::size][Columns::size];
+      gather(e, x);
+      gather.op.jacobian(e, x, local);
+      for (int i = 0; i < OpRows::n; ++i)
+        for (int k = 0; k < Columns::n; ++k)
+          if (values[i][k].extent(0) > 0) scatter(e, i, k, local);
+    }
+
+    KOKKOS_INLINE_FUNCTION void scatter(int e, int i, int k, const Real (&local)[OpRows::size][Columns::size]) const {
+      for (int g = 0; g < OpRows::count(i); ++g)
+        for (int h = 0; h < Columns::count(k); ++h) {
+          const LocalIndex position = positions[i][k](e, g, h);
+          if (position < 0) continue;
+          for (int c = 0; c < OpRows::width(i); ++c) {
+            const auto begin = row_begin[i][k](first[i](e, g) + c) + position;
+            const auto& from = local[OpRows::offset(i) + g * OpRows::width(i) + c];
+            for (int d = 0; d < Columns::width(k); ++d)
+              Kokkos::atomic_add(&values[i][k](begin + d), from[Columns::offset(k) + h * Columns::width(k) + d]);
+          }
+        }
+    }
+  };
+
+  Gather gather(const Op& op, const State& state) const {
+    Gather g{op, {}, {}};
+    for (int k = 0; k < Columns::n; ++k) {
+      g.first[k] = columns_[k].first;
+      g.x[k] = state.x[column_fields_[k]];
+    }
+    return g;
+  }
+
+  void find_all_positions(const fields::BlockMatrix& J) {
+    for (int i = 0; i < OpRows::n; ++i)
+      for (int k = 0; k < Columns::n; ++k) {
+        const auto& block = J(row_fields_[i], column_fields_[k]);
+        positions_.push_back(block.is_null() ? ConstView<LocalIndex***>() : find_positions(*block, rows_[i], columns_[k]));
+      }
+  }
+
+  std::vector<int> row_fields_, column_fields_;
+  std::vector<Stencil> rows_, columns_;
+  std::vector<LocalIndex> n_owned_;
+  std::vector<ConstView<LocalIndex***>> positions_;
+  LocalIndex n_entities_ = 0;
+  bool keep_;
+};
+
+}  // namespace sprekk::assembly

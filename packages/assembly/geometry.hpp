@@ -1,0 +1,112 @@
+// Device copies of the mesh's cells, and integrals over cells and faces on the host.
+#pragma once
+
+#include "assembly/reference_cell.hpp"
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace sprekk::assembly {
+
+/// What a kernel over cells reads of the mesh.
+struct Geometry {
+  ConstView<Real**> coordinates;   ///< [node, component], m
+  ConstView<LocalIndex**> cells;   ///< [cell, local node]
+  ConstView<int*> region;          ///< [cell]
+
+  explicit Geometry(const mesh::Mesh& mesh);
+
+  /// Copies the node coordinates of a cell, [local node][component].
+  template <int n, int dim>
+  KOKKOS_INLINE_FUNCTION void gather(LocalIndex cell, Real (&X)[n][dim]) const {
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) X[a][i] = coordinates(cells(cell, a), i);
+  }
+};
+
+/// The coordinates of a cell's nodes, on the host.
+template <Shape shape>
+void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)]) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  for (int a = 0; a < n; ++a)
+    for (int i = 0; i < dim; ++i) X[a][i] = mesh.coordinates[mesh.cells[cell * n + a] * dim + i];
+}
+
+/// Calls visit(xi, volume, x) at the points of a rule for bubbles: reference point, volume that it stands for, place.
+template <Shape shape, class Visit>
+void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& visit) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  using Rule = BubbleQuadrature<shape>;
+  Real X[n][dim], N[n], dN[n][dim], xi[dim];
+  gather_host<shape>(mesh, cell, X);
+  for (int q = 0; q < Rule::n; ++q) {
+    const Real weight = Rule::at(q, xi);
+    ReferenceCell<shape>::shape_functions(xi, N);
+    ReferenceCell<shape>::gradients(xi, dN);
+    const CellPoint<shape> point(X, dN);
+    std::array<Real, 3> x{};
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) x[i] += N[a] * X[a][i];
+    visit(xi, weight * point.volume, x);
+  }
+}
+
+/// Calls visit(N, area, x) at quadrature points of a face of a cell (exact for degree 4 on affine faces): values of the
+/// face's node functions, area that the point stands for, place.
+template <Shape shape, class Visit>
+void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const Visit& visit) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
+  Real X[mesh::n_nodes(shape)][dim];
+  gather_host<shape>(mesh, cell, X);
+  const auto corners = mesh::face_nodes(shape)[local_face];
+  const auto finish = [&](const std::array<Real, 4>& N, const std::array<std::array<Real, 2>, 4>& dN, Real weight) {
+    std::array<Real, 3> x{}, s{}, t{};
+    for (int k = 0; k < n; ++k)
+      for (int i = 0; i < dim; ++i) {
+        x[i] += N[k] * X[corners[k]][i];
+        s[i] += dN[k][0] * X[corners[k]][i];
+        t[i] += dN[k][1] * X[corners[k]][i];
+      }
+    const Real cx = s[1] * t[2] - s[2] * t[1], cy = s[2] * t[0] - s[0] * t[2], cz = s[0] * t[1] - s[1] * t[0];
+    const Real stretch = dim == 2 ? std::hypot(s[0], s[1]) : std::sqrt(cx * cx + cy * cy + cz * cz);
+    visit(N, weight * stretch, x);
+  };
+  if constexpr (dim == 2) {
+    for (int q = 0; q < 3; ++q) {
+      const Real s = Gauss<3>::point(q);
+      finish({(1 - s) / 2, (1 + s) / 2, 0, 0}, {{{-0.5, 0}, {0.5, 0}, {0, 0}, {0, 0}}}, Gauss<3>::weight(q));
+    }
+  } else {
+    constexpr Shape face = shape == Shape::tetrahedron ? Shape::triangle : Shape::quadrilateral;
+    using Face = ReferenceCell<face>;
+    Real xi[2], N[Face::n_nodes], dN[Face::n_nodes][2];
+    for (int q = 0; q < BubbleQuadrature<face>::n; ++q) {
+      const Real weight = BubbleQuadrature<face>::at(q, xi);
+      Face::shape_functions(xi, N);
+      Face::gradients(xi, dN);
+      std::array<Real, 4> values{};
+      std::array<std::array<Real, 2>, 4> gradients{};
+      for (int k = 0; k < n; ++k) {
+        values[k] = N[k];
+        gradients[k] = {dN[k][0], dN[k][1]};
+      }
+      finish(values, gradients, weight);
+    }
+  }
+}
+
+/// Share of each node in the mean over a face: mean(v) = sum_k share_k v_k.
+template <Shape shape>
+std::array<Real, 4> mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
+  std::array<Real, 4> shares{};
+  Real total = 0;
+  for_each_face_point<shape>(mesh, cell, local_face, [&](const auto& N, Real area, const auto&) {
+    total += area;
+    for (int k = 0; k < 4; ++k) shares[k] += area * N[k];
+  });
+  for (auto& share : shares) share /= total;
+  return shares;
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,163 @@
+#include "assembly/loop.hpp"
+
+#include "base/check.hpp"
+
+#include <algorithm>
+
+namespace sprekk::assembly {
+
+using fields::Entity;
+using fields::Layout;
+
+std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh) {
+  std::vector<std::array<LocalIndex, 2>> sides;
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
+    for (int side : {mesh::minus, mesh::plus})
+      if (mesh.fracture_faces[f].cell[side] >= 0) sides.push_back({f, side});
+  return sides;
+}
+
+namespace {
+
+/// Fills a table with rows of equal length, entity by entity.
+class TableBuilder {
+ public:
+  TableBuilder(std::size_t n_rows, int n_columns) : table_("stencil", n_rows, n_columns), host_(Kokkos::create_mirror_view(table_)) {}
+  void add(LocalIndex value) {
+    host_(row_, column_) = value;
+    if (++column_ == static_cast<int>(host_.extent(1))) {
+      column_ = 0;
+      ++row_;
+    }
+  }
+  ConstView<LocalIndex**> finish() {
+    SPREKK_CHECK(row_ == host_.extent(0) || host_.extent(1) == 0, "stencil table filled to row {} of {}", row_, host_.extent(0));
+    Kokkos::deep_copy(table_, host_);
+    return table_;
+  }
+
+ private:
+  View<LocalIndex**> table_;
+  View<LocalIndex**>::HostMirror host_;
+  std::size_t row_ = 0;
+  int column_ = 0;
+};
+
+void add_cell_nodes(const mesh::Mesh& mesh, LocalIndex cell, int width, TableBuilder& table) {
+  for (int a = 0; a < mesh.nodes_per_cell(); ++a) table.add(mesh.cells[cell * mesh.nodes_per_cell() + a] * width);
+}
+
+Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, int width) {
+  const int cell_nodes = mesh.nodes_per_cell(), face_nodes = mesh::n_face_nodes(mesh.shape);
+  if (loop == Loop::cells) {
+    TableBuilder table(mesh.n_cells(), cell_nodes);
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) add_cell_nodes(mesh, c, width, table);
+    return {table.finish(), width};
+  }
+  if (loop == Loop::fracture_sides) {
+    const auto sides = fracture_sides(mesh);
+    TableBuilder table(sides.size(), cell_nodes);
+    for (const auto& [f, side] : sides) add_cell_nodes(mesh, mesh.fracture_faces[f].cell[side], width, table);
+    return {table.finish(), width};
+  }
+  if (loop == Loop::fracture_faces) {
+    TableBuilder table(mesh.n_owned_fracture_faces, 2 * face_nodes);
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+      for (int side : {mesh::minus, mesh::plus})
+        for (int k = 0; k < face_nodes; ++k) table.add(mesh.fracture_faces[f].nodes[side][k] * width);
+    return {table.finish(), width};
+  }
+  TableBuilder table(mesh.boundary_faces.size(), face_nodes);
+  for (const auto& face : mesh.boundary_faces)
+    for (int k = 0; k < face_nodes; ++k)
+      table.add(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]] * width);
+  return {table.finish(), width};
+}
+
+Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
+  if (loop == Loop::fracture_sides) {
+    const bool two_sided = n_components == 2 * mesh.dim();
+    const auto sides = fracture_sides(mesh);
+    TableBuilder table(sides.size(), 1);
+    for (const auto& [f, side] : sides) table.add(f * n_components + (two_sided ? side * mesh.dim() : 0));
+    return {table.finish(), two_sided ? mesh.dim() : n_components};
+  }
+  SPREKK_CHECK(loop == Loop::fracture_faces, "a field on fracture faces is out of reach of a loop over cells");
+  TableBuilder table(mesh.n_owned_fracture_faces, 1);
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) table.add(f * n_components);
+  return {table.finish(), n_components};
+}
+
+}  // namespace
+
+Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
+  const auto& field = layout.field();
+  if (field.entity == Entity::node) return node_stencil(mesh, loop, field.n_components);
+  SPREKK_CHECK(field.entity == Entity::fracture_face, "field {}: no stencil for cell fields", field.name);
+  return face_stencil(mesh, loop, field.n_components);
+}
+
+ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns) {
+  const auto graph = matrix.getCrsGraph()->getLocalGraphHost();
+  const auto row_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows.first);
+  const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), columns.first);
+  const auto n_owned = static_cast<LocalIndex>(graph.numRows());
+  View<LocalIndex***> positions("positions", row_first.extent(0), row_first.extent(1), column_first.extent(1));
+  auto host = Kokkos::create_mirror_view(positions);
+  for (std::size_t e = 0; e < host.extent(0); ++e)
+    for (std::size_t r = 0; r < host.extent(1); ++r) {
+      const LocalIndex row = row_first(e, r);
+      for (std::size_t c = 0; c < host.extent(2); ++c) {
+        host(e, r, c) = -1;
+        if (row >= n_owned) continue;
+        const auto* begin = &graph.entries(graph.row_map(row));
+        const auto* end = begin + (graph.row_map(row + 1) - graph.row_map(row));
+        const auto* found = std::lower_bound(begin, end, column_first(e, c));
+        SPREKK_CHECK(found != end && *found == column_first(e, c), "row {} has no entry for column {}", row, column_first(e, c));
+        host(e, r, c) = static_cast<LocalIndex>(found - begin);
+      }
+    }
+  Kokkos::deep_copy(positions, host);
+  return positions;
+}
+
+RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& column_layout,
+                                   const std::vector<std::pair<Stencil, Stencil>>& couplings) {
+  const int row_width = couplings.front().first.width;
+  const LocalIndex n_groups = row_layout.n_owned() / row_width;
+  std::vector<std::vector<LocalIndex>> columns(n_groups);
+  for (const auto& [rows, cols] : couplings) {
+    SPREKK_CHECK(rows.width == row_width, "rows of {} are written in groups of {} and of {}", row_layout.field().name, row_width,
+                 rows.width);
+    const auto row_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows.first);
+    const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cols.first);
+    for (std::size_t e = 0; e < row_first.extent(0); ++e)
+      for (std::size_t r = 0; r < row_first.extent(1); ++r) {
+        if (row_first(e, r) >= row_layout.n_owned()) continue;
+        auto& list = columns[row_first(e, r) / row_width];
+        for (std::size_t c = 0; c < column_first.extent(1); ++c)
+          for (int j = 0; j < cols.width; ++j) list.push_back(column_first(e, c) + j);
+        if (list.size() > 512) {  // keep the duplicates of shared nodes in bounds
+          std::sort(list.begin(), list.end());
+          list.erase(std::unique(list.begin(), list.end()), list.end());
+        }
+      }
+  }
+  Teuchos::ArrayRCP<std::size_t> counts(row_layout.n_owned());
+  for (LocalIndex g = 0; g < n_groups; ++g) {
+    auto& list = columns[g];
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (int i = 0; i < row_width; ++i) counts[g * row_width + i] = list.size();
+  }
+  auto graph = rcp(new fields::CrsGraph(row_layout.owned(), column_layout.ghosted(), counts()));
+  for (LocalIndex g = 0; g < n_groups; ++g)
+    for (int i = 0; i < row_width; ++i)
+      graph->insertLocalIndices(g * row_width + i, Teuchos::ArrayView<const LocalIndex>(columns[g].data(), columns[g].size()));
+  graph->fillComplete(column_layout.owned(), row_layout.owned());
+  auto matrix = rcp(new fields::CrsMatrix(graph));
+  matrix->fillComplete(column_layout.owned(), row_layout.owned());
+  return matrix;
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,51 @@
+// The loops that kernels run, and what each entity of a loop touches: tables built once, read by kernels.
+#pragma once
+
+#include "base/types.hpp"
+#include "fields/layout.hpp"
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// What a kernel runs over. A contact law is evaluated on fracture_faces, each by its owner alone. The linear operators run
+/// over cells and fracture_sides, ghosts included, and write the rows that this rank owns, so assembly sends nothing.
+enum class Loop {
+  cells,           ///< all local cells
+  fracture_sides,  ///< one side of a fracture face, wherever that side's cell is local
+  fracture_faces,  ///< owned fracture faces
+  boundary_faces   ///< boundary faces of all local cells
+};
+
+/// The entities of Loop::fracture_sides: {fracture face, side}.
+std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh);
+
+/// The unknowns of one field that each entity of a loop touches, as groups of `width` adjacent unknowns:
+/// first(entity, group) is the local index (owned first, then ghosts) of the group's first unknown.
+///
+/// | loop           | node field                           | fracture-face field                        |
+/// | cells          | the cell's nodes                     | -                                          |
+/// | fracture_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
+/// | fracture_faces | face nodes of side minus, then plus  | all components                             |
+/// | boundary_faces | the face's nodes                     | -                                          |
+///
+/// A two-sided field has 2 dim components per face: those of side minus, then those of side plus.
+struct Stencil {
+  ConstView<LocalIndex**> first;
+  int width = 0;
+};
+
+Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
+
+/// Where a pair of groups stands in the matrix: the entry of (row first_r + i, column first_c + j) is the value number
+/// row_begin(first_r + i) + positions(entity, r, c) + j; -1 where the row belongs to another rank.
+ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns);
+
+/// The matrix, all zero, whose pattern holds every pair of groups in the given stencils. All stencils of a row field
+/// have one width. Collective.
+RCP<fields::CrsMatrix> make_matrix(const fields::Layout& row_layout, const fields::Layout& column_layout,
+                                   const std::vector<std::pair<Stencil, Stencil>>& couplings);
+
+}  // namespace sprekk::assembly

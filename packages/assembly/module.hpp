@@ -1,0 +1,128 @@
+// A physics module: names, declarations, and additions to residuals and Jacobian blocks.
+#pragma once
+
+#include "assembly/geometry.hpp"
+#include "assembly/loop.hpp"
+#include "fields/block_matrix.hpp"
+#include "fields/block_problem.hpp"
+#include "fields/layout.hpp"
+#include "mesh/mesh.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// What a number measures; from it follow its scale under the present loads and thereby scaling and convergence.
+enum class Quantity {
+  length,  ///< displacement scale, m
+  stress,  ///< traction scale, Pa
+  force    ///< traction scale times the area of a typical face, N
+};
+
+/// A field that a module adds to the problem. It becomes a block of the same name.
+struct Unknown {
+  fields::Field field;
+  Quantity value, row;            ///< what the unknown and its equation are measured in
+  bool rigid_body_modes = false;  ///< the near-null space that multigrid is told of
+  std::string local_group = "";   ///< fields with one group name are eliminated together, entity by entity; "" stays
+};
+
+/// Rows that the module adds to in a loop, and the fields that those rows then depend on.
+struct Coupling {
+  Loop loop;
+  std::string row;
+  std::vector<std::string> columns;
+};
+
+/// A quantity that a module keeps from step to step, on owned entities; it changes at commit only.
+struct History {
+  std::string name;
+  fields::Entity entity;
+  int n_components;
+};
+
+/// All that the framework needs to know to derive sparsity, ghost exchange, storage and output.
+struct Declaration {
+  std::vector<Unknown> unknowns;
+  std::vector<Coupling> couplings;
+  std::vector<History> history;
+  bool linear = false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
+};
+
+/// What modules are bound to once: the mesh, and the stencil of every field they named. Unknown names throw.
+class Context {
+ public:
+  Context(RCP<const mesh::Mesh> mesh, const Geometry& geometry, const std::vector<fields::Layout>& layouts)
+      : mesh_(mesh), geometry_(geometry), layouts_(&layouts) {}
+  RCP<const mesh::Mesh> mesh() const { return mesh_; }
+  const Geometry& geometry() const { return geometry_; }
+  int field(const std::string& name) const;  ///< number of the field's block
+  const fields::Layout& layout(int field) const { return (*layouts_)[field]; }
+  Stencil stencil(Loop loop, int field) const { return make_stencil(*mesh_, loop, layout(field)); }
+
+ private:
+  RCP<const mesh::Mesh> mesh_;
+  Geometry geometry_;
+  const std::vector<fields::Layout>* layouts_;
+};
+
+/// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity, component).
+struct State {
+  Real t = 0, dt = 0;
+  std::vector<ConstView<Real*>> x;
+  std::vector<View<Real**>> history;
+};
+
+/// Owned rows, [field](row).
+using Rows = std::vector<View<Real*>>;
+
+/// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
+/// coordinates unless the name says "local".
+struct OutputField {
+  std::string name, unit;
+  fields::Entity entity;
+  int n_components;
+  std::vector<Real> values;
+};
+
+/// Sizes that solvers and tests of convergence are relative to: they grow with the loads met so far and never shrink.
+struct Scales {
+  Real stress = 0, length = 0;  ///< Pa, m
+};
+
+class Module {
+ public:
+  virtual ~Module() = default;
+  virtual std::string name() const = 0;
+  virtual Declaration declare() const = 0;
+  /// Builds the module's tables and constant operators. Called once. Collective.
+  virtual void bind(const Context& context) = 0;
+
+  /// Adds this module's part to the residual (loads at state.t included). Local: sends nothing.
+  virtual void residual(const State& state, const Rows& r) const = 0;
+  /// Adds the derivative of residual() to the blocks of owned rows. Local: sends nothing.
+  virtual void jacobian(const State& state, fields::BlockMatrix& J) const = 0;
+
+  /// The largest prescribed stress at time t, Pa, on this rank: boundary traction, weight of the domain.
+  virtual Real load(Real t) const { return 0; }
+  /// The residual at x = 0 is the same at all times.
+  virtual bool constant_load() const { return true; }
+  /// Called at the start of a step, before any residual at its end t.
+  virtual void set_time(Real t, const Scales& scales) {}
+  /// Moves the histories on to `state`.
+  virtual void commit(State& state) const {}
+  /// Appends measures that see what |residual| cannot, as maxima over this rank.
+  virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
+  /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows; without them 1/|diagonal| is taken.
+  virtual void merit_weights(const Rows& weights) const {}
+  /// The discrete state of each owned entity as (global id, state) pairs hashed and summed over this rank.
+  virtual std::size_t state_hash(const State& state) const { return 0; }
+  /// After elimination of the local groups, the Jacobian at `state` is symmetric as far as this rank's part goes.
+  virtual bool symmetric(const State& state) const { return true; }
+  /// What the module can show of a committed state. Local.
+  virtual std::vector<OutputField> outputs(const State& state) const { return {}; }
+};
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,217 @@
+// Construction: from declarations to blocks, sparsity, ghosts and constant operators.
+#include "assembly/system.hpp"
+
+#include "base/check.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::assembly {
+
+using fields::BlockMatrix;
+using fields::BlockVector;
+using fields::Entity;
+using fields::MultiVector;
+using fields::Vector;
+
+int Context::field(const std::string& name) const {
+  for (std::size_t f = 0; f < layouts_->size(); ++f)
+    if ((*layouts_)[f].field().name == name) return static_cast<int>(f);
+  throw Error(fmt::format("no module declares the field \"{}\"", name));
+}
+
+System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
+               const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers)
+    : mesh_(mesh), geometry_(*mesh), modules_(std::move(modules)), reference_(reference), timers_(timers) {
+  const auto scope = timers_->scope("set-up");
+  declare_fields();
+  declare_groups();
+  for (const auto& layout : layouts_) {
+    std::vector<DirichletCondition> own;
+    for (const auto& condition : conditions)
+      if (condition.field == layout.field().name) own.push_back(condition);
+    constraints_.emplace_back(*mesh_, layout, own);
+  }
+  bind_modules();
+  find_exchanges();
+  create_matrices();
+  assemble_linear();
+  set_merit_weights();
+}
+
+namespace {
+
+/// Node coordinates of this rank's owned nodes, [node, component].
+RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout& layout) {
+  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const Teuchos::ArrayView<const GlobalIndex> ids(mesh.node_id.data(), layout.n_owned_entities());
+  auto coordinates = rcp(new MultiVector(rcp(new const fields::Map(unknown, ids, 0, mesh.comm)), mesh.dim()));
+  auto view = coordinates->getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (LocalIndex n = 0; n < layout.n_owned_entities(); ++n)
+    for (int i = 0; i < mesh.dim(); ++i) view(n, i) = mesh.coordinates[n * mesh.dim() + i];
+  return coordinates;
+}
+
+/// Translations and rotations about a point that is no node (a node at the centre would give an aggregate of that node a
+/// zero column), [unknown, mode].
+RCP<MultiVector> rigid_body_modes(const fields::Layout& layout, const MultiVector& coordinates) {
+  const int dim = static_cast<int>(coordinates.getNumVectors()), n_rotations = dim == 2 ? 1 : 3;
+  Teuchos::Array<Real> centre(dim);
+  coordinates.meanValue(centre());
+  for (int i = 0; i < dim; ++i) centre[i] += 0.0123456789 * (1 + 0.37 * i) * (1 + std::abs(centre[i]));
+  auto modes = rcp(new MultiVector(layout.owned(), dim + n_rotations));
+  const auto X = coordinates.getLocalViewHost(Tpetra::Access::ReadOnly);
+  auto view = modes->getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (LocalIndex n = 0; n < layout.n_owned_entities(); ++n) {
+    for (int i = 0; i < dim; ++i) view(n * dim + i, i) = 1;
+    for (int k = 0; k < n_rotations; ++k) {  // rotation in the plane of axes a, b
+      const int a = dim == 2 ? 0 : (k + 1) % 3, b = dim == 2 ? 1 : (k + 2) % 3;
+      view(n * dim + a, dim + k) = -(X(n, b) - centre[b]);
+      view(n * dim + b, dim + k) = X(n, a) - centre[a];
+    }
+  }
+  return modes;
+}
+
+/// Area of the face of a typical cell: the domain's bounding box shared out among the cells.
+Real typical_face_area(const mesh::Mesh& mesh) {
+  const int dim = mesh.dim();
+  std::vector<Real> corner(2 * dim, -std::numeric_limits<Real>::max()), all(2 * dim);
+  for (LocalIndex n = 0; n < mesh.n_nodes(); ++n)
+    for (int i = 0; i < dim; ++i) {
+      corner[i] = std::max(corner[i], mesh.coordinates[n * dim + i]);
+      corner[dim + i] = std::max(corner[dim + i], -mesh.coordinates[n * dim + i]);
+    }
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 2 * dim, corner.data(), all.data());
+  Real volume = 1;
+  for (int i = 0; i < dim; ++i) volume *= all[i] + all[dim + i];
+  return std::pow(volume / static_cast<Real>(mesh.n_global_cells), (dim - 1.0) / dim);
+}
+
+}  // namespace
+
+void System::declare_fields() {
+  for (const auto& module : modules_) {
+    declarations_.push_back(module->declare());
+    for (const auto& unknown : declarations_.back().unknowns) unknowns_.push_back(unknown);
+  }
+  for (const auto& unknown : unknowns_) layouts_.emplace_back(unknown.field, *mesh_);
+  for (std::size_t b = 0; b < unknowns_.size(); ++b) {
+    const auto& layout = layouts_[b];
+    fields::Block block{layout.field().name, layout.owned(), layout.field().n_components, 1, 1, {}, {}};
+    if (unknowns_[b].rigid_body_modes) {
+      block.coordinates = owned_coordinates(*mesh_, layout);
+      block.near_null_space = rigid_body_modes(layout, *block.coordinates);
+    }
+    blocks_.push_back(block);
+    ghosted_.push_back(rcp(new Vector(layout.ghosted())));
+    weights_.push_back(rcp(new Vector(layout.owned())));
+    load_.push_back(rcp(new Vector(layout.owned())));
+  }
+  face_area_ = typical_face_area(*mesh_);
+}
+
+void System::declare_groups() {
+  for (int b = 0; b < static_cast<int>(unknowns_.size()); ++b) {
+    const auto& name = unknowns_[b].local_group;
+    if (name.empty()) continue;
+    const auto same = [&](const fields::LocalGroup& group) { return group.name == name; };
+    auto found = std::find_if(groups_.begin(), groups_.end(), same);
+    if (found == groups_.end()) found = groups_.insert(groups_.end(), {name, {}});
+    found->blocks.push_back(b);
+  }
+}
+
+BlockMatrix System::create_matrix() const {
+  const Context context(mesh_, geometry_, layouts_);
+  const int n = static_cast<int>(blocks_.size());
+  std::vector<std::vector<std::pair<Stencil, Stencil>>> couplings(n * n);
+  for (const auto& declaration : declarations_)
+    for (const auto& coupling : declaration.couplings) {
+      const int row = context.field(coupling.row);
+      for (const auto& name : coupling.columns) {
+        const int column = context.field(name);
+        couplings[row * n + column].emplace_back(context.stencil(coupling.loop, row), context.stencil(coupling.loop, column));
+      }
+    }
+  BlockMatrix matrix(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (!couplings[i * n + j].empty()) matrix(i, j) = make_matrix(layouts_[i], layouts_[j], couplings[i * n + j]);
+  return matrix;
+}
+
+void System::create_matrices() {
+  const Context context(mesh_, geometry_, layouts_);
+  const int n = static_cast<int>(blocks_.size());
+  std::vector<char> linear(n * n, 0), nonlinear(n * n, 0);
+  for (const auto& declaration : declarations_)
+    for (const auto& coupling : declaration.couplings)
+      for (const auto& column : coupling.columns)
+        (declaration.linear ? linear : nonlinear)[context.field(coupling.row) * n + context.field(column)] = 1;
+  linear_ = create_matrix();
+  matrix_ = linear_;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      if (!nonlinear[i * n + j]) continue;
+      if (linear[i * n + j])
+        matrix_(i, j) = rcp(new fields::CrsMatrix(*linear_(i, j), Teuchos::Copy));
+      else
+        linear_(i, j) = Teuchos::null;
+    }
+}
+
+void System::bind_modules() {
+  const Context context(mesh_, geometry_, layouts_);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    modules_[m]->bind(context);
+    history_.emplace_back();
+    for (const auto& h : declarations_[m].history)
+      history_[m].emplace_back(h.name, fields::n_entities(*mesh_, h.entity, false), h.n_components);
+  }
+}
+
+void System::find_exchanges() {
+  const Context context(mesh_, geometry_, layouts_);
+  std::vector<int> here(blocks_.size(), 0), anywhere(blocks_.size(), 0);
+  for (const auto& declaration : declarations_) {
+    if (declaration.linear) continue;
+    for (const auto& coupling : declaration.couplings)
+      for (const auto& name : coupling.columns) {
+        const int f = context.field(name);
+        const auto first = context.stencil(coupling.loop, f).first;
+        const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
+        for (std::size_t e = 0; e < host.extent(0); ++e)
+          for (std::size_t g = 0; g < host.extent(1); ++g) here[f] |= host(e, g) >= layouts_[f].n_owned();
+      }
+  }
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), anywhere.data());
+  needs_ghosts_.assign(anywhere.begin(), anywhere.end());
+}
+
+void System::assemble_linear() {
+  const auto scope = timers_->scope("assembly of the linear part");
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
+}
+
+void System::set_merit_weights() {
+  const auto views = rows(weights_);
+  for (const auto& module : modules_) module->merit_weights(views);
+  for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
+    if (weights_[b]->normInf() > 0 || linear_(b, b).is_null()) continue;
+    linear_(b, b)->getLocalDiagCopy(*weights_[b]);
+    auto w = weights_[b]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < w.extent(0); ++i) w(i, 0) = w(i, 0) != 0 ? 1 / std::abs(w(i, 0)) : 0;
+  }
+}
+
+BlockVector System::initial() const {
+  BlockVector x;
+  for (const auto& block : blocks_) x.push_back(rcp(new Vector(block.map)));
+  return x;
+}
+
+}  // namespace sprekk::assembly

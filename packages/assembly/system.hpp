@@ -1,0 +1,97 @@
+// The list of modules is the equation system: blocks, sparsity, ghosts and storage follow from what they declare.
+#pragma once
+
+#include "assembly/constraints.hpp"
+#include "assembly/module.hpp"
+#include "base/timer.hpp"
+#include "fields/block_problem.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// What the loads are related to when typical sizes are estimated: u = sigma L / E, and back.
+struct Reference {
+  Real modulus;  ///< E, Pa
+  Real length;   ///< L, m
+};
+
+class System : public fields::BlockProblem {
+ public:
+  /// Declares and binds the modules and assembles the linear ones, once. Collective.
+  System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
+         const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers);
+
+  RCP<const Comm> comm() const override { return mesh_->comm; }
+  const std::vector<fields::Block>& blocks() const override { return blocks_; }
+  const std::vector<fields::LocalGroup>& local_groups() const override { return groups_; }
+  void set_time(Real t, Real dt) override;
+  void commit(const fields::BlockVector& x) override;
+  void residual(const fields::BlockVector& x, fields::BlockVector& r) override;
+  void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
+  void jacobian(const fields::BlockVector& x) override;
+  const fields::BlockMatrix& matrix() const override { return matrix_; }
+  bool symmetric() const override { return symmetric_; }
+  ConstView<char*> constrained(int block) const override { return constraints_[block].mask(); }
+  std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
+  Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
+  std::size_t state_hash(const fields::BlockVector& x) override;
+
+  /// Zero displacement, zero traction. [block]
+  fields::BlockVector initial() const;
+  /// Everything the modules can show of the last committed state x.
+  std::vector<OutputField> outputs(const fields::BlockVector& x);
+  /// Sum of the reactions (forces on the body, N; N/m in 2D) over the unknowns that each condition holds, [condition,
+  /// component]; an unknown held by two conditions counts for the first. Collective.
+  std::vector<std::pair<std::string, std::vector<Real>>> reactions(const fields::BlockVector& x);
+
+  const mesh::Mesh& mesh() const { return *mesh_; }
+  const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
+  const std::vector<fields::Layout>& layouts() const { return layouts_; }
+  const Scales& scales() const { return scales_; }
+  /// True for a block whose ghosts the nonlinear modules read, and which is therefore exchanged for every residual.
+  bool exchanged(int block) const { return needs_ghosts_[block]; }
+  /// A matrix with all declared blocks, zero; what jacobian() fills. Collective.
+  fields::BlockMatrix create_matrix() const;
+  /// The residual and the Jacobian of one module alone, for checks against finite differences. Collective.
+  void module_residual(int module, const fields::BlockVector& x, fields::BlockVector& r);
+  void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
+
+ private:
+  void declare_fields();
+  void declare_groups();
+  void bind_modules();
+  void create_matrices();
+  void assemble_linear();
+  void set_merit_weights();
+  void find_exchanges();
+  State state(int module) const;
+  void refresh_ghosts(const fields::BlockVector& x, bool all);
+  Rows rows(fields::BlockVector& r) const;
+  void update_scales(Real t);
+
+  RCP<const mesh::Mesh> mesh_;
+  Geometry geometry_;
+  std::vector<std::unique_ptr<Module>> modules_;
+  std::vector<Declaration> declarations_;            // [module]
+  std::vector<Unknown> unknowns_;                    // [block]
+  std::vector<fields::Layout> layouts_;              // [block]
+  std::vector<fields::Block> blocks_;
+  std::vector<fields::LocalGroup> groups_;
+  std::vector<Constraints> constraints_;             // [block]
+  std::vector<std::vector<View<Real**>>> history_;   // [module][number](owned entity, component)
+  std::vector<char> needs_ghosts_;                   // [block]
+  fields::BlockVector ghosted_;                      // [block] unknowns with ghosts
+  fields::BlockVector weights_;                      // [block] of merit()
+  fields::BlockVector load_;                         // [block] residual of the linear modules at x = 0, time t_
+  fields::BlockMatrix linear_;                       // what the linear modules write
+  fields::BlockMatrix matrix_;                       // df/dx; shares the blocks that only linear modules write
+  Reference reference_;
+  Scales scales_;
+  RCP<base::Timers> timers_;
+  Real t_ = 0, dt_ = 0, face_area_ = 1;
+  bool symmetric_ = true;
+};
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,258 @@
+// Evaluation: residuals, Jacobians, measures and outputs at a given x.
+#include "assembly/system.hpp"
+#include "base/check.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::assembly {
+
+using fields::BlockMatrix;
+using fields::BlockVector;
+using fields::Measure;
+
+namespace {
+
+View<Real*> owned_view(fields::Vector& v) {
+  auto local = v.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  return View<Real*>(local.data(), local.extent(0));
+}
+
+ConstView<Real*> const_view(const fields::Vector& v) {
+  const auto local = v.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  return ConstView<Real*>(local.data(), local.extent(0));
+}
+
+}  // namespace
+
+Rows System::rows(BlockVector& r) const {
+  Rows views;
+  for (const auto& v : r) views.push_back(owned_view(*v));
+  return views;
+}
+
+void System::refresh_ghosts(const BlockVector& x, bool all) {
+  const auto scope = timers_->scope("ghost exchange");
+  for (std::size_t b = 0; b < x.size(); ++b) {
+    if (all || needs_ghosts_[b]) {
+      ghosted_[b]->doImport(*x[b], *layouts_[b].import(), Tpetra::REPLACE);
+    } else {
+      const auto from = const_view(*x[b]);
+      const auto to = owned_view(*ghosted_[b]);
+      Kokkos::deep_copy(Kokkos::subview(to, Kokkos::make_pair(std::size_t(0), from.extent(0))), from);
+    }
+  }
+}
+
+/// Views of what refresh_ghosts has fetched last.
+State System::state(int module) const {
+  State s{t_, dt_, {}, history_[module]};
+  for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
+  return s;
+}
+
+/// Evaluates the loads at time t and lets the scales grow with them.
+void System::update_scales(Real t) {
+  Real here[2] = {0, 0}, all[2];
+  base::collectively(*comm(), [&] {
+    for (auto& constraints : constraints_) {
+      constraints.evaluate(t);
+      here[0] = std::max(here[0], constraints.largest());
+    }
+    for (const auto& module : modules_) here[1] = std::max(here[1], module->load(t));
+  });
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 2, here, all);
+  const Real E = reference_.modulus, L = reference_.length;
+  scales_.stress = std::max({scales_.stress, all[1], E * all[0] / L, 1e-12 * E});
+  scales_.length = std::max({scales_.length, all[0], scales_.stress * L / E});
+  const auto scale = [&](Quantity q) {
+    return q == Quantity::length ? scales_.length : q == Quantity::stress ? scales_.stress : scales_.stress * face_area_;
+  };
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    blocks_[b].kinematic_scale = scale(unknowns_[b].value);
+    blocks_[b].residual_scale = scale(unknowns_[b].row);
+  }
+}
+
+void System::set_time(Real t, Real dt) {
+  const auto scope = timers_->scope("loads");
+  const bool first = dt_ == 0;
+  t_ = t;
+  dt_ = dt;
+  update_scales(t);
+  bool changes = first;
+  base::collectively(*comm(), [&] {
+    for (const auto& module : modules_) {
+      module->set_time(t, scales_);
+      changes = changes || !module->constant_load();
+    }
+  });
+  if (!changes) return;
+  for (std::size_t b = 0; b < load_.size(); ++b) {
+    load_[b]->putScalar(0);
+    ghosted_[b]->putScalar(0);
+  }
+  const auto views = rows(load_);
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    if (declarations_[m].linear) modules_[m]->residual(state(static_cast<int>(m)), views);
+}
+
+void System::raw_residual(const BlockVector& x, BlockVector& r) {
+  refresh_ghosts(x, false);
+  const auto scope = timers_->scope("residual");
+  const int n = static_cast<int>(blocks_.size());
+  for (int i = 0; i < n; ++i) {
+    Tpetra::deep_copy(*r[i], *load_[i]);
+    for (int j = 0; j < n; ++j)
+      if (!linear_(i, j).is_null()) linear_(i, j)->apply(*x[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
+  }
+  const auto views = rows(r);
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    if (!declarations_[m].linear) modules_[m]->residual(state(static_cast<int>(m)), views);
+}
+
+void System::residual(const BlockVector& x, BlockVector& r) {
+  raw_residual(x, r);
+  for (std::size_t b = 0; b < r.size(); ++b) {
+    if (constraints_[b].conditions().empty()) continue;
+    const auto mask = constraints_[b].mask();
+    const auto value = constraints_[b].values();
+    const auto unknown = const_view(*x[b]);
+    const auto row = owned_view(*r[b]);
+    Kokkos::parallel_for(
+        "constraints", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int i) {
+          if (mask(i)) row(i) = unknown(i) - value(i);
+        });
+  }
+}
+
+void System::jacobian(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  const auto scope = timers_->scope("Jacobian");
+  const int n = static_cast<int>(blocks_.size());
+  int asymmetric = 0, anywhere = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      if (matrix_(i, j).is_null() || matrix_(i, j) == linear_(i, j)) continue;
+      const auto values = matrix_(i, j)->getLocalMatrixDevice().values;
+      if (linear_(i, j).is_null())
+        Kokkos::deep_copy(values, 0.0);
+      else
+        Kokkos::deep_copy(values, linear_(i, j)->getLocalMatrixDevice().values);
+    }
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    if (declarations_[m].linear) continue;
+    const auto s = state(static_cast<int>(m));
+    modules_[m]->jacobian(s, matrix_);
+    asymmetric |= !modules_[m]->symmetric(s);
+  }
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &asymmetric, &anywhere);
+  symmetric_ = !anywhere;
+}
+
+void System::commit(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    auto s = state(static_cast<int>(m));
+    modules_[m]->commit(s);
+  }
+}
+
+std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
+  refresh_ghosts(x, false);
+  std::vector<Measure> measures;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto mask = constraints_[b].mask();
+    const auto row = const_view(*r[b]);
+    const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
+    Real largest = 0;
+    Kokkos::parallel_reduce(
+        "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
+        KOKKOS_LAMBDA(int i, Real& maximum) {
+          const Real size = (row(i) < 0 ? -row(i) : row(i)) / (mask(i) ? held_scale : free_scale);
+          if (!(size <= maximum)) maximum = size;
+        },
+        Kokkos::Max<Real>(largest));
+    measures.push_back({blocks_[b].name, largest});
+  }
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
+  std::vector<Real> here, all(measures.size());
+  for (const auto& measure : measures)  // a number that is none must not vanish in the maximum
+    here.push_back(std::isnan(measure.value) ? std::numeric_limits<Real>::infinity() : measure.value);
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), all.data());
+  for (std::size_t k = 0; k < measures.size(); ++k) measures[k].value = all[k];
+  return measures;
+}
+
+Real System::merit(const BlockVector& x, const BlockVector& r) {
+  Real sum = 0, total = 0;
+  for (std::size_t b = 0; b < r.size(); ++b) {
+    const auto mask = constraints_[b].mask();
+    const auto row = const_view(*r[b]);
+    const auto weight = const_view(*weights_[b]);
+    Real part = 0;
+    Kokkos::parallel_reduce(
+        "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
+        KOKKOS_LAMBDA(int i, Real& s) {
+          if (!mask(i)) s += weight(i) * row(i) * row(i);
+        },
+        part);
+    sum += part;
+  }
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 1, &sum, &total);
+  return total;
+}
+
+std::size_t System::state_hash(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  long long here = 0, total = 0;
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    here += static_cast<long long>(modules_[m]->state_hash(state(static_cast<int>(m))) >> 16);
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 1, &here, &total);
+  return static_cast<std::size_t>(total);
+}
+
+std::vector<OutputField> System::outputs(const BlockVector& x) {
+  refresh_ghosts(x, true);
+  std::vector<OutputField> outputs;
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    for (auto& output : modules_[m]->outputs(state(static_cast<int>(m)))) outputs.push_back(std::move(output));
+  return outputs;
+}
+
+std::vector<std::pair<std::string, std::vector<Real>>> System::reactions(const BlockVector& x) {
+  auto r = fields::create_like(x);
+  raw_residual(x, r);
+  std::vector<std::pair<std::string, std::vector<Real>>> result;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto view = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
+    const int n_components = blocks_[b].n_components, n = static_cast<int>(constraints_[b].conditions().size());
+    std::vector<Real> here(n * n_components, 0), all(n * n_components);
+    for (const auto& entry : constraints_[b].entries())
+      here[entry.condition * n_components + entry.component] += view(entry.unknown, 0);
+    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+    for (int k = 0; k < n; ++k)
+      result.emplace_back(constraints_[b].conditions()[k].name,
+                          std::vector<Real>(all.begin() + k * n_components, all.begin() + (k + 1) * n_components));
+  }
+  return result;
+}
+
+void System::module_residual(int module, const BlockVector& x, BlockVector& r) {
+  refresh_ghosts(x, true);
+  for (const auto& v : r) v->putScalar(0);
+  modules_[module]->residual(state(module), rows(r));
+}
+
+void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
+  refresh_ghosts(x, true);
+  for (int i = 0; i < J.n_blocks(); ++i)
+    for (int j = 0; j < J.n_blocks(); ++j)
+      if (!J(i, j).is_null()) J(i, j)->setAllToScalar(0);
+  modules_[module]->jacobian(state(module), J);
+}
+
+}  // namespace sprekk::assembly

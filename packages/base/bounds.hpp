@@ -1,0 +1,46 @@
+// The values that a parameter may take.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "base/types.hpp"
+
+namespace sprekk::base {
+
+/// An interval of numbers; an array's bounds hold for each element, and may fix the array's length too:
+/// base::between(0, 1).size(3). NaN is never inside, infinity only where it is said.
+class Bounds {
+ public:
+  Bounds& above(Real low) { return low_ = low, low_is_open_ = true, *this; }
+  Bounds& from(Real low) { return low_ = low, low_is_open_ = false, *this; }
+  Bounds& below(Real high) { return high_ = high, high_is_open_ = true, *this; }
+  Bounds& to(Real high) { return high_ = high, high_is_open_ = false, *this; }
+  Bounds& or_infinite() { return infinite_ = true, *this; }
+  Bounds& size(std::size_t n) { return size_ = n, *this; }
+
+  bool contains(Real value) const;
+  bool allows_infinity() const { return infinite_; }
+  std::optional<std::size_t> size() const { return size_; }
+
+  std::string text() const;         ///< "at least 0"; "finite" if every finite number is inside
+  std::string length_text() const;  ///< "3 elements"; empty if any length is allowed
+
+ private:
+  static constexpr Real infinity_ = std::numeric_limits<Real>::infinity();
+  Real low_ = -infinity_, high_ = infinity_;
+  bool low_is_open_ = true, high_is_open_ = true, infinite_ = false;
+  std::optional<std::size_t> size_;
+};
+
+inline Bounds any() { return {}; }  ///< every finite number
+inline Bounds at_least(Real low) { return Bounds().from(low); }
+inline Bounds at_most(Real high) { return Bounds().to(high); }
+inline Bounds greater_than(Real low) { return Bounds().above(low); }
+inline Bounds less_than(Real high) { return Bounds().below(high); }
+inline Bounds between(Real low, Real high) { return Bounds().from(low).to(high); }  ///< ends included
+inline Bounds positive() { return greater_than(0); }
+inline Bounds positive_or_infinite() { return positive().or_infinite(); }
+
+}  // namespace sprekk::base

@@ -1,0 +1,176 @@
+#include "base/codec.hpp"
+
+#include <Teuchos_Array.hpp>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "base/value.hpp"
+
+namespace sprekk::base {
+
+using Teuchos::Array;
+using Teuchos::ParameterEntry;
+using Teuchos::ParameterList;
+
+namespace {
+
+/// Uses the entry as a T if it is one.
+template <class T, class Use>
+bool if_type(const ParameterEntry& entry, const Use& use) {
+  if (!entry.isType<T>()) return false;
+  use(Teuchos::getValue<T>(entry));
+  return true;
+}
+
+void wrong_type(const ParameterEntry& entry, Reading& reading, const std::string& expected) {
+  reading.fail("", fmt::format("is {}, expected {}", describe(entry), expected));
+}
+
+bool inside(Reading& reading, const std::string& suffix, Real value) {
+  if (reading.bounds.contains(value)) return true;
+  reading.fail(suffix, fmt::format("is {}, must be {}", number_text(value), reading.bounds.text()));
+  return false;
+}
+
+bool length_fits(Reading& reading, std::size_t n) {
+  if (!reading.bounds.size() || *reading.bounds.size() == n) return true;
+  reading.fail("", fmt::format("has {} element{}, must have {}", n, n == 1 ? "" : "s", reading.bounds.length_text()));
+  return false;
+}
+
+std::string index(std::size_t i) { return fmt::format("[{}]", i); }
+
+template <class From, class T>
+bool decode_array(const ParameterEntry& entry, Reading& reading, std::vector<T>& target) {
+  return if_type<Array<From>>(entry, [&](const Array<From>& values) {
+    bool good = length_fits(reading, values.size());
+    for (int i = 0; i < values.size(); ++i) good = inside(reading, index(i), values[i]) && good;
+    if (good) target.assign(values.begin(), values.end());
+  });
+}
+
+template <class T>
+bool decode_integer(const ParameterEntry& entry, Reading& reading, T& target) {
+  const auto use = [&](long long value) {
+    if (value != static_cast<T>(value))
+      reading.fail("", fmt::format("is {}, too large for an int", value));
+    else if (inside(reading, "", static_cast<Real>(value)))
+      target = static_cast<T>(value);
+  };
+  return if_type<int>(entry, use) || if_type<long long>(entry, use);
+}
+
+/// One expression from a number or a text.
+void decode_expression(Reading& reading, const std::string& suffix, Real value, Expression& target) {
+  if (inside(reading, suffix, value)) target = Expression(value);
+}
+void decode_expression(Reading& reading, const std::string& suffix, const std::string& text, Expression& target) {
+  if (const auto number = parse_number(text)) return decode_expression(reading, suffix, *number, target);
+  try {
+    target = Expression(text, reading.place + suffix);
+  } catch (const Error& error) {
+    reading.errors.push_back(error.what());
+  }
+}
+
+template <class From>
+bool decode_expressions(const ParameterEntry& entry, Reading& reading, std::vector<Expression>& target) {
+  return if_type<Array<From>>(entry, [&](const Array<From>& values) {
+    const auto n_errors = reading.errors.size();
+    length_fits(reading, values.size());
+    std::vector<Expression> expressions(values.size());
+    for (int i = 0; i < values.size(); ++i) decode_expression(reading, index(i), values[i], expressions[i]);
+    if (reading.errors.size() == n_errors) target = std::move(expressions);
+  });
+}
+
+}  // namespace
+
+void decode(const ParameterEntry& entry, Reading reading, double& target) {
+  const auto use = [&](Real value) {
+    if (inside(reading, "", value)) target = value;
+  };
+  if (if_type<double>(entry, use) || if_type<int>(entry, use) || if_type<long long>(entry, use)) return;
+  if (entry.isType<std::string>() && Teuchos::getValue<std::string>(entry) == "infinite")
+    return use(*parse_number("infinite"));
+  wrong_type(entry, reading, "a number, e.g. type=\"double\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, int& target) {
+  if (!decode_integer(entry, reading, target)) wrong_type(entry, reading, "an integer, e.g. type=\"int\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, long long& target) {
+  if (!decode_integer(entry, reading, target)) wrong_type(entry, reading, "an integer, e.g. type=\"long long\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, bool& target) {
+  if (!if_type<bool>(entry, [&](bool value) { target = value; }))
+    wrong_type(entry, reading, "true or false with type=\"bool\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, std::string& target) {
+  if (!if_type<std::string>(entry, [&](const std::string& value) { target = value; }))
+    wrong_type(entry, reading, "a text with type=\"string\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, std::vector<double>& target) {
+  if (!decode_array<double>(entry, reading, target) && !decode_array<int>(entry, reading, target))
+    wrong_type(entry, reading, "numbers, e.g. type=\"Array(double)\" value=\"{1, 2}\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, std::vector<int>& target) {
+  if (!decode_array<int>(entry, reading, target))
+    wrong_type(entry, reading, "integers, e.g. type=\"Array(int)\" value=\"{1, 2}\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, std::vector<std::string>& target) {
+  const auto use = [&](const Array<std::string>& values) {
+    if (length_fits(reading, values.size())) target.assign(values.begin(), values.end());
+  };
+  if (!if_type<Array<std::string>>(entry, use))
+    wrong_type(entry, reading, "texts, e.g. type=\"Array(string)\" value=\"{a, b}\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, Expression& target) {
+  const auto use = [&](const auto& value) { decode_expression(reading, "", value, target); };
+  if (!if_type<double>(entry, use) && !if_type<int>(entry, use) && !if_type<std::string>(entry, use))
+    wrong_type(entry, reading, "a number or an expression, e.g. type=\"string\" value=\"-0.1*t\"");
+}
+
+void decode(const ParameterEntry& entry, Reading reading, std::vector<Expression>& target) {
+  const bool done = decode_expressions<double>(entry, reading, target) ||
+                    decode_expressions<int>(entry, reading, target) ||
+                    decode_expressions<std::string>(entry, reading, target);
+  if (!done) wrong_type(entry, reading, "numbers or expressions, e.g. type=\"Array(string)\" value=\"{0, -0.1*t}\"");
+}
+
+void encode(ParameterList& list, const std::string& name, double value) { list.set(name, value); }
+void encode(ParameterList& list, const std::string& name, int value) { list.set(name, value); }
+void encode(ParameterList& list, const std::string& name, long long value) { list.set(name, value); }
+void encode(ParameterList& list, const std::string& name, bool value) { list.set(name, value); }
+void encode(ParameterList& list, const std::string& name, const std::string& value) { list.set(name, value); }
+void encode(ParameterList& list, const std::string& name, const std::vector<double>& value) {
+  list.set(name, Array<double>(value));
+}
+void encode(ParameterList& list, const std::string& name, const std::vector<int>& value) {
+  list.set(name, Array<int>(value));
+}
+void encode(ParameterList& list, const std::string& name, const std::vector<std::string>& value) {
+  list.set(name, Array<std::string>(value));
+}
+
+void encode(ParameterList& list, const std::string& name, const Expression& value) {
+  if (const auto number = parse_number(value.text()))
+    list.set(name, *number);
+  else
+    list.set(name, value.text());
+}
+
+void encode(ParameterList& list, const std::string& name, const std::vector<Expression>& value) {
+  Array<std::string> texts;
+  for (const auto& expression : value) texts.push_back(expression.text());
+  list.set(name, texts);
+}
+
+}  // namespace sprekk::base

@@ -1,0 +1,41 @@
+#include "base/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.hpp"
+#include "base/parameters.hpp"
+
+namespace sprekk::base {
+
+void Table::describe(Section& section) {
+  section.required(arguments, "arguments", "-", any(), "points at which values are given, strictly increasing");
+  section.required(values, "values", "-", any(), "values at the arguments, linear in between");
+  const std::string problem = defect();
+  if (section.complete() && !problem.empty()) section.fail(problem);
+}
+
+std::string Table::defect() const {
+  if (arguments.size() != values.size())
+    return fmt::format("has {} arguments but {} values", arguments.size(), values.size());
+  if (arguments.size() < 2) return fmt::format("has {} points, needs at least 2", arguments.size());
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (!std::isfinite(arguments[i]) || !std::isfinite(values[i]))
+      return fmt::format("point {} is ({}, {}), must be finite", i, arguments[i], values[i]);
+    if (i > 0 && !(arguments[i] > arguments[i - 1]))
+      return fmt::format("arguments must increase strictly, but argument {} is {} after {}", i, arguments[i],
+                         arguments[i - 1]);
+  }
+  return "";
+}
+
+Real Table::operator()(Real argument) const {
+  SPREKK_CHECK(argument >= arguments.front() && argument <= arguments.back(), "argument {} is outside of [{}, {}]",
+               argument, arguments.front(), arguments.back());
+  const auto above = std::upper_bound(arguments.begin() + 1, arguments.end() - 1, argument);
+  const auto i = above - arguments.begin();
+  const Real fraction = (argument - arguments[i - 1]) / (arguments[i] - arguments[i - 1]);
+  return (1 - fraction) * values[i - 1] + fraction * values[i];
+}
+
+}  // namespace sprekk::base

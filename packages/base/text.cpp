@@ -1,0 +1,141 @@
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::base {
+
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+template <class T>
+std::optional<T> parse_whole(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// The number of insertions, deletions, replacements and swaps of neighbours that turn a into b.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+std::string without_separators(const std::string& name) {
+  std::string result = lower(name);
+  const auto separator = [](char c) { return c == ' ' || c == '_' || c == '-'; };
+  result.erase(std::remove_if(result.begin(), result.end(), separator), result.end());
+  return result;
+}
+
+std::string_view unquoted(std::string_view text) {
+  text = trimmed(text);
+  const bool quotes = text.size() > 1 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0] &&
+                      text.find(text[0], 1) == text.size() - 1;
+  return quotes ? text.substr(1, text.size() - 2) : text;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const auto blanks = " \t\r\n";
+  const auto first = text.find_first_not_of(blanks);
+  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::optional<Real> parse_number(std::string_view text) {
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  if (trimmed(text) == "infinite") return infinity;
+  if (trimmed(text) == "-infinite") return -infinity;
+  const auto value = parse_whole<Real>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<long long> parse_integer(std::string_view text) { return parse_whole<long long>(text); }
+
+std::optional<bool> parse_boolean(std::string_view text) {
+  const std::string word = lower(trimmed(text));
+  if (word == "true") return true;
+  if (word == "false") return false;
+  return std::nullopt;
+}
+
+std::optional<std::vector<std::string>> parse_list(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() < 2 || text.front() != '{' || text.back() != '}') return std::nullopt;
+  text = text.substr(1, text.size() - 2);
+  std::vector<std::string> elements;
+  if (trimmed(text).empty()) return elements;
+  int depth = 0;
+  char quote = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const char c = i < text.size() ? text[i] : ',';
+    if (quote && i < text.size()) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '(' || c == ')') {
+      depth += c == '(' ? 1 : -1;
+      if (depth < 0) return std::nullopt;
+    } else if (c == '{' || c == '}') {
+      return std::nullopt;
+    } else if (c == ',' && (depth == 0 || i == text.size())) {
+      const auto element = trimmed(text.substr(begin, i - begin));
+      if (element.empty()) return std::nullopt;
+      elements.emplace_back(unquoted(element));
+      begin = i + 1;
+    }
+  }
+  if (depth != 0 || quote) return std::nullopt;
+  return elements;
+}
+
+std::string number_text(Real value) {
+  if (std::isinf(value)) return value > 0 ? "infinite" : "-infinite";
+  return fmt::format("{}", value);
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  return text;
+}
+
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed) {
+  const std::string wanted = without_separators(name);
+  std::size_t smallest = std::min(std::clamp<std::size_t>(wanted.size() / 3, 1, 3) + 1, wanted.size());
+  std::string nearest;
+  for (const auto& candidate : allowed) {
+    const auto distance = edit_distance(wanted, without_separators(candidate));
+    if (distance >= smallest) continue;
+    smallest = distance;
+    nearest = fmt::format(" Did you mean \"{}\"?", candidate);
+  }
+  return nearest;
+}
+
+}  // namespace sprekk::base

@@ -1,0 +1,34 @@
+// Numbers and lists as text, strictly: a text that is not wholly what is asked for is refused.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace sprekk::base {
+
+std::string_view trimmed(std::string_view text);
+
+/// The number that the whole of `text` (blanks at the ends aside) is, or nothing: "1.0abc", "1,5", "" and NaN are none,
+/// nor is what a Real or a long long cannot hold. "infinite" is the number infinity, "-infinite" its negative.
+std::optional<Real> parse_number(std::string_view text);
+std::optional<long long> parse_integer(std::string_view text);
+std::optional<bool> parse_boolean(std::string_view text);  ///< "true" or "false", in any case
+
+/// The elements of "{a, f(b, c)}", split at commas outside of parentheses and quotes; an element in double or single
+/// quotes stands for what is inside them. Nothing if braces, quotes or parentheses do not match or an element is empty.
+std::optional<std::vector<std::string>> parse_list(std::string_view text);
+
+/// The shortest text that parse_number turns back into exactly `value`.
+std::string number_text(Real value);
+
+/// `"a", "b", "c"`
+std::string quoted_list(const std::vector<std::string>& names);
+
+/// ` Did you mean "..."?` for the nearest of `allowed`, case, blanks, "-" and "_" aside; empty if none is near.
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed);
+
+}  // namespace sprekk::base

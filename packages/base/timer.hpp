@@ -1,0 +1,60 @@
+// Time spent in named phases, and memory.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace sprekk::base {
+
+/// Wall-clock time of phases on this rank: `auto scope = timers.scope("assembly");` adds the life of `scope`. Phases
+/// may lie inside of each other; each counts its whole time.
+class Timers {
+ public:
+  struct Phase {
+    std::string name;
+    double seconds = 0;
+    long long count = 0;  ///< how often it was entered
+  };
+
+  class Scope {
+   public:
+    Scope(Timers& timers, std::size_t phase) : timers_(timers), phase_(phase), begin_(Clock::now()) {}
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope() {
+      timers_.phases_[phase_].seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
+      ++timers_.phases_[phase_].count;
+    }
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    Timers& timers_;
+    std::size_t phase_;
+    Clock::time_point begin_;
+  };
+
+  [[nodiscard]] Scope scope(const std::string& name) {
+    std::size_t phase = 0;
+    while (phase < phases_.size() && phases_[phase].name != name) ++phase;
+    if (phase == phases_.size()) phases_.push_back({name});
+    return Scope(*this, phase);
+  }
+
+  const std::vector<Phase>& phases() const { return phases_; }  ///< in the order of their first use
+
+ private:
+  std::vector<Phase> phases_;
+};
+
+/// The largest amount of memory that this process has held so far, in bytes.
+inline std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace sprekk::base

@@ -1,0 +1,42 @@
+#include "fields/layout.hpp"
+
+namespace sprekk::fields {
+
+LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
+  switch (entity) {
+    case Entity::node: return with_ghosts ? mesh.n_nodes() : mesh.n_owned_nodes;
+    case Entity::cell: return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
+    default: return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
+  }
+}
+
+namespace {
+
+GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
+  switch (entity) {
+    case Entity::node: return mesh.node_id[i];
+    case Entity::cell: return mesh.cell_id[i];
+    default: return mesh.fracture_faces[i].id;
+  }
+}
+
+RCP<const Map> make_map(const Field& field, const mesh::Mesh& mesh, LocalIndex n) {
+  std::vector<GlobalIndex> ids;
+  ids.reserve(static_cast<std::size_t>(n) * field.n_components);
+  for (LocalIndex i = 0; i < n; ++i)
+    for (int c = 0; c < field.n_components; ++c)
+      ids.push_back(global_id(mesh, field.entity, i) * field.n_components + c);
+  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  return rcp(new const Map(unknown, Teuchos::ArrayView<const GlobalIndex>(ids.data(), ids.size()), 0, mesh.comm));
+}
+
+}  // namespace
+
+Layout::Layout(const Field& field, const mesh::Mesh& mesh)
+    : field_(field),
+      n_owned_entities_(n_entities(mesh, field.entity, false)),
+      owned_(make_map(field, mesh, n_owned_entities_)),
+      ghosted_(make_map(field, mesh, n_entities(mesh, field.entity, true))),
+      import_(rcp(new const Import(owned_, ghosted_))) {}
+
+}  // namespace sprekk::fields

@@ -1,0 +1,45 @@
+// Where a field lives: which entities carry it and how its unknowns are numbered on the ranks.
+#pragma once
+
+#include "fields/types.hpp"
+#include "mesh/mesh.hpp"
+
+#include <string>
+
+namespace sprekk::fields {
+
+enum class Entity { node, cell, fracture_face };
+
+struct Field {
+  std::string name;
+  Entity entity;
+  int n_components;  ///< per entity, adjacent in the numbering
+  std::string unit;
+};
+
+/// The unknowns of one field on this rank: owned ones first, ghosts after them, so that an index below n_owned() is a row
+/// of this rank. Unknown = entity * n_components + component, locally and globally. Construction is collective.
+class Layout {
+ public:
+  Layout(const Field& field, const mesh::Mesh& mesh);
+
+  const Field& field() const { return field_; }
+  const RCP<const Map>& owned() const { return owned_; }
+  const RCP<const Map>& ghosted() const { return ghosted_; }
+  const RCP<const Import>& import() const { return import_; }
+  LocalIndex n_owned_entities() const { return n_owned_entities_; }
+  LocalIndex n_owned() const { return n_owned_entities_ * field_.n_components; }
+  /// Bytes that this rank receives when the field's ghosts are updated once.
+  std::size_t halo_bytes() const { return import_->getNumRemoteIDs() * sizeof(Real); }
+
+ private:
+  Field field_;
+  LocalIndex n_owned_entities_;
+  RCP<const Map> owned_, ghosted_;
+  RCP<const Import> import_;
+};
+
+/// Number of entities of a kind on this rank, owned only or with ghosts.
+LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts);
+
+}  // namespace sprekk::fields

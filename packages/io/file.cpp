@@ -1,0 +1,43 @@
+#include "io/file.hpp"
+
+#include "base/check.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+namespace sprekk::io {
+
+namespace {
+
+/// Writes all of `content`; returns 0 or the system's error number.
+int write_all(const std::string& path, const std::string& content) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) return errno;
+  int error = std::fwrite(content.data(), 1, content.size(), file) == content.size() ? 0 : errno;
+  if (std::fclose(file) != 0 && error == 0) error = errno;  // buffered bytes meet a full disk only here
+  return error;
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& content) {
+  const std::string beside = path + ".part";
+  int error = write_all(beside, content);
+  if (error == 0 && std::rename(beside.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) std::remove(beside.c_str());
+  SPREKK_CHECK(error == 0, "{}: cannot be written: {}", path, std::generic_category().message(error));
+}
+
+void make_directory(const Comm& comm, const std::string& path) {
+  base::collectively(comm, [&] {
+    if (comm.getRank() != 0) return;
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    SPREKK_CHECK(std::filesystem::is_directory(path), "{}: cannot be made a directory: {}", path,
+                 error ? error.message() : "a file of that name is in the way");
+  });
+}
+
+}  // namespace sprekk::io

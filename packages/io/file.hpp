@@ -1,0 +1,17 @@
+// Files and directories as a parallel program writes them: complete or not at all, and every rank learns of an error.
+#pragma once
+
+#include "base/types.hpp"
+
+#include <string>
+
+namespace sprekk::io {
+
+/// Writes `content` to a file beside `path` and renames it, so that `path` never holds half a file. Not collective.
+/// Error: the path and the system's reason; the file beside is removed and an earlier `path` stays as it was.
+void write_file(const std::string& path, const std::string& content);
+
+/// Makes the directory with its parents; one that exists is fine. Collective, with the same error on every rank.
+void make_directory(const Comm& comm, const std::string& path);
+
+}  // namespace sprekk::io

@@ -1,0 +1,45 @@
+// Structured meshes of a rectangle or a box, with plane fractures along mesh planes.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace sprekk::base {
+class Section;
+}
+
+namespace sprekk::mesh {
+
+/// Parameters of a box mesh. The length of the corners fixes the dimension.
+struct BoxMesh {
+  /// An axis-parallel rectangle (2D: segment): its corners differ in all directions but one.
+  struct Fracture {
+    std::vector<Real> lower_corner, upper_corner;       ///< metre, before the rotation; on mesh planes
+    std::optional<std::vector<Real>> reference_normal;  ///< see orient(); before the rotation
+    bool swap_sides = false;
+    void describe(base::Section& section);
+  };
+
+  std::string cell = "quadrilateral";
+  std::vector<Real> lower_corner{0, 0}, upper_corner{1, 1};  ///< metre, before the rotation
+  std::vector<int> cells{1, 1};                              ///< squares or cubes in each direction
+  std::map<std::string, Fracture> fractures;
+  Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
+  std::vector<Real> rotation_axis{0, 0, 1};  ///< 3D; through the origin
+  std::optional<int> renumbering_seed;       ///< see renumbered()
+  void describe(base::Section& section);
+};
+
+/// The mesh of a box. Squares are cut into two triangles with alternating diagonals, cubes into six Kuhn tetrahedra.
+///
+/// Region "bulk"; boundaries "west" (x-), "east" (x+), "south" (y-), "north" (y+), "bottom" (z-), "top" (z+), named
+/// before the rotation. Fractures in the order of their names, split and oriented (see split()) after the rotation.
+/// Throws an Error if the parameters contradict each other, if a fracture leaves the mesh planes or lies on the
+/// boundary, and if two fractures overlap.
+GlobalMesh make_box(const BoxMesh& box);
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,206 @@
+#include "mesh/distribute.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+
+#include "base/check.hpp"
+#include "mesh/facets.hpp"
+#include "mesh/partition.hpp"
+
+namespace sprekk::mesh {
+namespace {
+
+/// Entities of one kind on this rank: owned ones first.
+struct Numbering {
+  std::vector<GlobalIndex> ids;      ///< [local]
+  std::vector<LocalIndex> local_of;  ///< [global], -1 where not on this rank
+  LocalIndex n_owned = 0;
+
+  void append(GlobalIndex id) {
+    local_of[id] = static_cast<LocalIndex>(ids.size());
+    ids.push_back(id);
+  }
+};
+
+/// Numbers the entities for which is_local, those that this rank owns first.
+Numbering number(const std::vector<bool>& is_local, const std::vector<int>& owner, int rank) {
+  const auto n = static_cast<GlobalIndex>(owner.size());
+  Numbering result;
+  result.local_of.assign(n, -1);
+  for (GlobalIndex id = 0; id < n; ++id)
+    if (owner[id] == rank) result.append(id);
+  result.n_owned = static_cast<LocalIndex>(result.ids.size());
+  for (GlobalIndex id = 0; id < n; ++id)
+    if (is_local[id] && owner[id] != rank) result.append(id);
+  return result;
+}
+
+class Distributor {
+ public:
+  Distributor(const GlobalMesh& global, const std::vector<int>& part, RCP<const Comm> comm)
+      : global_(global), part_(part), rank_(comm->getRank()), nodes_per_cell_(n_nodes(global.shape)) {
+    check(comm->getSize());
+    mesh_.comm = comm;
+  }
+
+  Mesh build() {
+    mesh_.shape = global_.shape;
+    mesh_.region_names = global_.region_names;
+    mesh_.boundary_names = global_.boundary_names;
+    mesh_.fracture_names = global_.fracture_names;
+    mesh_.n_global_nodes = global_.n_nodes();
+    mesh_.n_global_cells = global_.n_cells();
+    mesh_.n_global_fracture_faces = static_cast<GlobalIndex>(global_.fracture_faces.size());
+    cells_ = number(local_cells(), part_, rank_);
+    nodes_ = number(nodes_of([&](GlobalIndex cell) { return cells_.local_of[cell] >= 0; }), node_owners(), rank_);
+    fill_nodes();
+    fill_cells();
+    fill_fracture_faces();
+    fill_boundary_faces();
+    return std::move(mesh_);
+  }
+
+ private:
+  const GlobalMesh& global_;
+  const std::vector<int>& part_;
+  const int rank_, nodes_per_cell_;
+  Numbering cells_, nodes_;
+  Mesh mesh_;
+
+  void check(int n_ranks) const {
+    SPREKK_CHECK(static_cast<GlobalIndex>(part_.size()) == global_.n_cells(), "distribute: {} parts for {} cells",
+                 part_.size(), global_.n_cells());
+    for (std::size_t cell = 0; cell < part_.size(); ++cell)
+      SPREKK_CHECK(part_[cell] >= 0 && part_[cell] < n_ranks, "distribute: cell {} is in part {}; there are {} ranks",
+                   cell, part_[cell], n_ranks);
+  }
+
+  GlobalIndex node(GlobalIndex cell, int k) const { return global_.cells[cell * nodes_per_cell_ + k]; }
+
+  /// The nodes of the cells that `selected` picks.
+  template <class Predicate>
+  std::vector<bool> nodes_of(const Predicate& selected) const {
+    std::vector<bool> result(global_.n_nodes(), false);
+    for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
+      if (selected(cell))
+        for (int k = 0; k < nodes_per_cell_; ++k) result[node(cell, k)] = true;
+    return result;
+  }
+
+  /// Cells that share a node with an owned cell (hence the owned ones too), and those opposite to owned fracture faces.
+  std::vector<bool> local_cells() const {
+    const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
+    std::vector<bool> result(global_.n_cells(), false);
+    for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
+      for (int k = 0; k < nodes_per_cell_ && !result[cell]; ++k) result[cell] = is_near[node(cell, k)];
+    for (const auto& face : global_.fracture_faces)
+      if (part_[face.cell[minus]] == rank_) result[face.cell[plus]] = true;
+    return result;
+  }
+
+  /// For each node the lowest rank that owns a cell around it.
+  std::vector<int> node_owners() const {
+    const int n_ranks = mesh_.comm->getSize();
+    std::vector<int> owner(global_.n_nodes(), n_ranks);
+    for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
+      for (int k = 0; k < nodes_per_cell_; ++k) owner[node(cell, k)] = std::min(owner[node(cell, k)], part_[cell]);
+    const auto orphan = std::find(owner.begin(), owner.end(), n_ranks);
+    SPREKK_CHECK(orphan == owner.end(), "distribute: node {} belongs to no cell", orphan - owner.begin());
+    return owner;
+  }
+
+  void fill_nodes() {
+    const int dim = global_.dim();
+    mesh_.n_owned_nodes = nodes_.n_owned;
+    mesh_.node_id = nodes_.ids;
+    for (GlobalIndex id : nodes_.ids)
+      mesh_.coordinates.insert(mesh_.coordinates.end(), &global_.coordinates[id * dim],
+                               &global_.coordinates[id * dim] + dim);
+  }
+
+  void fill_cells() {
+    mesh_.n_owned_cells = cells_.n_owned;
+    mesh_.cell_id = cells_.ids;
+    for (GlobalIndex id : cells_.ids) {
+      mesh_.cell_owner.push_back(part_[id]);
+      mesh_.cell_region.push_back(global_.cell_region[id]);
+      for (int k = 0; k < nodes_per_cell_; ++k) mesh_.cells.push_back(nodes_.local_of[node(id, k)]);
+    }
+  }
+
+  void fill_fracture_faces() {
+    std::vector<bool> is_local;
+    std::vector<int> owner;
+    for (const auto& face : global_.fracture_faces) {
+      is_local.push_back(cells_.local_of[face.cell[minus]] >= 0 || cells_.local_of[face.cell[plus]] >= 0);
+      owner.push_back(part_[face.cell[minus]]);
+    }
+    const auto faces = number(is_local, owner, rank_);
+    mesh_.n_owned_fracture_faces = faces.n_owned;
+    for (GlobalIndex id : faces.ids) mesh_.fracture_faces.push_back(fracture_face(id));
+  }
+
+  Mesh::FractureFace fracture_face(GlobalIndex id) const {
+    const auto& global = global_.fracture_faces[id];
+    const Vector area = area_vector(global_, global.cell[minus], global.local_face[minus]);
+    Mesh::FractureFace face;
+    face.id = id;
+    face.fracture = global.fracture;
+    face.local_face = global.local_face;
+    face.area = norm(area);
+    face.centre = face_centre(global_, global.cell[minus], global.local_face[minus]);
+    face.frame = face_frame(area, global_.dim());
+    const auto nodes = coinciding_nodes(id);
+    for (int side : {minus, plus}) {
+      face.cell[side] = cells_.local_of[global.cell[side]];
+      for (int k = 0; k < 4; ++k)
+        face.nodes[side][k] = face.cell[side] < 0 || nodes[side][k] < 0 ? -1 : nodes_.local_of[nodes[side][k]];
+    }
+    return face;
+  }
+
+  /// Global nodes of both sides of a fracture face, in the order of the minus cell's face.
+  std::array<std::array<GlobalIndex, 4>, 2> coinciding_nodes(GlobalIndex id) const {
+    const auto& face = global_.fracture_faces[id];
+    const int n = n_face_nodes(global_.shape);
+    const auto first = nodes_of_face(global_, face.cell[minus], face.local_face[minus]);
+    const auto other = nodes_of_face(global_, face.cell[plus], face.local_face[plus]);
+    std::array<std::array<GlobalIndex, 4>, 2> result{first, first};
+    const Real size = norm(point(global_, first[1]) - point(global_, first[0]));
+    for (int k = 0; k < n; ++k) {
+      const auto distance = [&](GlobalIndex b) { return norm(point(global_, b) - point(global_, first[k])); };
+      result[plus][k] = *std::min_element(other.begin(), other.begin() + n,
+                                          [&](GlobalIndex a, GlobalIndex b) { return distance(a) < distance(b); });
+      SPREKK_CHECK(distance(result[plus][k]) <= 1e-8 * size,
+                   "fracture \"{}\": the sides of face {} do not coincide: nodes {} and {} are {} m apart",
+                   global_.fracture_names[face.fracture], id, first[k], result[plus][k], distance(result[plus][k]));
+    }
+    return result;
+  }
+
+  void fill_boundary_faces() {
+    for (bool owned : {true, false})
+      for (const auto& face : global_.boundary_faces)
+        if (const LocalIndex cell = cells_.local_of[face.cell]; cell >= 0 && (cell < cells_.n_owned) == owned)
+          mesh_.boundary_faces.push_back({face.boundary, cell, face.local_face, owned});
+  }
+};
+
+}  // namespace
+
+RCP<const Mesh> distribute(const GlobalMesh& mesh, const std::vector<int>& part, RCP<const Comm> comm) {
+  RCP<const Mesh> result;
+  base::collectively(*comm, [&] { result = rcp(new Mesh(Distributor(mesh, part, comm).build())); });
+  return result;
+}
+
+RCP<const Mesh> make_distributed(const GlobalMesh& mesh, RCP<const Comm> comm) {
+  std::vector<int> part(mesh.n_cells());
+  base::collectively(*comm, [&] {
+    if (comm->getRank() == 0) part = partition(mesh, comm->getSize());
+  });
+  Teuchos::broadcast(*comm, 0, static_cast<int>(part.size()), part.data());
+  return distribute(mesh, part, comm);
+}
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,77 @@
+#include "mesh/facets.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/check.hpp"
+
+namespace sprekk::mesh {
+
+Vector point(const GlobalMesh& mesh, GlobalIndex node) {
+  Vector x{};
+  std::copy_n(&mesh.coordinates[node * mesh.dim()], mesh.dim(), x.begin());
+  return x;
+}
+
+std::array<GlobalIndex, 4> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  std::array<GlobalIndex, 4> nodes;
+  const auto local = face_nodes(mesh.shape)[local_face];
+  for (int k = 0; k < 4; ++k) nodes[k] = local[k] < 0 ? -1 : mesh.cells[cell * n_nodes(mesh.shape) + local[k]];
+  return nodes;
+}
+
+Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  const auto nodes = nodes_of_face(mesh, cell, local_face);
+  const auto edge = [&](int from, int to) { return point(mesh, nodes[to]) - point(mesh, nodes[from]); };
+  switch (n_face_nodes(mesh.shape)) {
+    case 2:
+      return {edge(0, 1)[1], -edge(0, 1)[0], 0};
+    case 3:
+      return 0.5 * cross(edge(0, 1), edge(0, 2));
+    default:
+      return 0.5 * cross(edge(0, 2), edge(1, 3));
+  }
+}
+
+Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  const int n = n_face_nodes(mesh.shape);
+  const auto nodes = nodes_of_face(mesh, cell, local_face);
+  Vector sum{};
+  for (int k = 0; k < n; ++k) sum = sum + point(mesh, nodes[k]);
+  return (1.0 / n) * sum;
+}
+
+std::array<Vector, 3> face_frame(const Vector& direction, int dim) {
+  const Vector n = (1 / norm(direction)) * direction;
+  if (dim == 2) return {n, Vector{n[1], -n[0], 0}, Vector{}};
+  const Vector across = cross(std::abs(n[2]) < 0.9 ? Vector{0, 0, 1} : Vector{1, 0, 0}, n);
+  const Vector t1 = (1 / norm(across)) * across;
+  return {n, t1, cross(n, t1)};
+}
+
+std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh) {
+  const int faces_per_cell = n_faces(mesh.shape);
+  const auto sorted_nodes = [&](GlobalIndex face) {
+    auto nodes = nodes_of_face(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
+    std::sort(nodes.begin(), nodes.begin() + n_face_nodes(mesh.shape));
+    return nodes;
+  };
+  // Faces hashed by their lowest node: a chain per node, first[node] -> next[face] -> ... -> -1.
+  std::vector<GlobalIndex> first(mesh.n_nodes(), -1), next(mesh.n_cells() * faces_per_cell, -1), neighbour(next);
+  for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(next.size()); ++face) {
+    const auto nodes = sorted_nodes(face);
+    GlobalIndex other = first[nodes[0]];
+    while (other >= 0 && sorted_nodes(other) != nodes) other = next[other];
+    if (other < 0) {
+      next[face] = std::exchange(first[nodes[0]], face);
+      continue;
+    }
+    SPREKK_CHECK(neighbour[other] < 0, "mesh: cells {}, {} and {} share one face; at most two may",
+                 neighbour[other] / faces_per_cell, other / faces_per_cell, face / faces_per_cell);
+    neighbour[face] = other;
+    neighbour[other] = face;
+  }
+  return neighbour;
+}
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,43 @@
+// Faces of the cells of a global mesh: their nodes, neighbours, area vectors and frames.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace sprekk::mesh {
+
+using Vector = std::array<Real, 3>;  ///< a point or vector; the last component is 0 in 2D
+
+inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vector operator*(Real s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline Real dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Real norm(const Vector& a) { return std::sqrt(dot(a, a)); }
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector point(const GlobalMesh& mesh, GlobalIndex node);
+
+/// Nodes of a cell's face in the order of face_nodes(shape); unused entries are -1.
+std::array<GlobalIndex, 4> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
+
+/// Area times outward unit normal of a cell's face; in 2D length times normal. Exact for plane faces.
+Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
+
+/// Mean of the nodes of a cell's face.
+Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
+
+/// Rows n, t1, t2 of the frame whose normal n points along `direction`. 2D: t1 = (n_y, -n_x), t2 = 0.
+/// 3D: t1 = a x n/|a x n| with a = e_z if |n_z| < 0.9 else e_x, t2 = n x t1.
+std::array<Vector, 3> face_frame(const Vector& direction, int dim);
+
+/// For each cell face [cell * n_faces(shape) + local face] the index of the same face in the cell across it, -1 where
+/// there is none. Faces are the same if they have the same nodes, so both sides of a split fracture count as free.
+/// Throws an Error if more than two cells share a face. Linear in the number of cells.
+std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh);
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,40 @@
+#include "mesh/renumber.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <utility>
+
+namespace sprekk::mesh {
+namespace {
+
+std::vector<GlobalIndex> random_permutation(GlobalIndex n, std::mt19937_64& random) {
+  std::vector<GlobalIndex> result(n);
+  std::iota(result.begin(), result.end(), GlobalIndex{0});
+  for (GlobalIndex i = n - 1; i > 0; --i)  // std::shuffle differs between libraries
+    std::swap(result[i], result[random() % (i + 1)]);
+  return result;
+}
+
+}  // namespace
+
+GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto new_node = random_permutation(mesh.n_nodes(), random);
+  const auto new_cell = random_permutation(mesh.n_cells(), random);
+  const int dim = mesh.dim(), nodes_per_cell = n_nodes(mesh.shape);
+  GlobalMesh result = mesh;
+  for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node)
+    std::copy_n(&mesh.coordinates[node * dim], dim, &result.coordinates[new_node[node] * dim]);
+  for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
+    result.cell_region[new_cell[cell]] = mesh.cell_region[cell];
+    for (int k = 0; k < nodes_per_cell; ++k)
+      result.cells[new_cell[cell] * nodes_per_cell + k] = new_node[mesh.cells[cell * nodes_per_cell + k]];
+  }
+  for (auto& face : result.fracture_faces)
+    for (auto& cell : face.cell) cell = new_cell[cell];
+  for (auto& face : result.boundary_faces) face.cell = new_cell[face.cell];
+  return result;
+}
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,112 @@
+#include "mesh/split.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/check.hpp"
+
+namespace sprekk::mesh {
+namespace {
+
+using FractureFaces = std::vector<GlobalMesh::FractureFace>;
+
+/// The marked faces with both their cells, each face once.
+FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& marked,
+                        const std::vector<GlobalIndex>& neighbour) {
+  const int faces_per_cell = n_faces(mesh.shape);
+  FractureFaces faces;
+  std::vector<bool> has_face(mesh.fracture_names.size(), false);
+  std::unordered_map<GlobalIndex, int> fracture_of_face;
+  for (const auto& mark : marked) {
+    const auto& name = mesh.fracture_names.at(mark.fracture);
+    const GlobalIndex face = mark.cell * faces_per_cell + mark.local_face, other = neighbour[face];
+    SPREKK_CHECK(other >= 0,
+                 "fracture \"{}\": face {} of cell {} lies on the boundary; a fracture needs a cell on each side", name,
+                 mark.local_face, mark.cell);
+    const auto [known, is_new] = fracture_of_face.emplace(std::min(face, other), mark.fracture);
+    SPREKK_CHECK(known->second == mark.fracture,
+                 "fractures \"{}\" and \"{}\" overlap: both contain face {} of cell {}; a face belongs to one fracture",
+                 mesh.fracture_names[known->second], name, mark.local_face, mark.cell);
+    if (!is_new) continue;
+    has_face[mark.fracture] = true;
+    faces.push_back({mark.fracture,
+                     {mark.cell, other / faces_per_cell},
+                     {mark.local_face, static_cast<int>(other % faces_per_cell)}});
+  }
+  for (std::size_t f = 0; f < has_face.size(); ++f)
+    SPREKK_CHECK(has_face[f], "fracture \"{}\": has no interior face", mesh.fracture_names[f]);
+  return faces;
+}
+
+/// Disjoint sets of cell corners [cell * n_nodes + local node]; the lowest corner represents its set.
+class CornerSets {
+ public:
+  explicit CornerSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), GlobalIndex{0}); }
+  GlobalIndex find(GlobalIndex corner) {
+    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+    return corner;
+  }
+  void unite(GlobalIndex a, GlobalIndex b) {
+    const auto [low, high] = std::minmax({find(a), find(b)});
+    parent_[high] = low;
+  }
+
+ private:
+  std::vector<GlobalIndex> parent_;
+};
+
+/// Gives each set of cells that unmarked faces connect around a fracture node its own copy of that node.
+void split_nodes(GlobalMesh& mesh, const FractureFaces& faces, const std::vector<GlobalIndex>& neighbour) {
+  const int faces_per_cell = n_faces(mesh.shape), nodes_per_cell = n_nodes(mesh.shape), dim = mesh.dim();
+  std::vector<bool> is_fracture_face(neighbour.size(), false), on_fracture(mesh.n_nodes(), false);
+  for (const auto& face : faces)
+    for (int side : {minus, plus}) {
+      is_fracture_face[face.cell[side] * faces_per_cell + face.local_face[side]] = true;
+      for (GlobalIndex node : nodes_of_face(mesh, face.cell[side], face.local_face[side]))
+        if (node >= 0) on_fracture[node] = true;
+    }
+
+  const auto corner_of = [&](GlobalIndex cell, GlobalIndex node) {
+    const auto first = mesh.cells.begin() + cell * nodes_per_cell;
+    return std::find(first, first + nodes_per_cell, node) - mesh.cells.begin();
+  };
+  CornerSets sets(mesh.cells.size());
+  for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour.size()); ++face) {
+    if (neighbour[face] < face || is_fracture_face[face]) continue;
+    const GlobalIndex cell = face / faces_per_cell, other = neighbour[face] / faces_per_cell;
+    for (GlobalIndex node : nodes_of_face(mesh, cell, static_cast<int>(face % faces_per_cell)))
+      if (node >= 0 && on_fracture[node]) sets.unite(corner_of(cell, node), corner_of(other, node));
+  }
+
+  std::vector<bool> is_taken(mesh.n_nodes(), false);
+  for (GlobalIndex corner = 0; corner < static_cast<GlobalIndex>(mesh.cells.size()); ++corner) {
+    const GlobalIndex node = mesh.cells[corner], representative = sets.find(corner);
+    if (representative < corner) {
+      mesh.cells[corner] = mesh.cells[representative];
+    } else if (on_fracture[node] && is_taken[node]) {
+      mesh.cells[corner] = mesh.n_nodes();
+      for (int i = 0; i < dim; ++i) mesh.coordinates.push_back(mesh.coordinates[node * dim + i]);
+    } else {
+      is_taken[node] = true;
+    }
+  }
+}
+
+}  // namespace
+
+GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked, const std::vector<Orientation>& orientations) {
+  SPREKK_CHECK(mesh.fracture_faces.empty(), "split: the mesh has fracture faces already; it must be unsplit");
+  SPREKK_CHECK(orientations.empty() || orientations.size() == mesh.fracture_names.size(),
+               "split: {} orientations for {} fractures; needs one each", orientations.size(),
+               mesh.fracture_names.size());
+  if (mesh.fracture_names.empty()) return mesh;
+  const auto neighbour = face_neighbours(mesh);
+  auto faces = two_sided(mesh, marked, neighbour);
+  orient(mesh, faces, orientations);
+  split_nodes(mesh, faces, neighbour);
+  mesh.fracture_faces = std::move(faces);
+  return mesh;
+}
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,220 @@
+#include "model/results.hpp"
+
+#include "base/xml.hpp"
+#include "io/json.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+
+namespace sprekk::model {
+
+using assembly::OutputField;
+using nlohmann::json;
+
+namespace {
+
+template <class T>
+std::vector<T> reduce(const Comm& comm, Teuchos::EReductionType how, const std::vector<T>& here) {
+  std::vector<T> all(here.size());
+  if (!here.empty()) Teuchos::reduceAll(comm, how, static_cast<int>(here.size()), here.data(), all.data());
+  return all;
+}
+
+const OutputField* find(const std::vector<OutputField>& outputs, const std::string& name) {
+  for (const auto& output : outputs)
+    if (output.name == name) return &output;
+  return nullptr;
+}
+
+std::string with_underscores(std::string name) {
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+/// Per-fracture sums over faces and maxima of one quantity.
+struct Statistics {
+  std::vector<Real> sum, maximum;  ///< [fracture * n_components + component]
+};
+
+Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
+  const int n = output.n_components;
+  Statistics s;
+  s.sum.assign(mesh.fracture_names.size() * n, 0);
+  s.maximum.assign(s.sum.size(), -std::numeric_limits<Real>::max());
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    for (int c = 0; c < n; ++c) {
+      const auto& face = mesh.fracture_faces[f];
+      s.sum[face.fracture * n + c] += face.area * output.values[f * n + c];
+      s.maximum[face.fracture * n + c] = std::max(s.maximum[face.fracture * n + c], output.values[f * n + c]);
+    }
+  s.sum = reduce(*mesh.comm, Teuchos::REDUCE_SUM, s.sum);
+  s.maximum = reduce(*mesh.comm, Teuchos::REDUCE_MAX, s.maximum);
+  return s;
+}
+
+/// Faces that are open, stick, slip.
+std::array<long long, 3> contact_counts(const Comm& comm, const std::vector<OutputField>& outputs) {
+  std::vector<long long> counts(3, 0);
+  if (const auto* state = find(outputs, "state"))
+    for (Real value : state->values) ++counts[static_cast<int>(value)];
+  counts = reduce(comm, Teuchos::REDUCE_SUM, counts);
+  return {counts[0], counts[1], counts[2]};
+}
+
+}  // namespace
+
+json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
+  json summary = json::object();
+  const std::size_t n = mesh.fracture_names.size();
+  if (n == 0) return summary;
+  const OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1, std::vector<Real>(mesh.n_owned_fracture_faces, 1)};
+  const auto area = statistics(mesh, ones).sum;
+  const auto each = [&](const auto& set) {
+    for (std::size_t k = 0; k < n; ++k) set(k, summary[mesh.fracture_names[k]]);
+  };
+  each([&](std::size_t k, json& j) { j["area"] = area[k]; });
+  const char* states[] = {"open", "stick", "slip"};
+  for (int state = 0; state < 3; ++state) {
+    OutputField is = ones;
+    const auto& values = find(outputs, "state")->values;
+    for (std::size_t f = 0; f < values.size(); ++f) is.values[f] = values[f] == state ? 1 : 0;
+    const auto sums = statistics(mesh, is).sum;
+    each([&](std::size_t k, json& j) { j[std::string("fraction_") + states[state]] = sums[k] / area[k]; });
+  }
+  for (const char* name : {"opening", "slip"}) {
+    const auto s = statistics(mesh, *find(outputs, name));
+    each([&](std::size_t k, json& j) {
+      j[std::string("mean_") + name] = s.sum[k] / area[k];
+      j[std::string("max_") + name] = s.maximum[k];
+    });
+  }
+  for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
+    for (const std::string frame : {"global", "local"}) {
+      const auto& output = *find(outputs, frame == "local" ? name + " local" : name);
+      const auto s = statistics(mesh, output);
+      each([&](std::size_t k, json& j) {
+        for (int c = 0; c < output.n_components; ++c)
+          j["mean_" + with_underscores(name)][frame].push_back(s.sum[k * output.n_components + c] / area[k]);
+      });
+    }
+  return summary;
+}
+
+json block_summary(const assembly::System& system) {
+  json summary;
+  const auto& comm = *system.comm();
+  const char* entities[] = {"node", "cell", "fracture face"};
+  for (std::size_t b = 0; b < system.blocks().size(); ++b) {
+    const auto& layout = system.layouts()[b];
+    const long long halo = system.exchanged(static_cast<int>(b)) ? layout.halo_bytes() : 0;
+    summary["fields"].push_back({{"name", layout.field().name},
+                                 {"entity", entities[static_cast<int>(layout.field().entity)]},
+                                 {"components", layout.field().n_components},
+                                 {"unit", layout.field().unit},
+                                 {"unknowns", layout.owned()->getGlobalNumElements()},
+                                 {"halo_bytes", reduce<long long>(comm, Teuchos::REDUCE_SUM, {halo})[0]}});
+  }
+  const auto& A = system.matrix();
+  for (int i = 0; i < A.n_blocks(); ++i)
+    for (int j = 0; j < A.n_blocks(); ++j) {
+      if (A(i, j).is_null()) continue;
+      const long long entries = static_cast<long long>(A(i, j)->getGlobalNumEntries());
+      const long long rows = static_cast<long long>(A(i, j)->getGlobalNumRows());
+      const long long bytes = entries * static_cast<long long>(sizeof(Real) + sizeof(LocalIndex)) +
+                              rows * static_cast<long long>(sizeof(std::size_t));
+      summary["matrices"].push_back(
+          {{"row", system.blocks()[i].name}, {"column", system.blocks()[j].name}, {"entries", entries}, {"bytes", bytes}});
+    }
+  for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
+  for (const auto& group : system.local_groups()) {
+    json names = json::array();
+    for (int b : group.blocks) names.push_back(system.blocks()[b].name);
+    summary["local_groups"].push_back({{"name", group.name}, {"blocks", names}});
+  }
+  return summary;
+}
+
+Results::Results(Model& model, std::string directory) : model_(model), directory_(std::move(directory)) {
+  const auto comm = model_.system().comm();
+  io::make_directory(*comm, directory_);
+  auto effective = base::effective(const_cast<Scene&>(model_.scene()), "Sprekk");
+  base::write_xml(*comm, effective, directory_ + "/effective_input.xml");
+  if (model_.scene().output.vtu) {
+    bulk_.emplace(comm, directory_, "bulk");
+    if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures");
+  }
+  const auto& mesh = model_.mesh();
+  json_["status"] = "running";
+  json_["ranks"] = comm->getSize();
+  json_["mesh"] = {{"dimension", mesh.dim()},
+                   {"nodes", mesh.n_global_nodes},
+                   {"cells", mesh.n_global_cells},
+                   {"fracture_faces", mesh.n_global_fracture_faces}};
+  json_["solver"] = model_.newton().linear().solver().reason;
+  json_["blocks"] = block_summary(model_.system());
+  json_["steps"] = json::array();
+  write_json();
+}
+
+std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {
+  auto outputs = model_.system().outputs(model_.state());
+  json step = {{"time", report.time},
+               {"newton_iterations", report.newton_iterations},
+               {"linear_iterations", report.linear_iterations},
+               {"substeps", report.substeps},
+               {"cuts", report.cuts},
+               {"converged", report.converged}};
+  for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
+  step["fractures"] = fracture_summary(model_.mesh(), outputs);
+  step["reactions"] = json::object();
+  for (const auto& [name, force] : model_.system().reactions(model_.state())) step["reactions"][name] = force;
+  json_["steps"].push_back(step);
+  ++n_steps_;
+  if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);
+  if (reduce<int>(*model_.mesh().comm, Teuchos::REDUCE_MAX, {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
+    write_json();
+  return contact_counts(*model_.mesh().comm, outputs);
+}
+
+void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
+  if (!bulk_) return;
+  const auto scope = model_.timers().scope("output");
+  const auto& mesh = model_.mesh();
+  auto bulk = io::bulk_piece(mesh), fractures = io::fracture_piece(mesh);
+  const std::vector<Real> rank(mesh.n_owned_cells, mesh.comm->getRank());
+  bulk.cell_data.push_back(io::data_array("rank", 1, rank));
+  bulk.cell_data.push_back(io::data_array("material", 1, {mesh.cell_region.begin(), mesh.cell_region.begin() + mesh.n_owned_cells}));
+  std::vector<Real> fracture_number;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_number.push_back(mesh.fracture_faces[f].fracture);
+  fractures.cell_data.push_back(io::data_array("fracture", 1, fracture_number));
+  for (const auto& output : outputs) {
+    if (output.entity == fields::Entity::node)
+      bulk.point_data.push_back(io::nodal_data_array(bulk, output.name, output.n_components, output.values));
+    else
+      (output.entity == fields::Entity::cell ? bulk : fractures)
+          .cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
+  }
+  bulk_->write(time, bulk);
+  if (fractures_) fractures_->write(time, fractures);
+}
+
+void Results::write_json() {
+  const auto& comm = *model_.system().comm();
+  std::vector<Real> here = {static_cast<Real>(base::peak_memory_bytes())};
+  json_["memory"] = {{"peak_bytes_largest_rank", reduce(comm, Teuchos::REDUCE_MAX, here)[0]},
+                     {"peak_bytes_all_ranks", reduce(comm, Teuchos::REDUCE_SUM, here)[0]}};
+  json_["timing"] = json::array();
+  for (const auto& phase : model_.timers().phases())
+    json_["timing"].push_back({{"phase", phase.name}, {"seconds", phase.seconds}, {"count", phase.count}});
+  io::write_json(comm, directory_ + "/results.json", json_);
+  last_write_ = std::chrono::steady_clock::now();
+}
+
+void Results::finish(const std::string& status, const std::string& reason) {
+  json_["status"] = status;
+  if (!reason.empty()) json_["reason"] = reason;
+  write_json();
+}
+
+}  // namespace sprekk::model

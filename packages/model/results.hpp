@@ -1,0 +1,46 @@
+// What a run leaves behind: results.json, the effective input, and pictures for ParaView.
+#pragma once
+
+#include "base/log.hpp"
+#include "io/vtu.hpp"
+#include "model/model.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <chrono>
+#include <optional>
+
+namespace sprekk::model {
+
+/// Writes a model's states into a directory, step by step. Everything in it is complete after every write. All members
+/// are collective; Errors name the path, on every rank.
+class Results {
+ public:
+  Results(Model& model, std::string directory);
+
+  /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
+  /// fracture faces are open, stick and slip.
+  std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
+  /// "completed" or "failed", with the reason of a failure.
+  void finish(const std::string& status, const std::string& reason = "");
+
+ private:
+  void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
+  void write_json();
+
+  Model& model_;
+  std::string directory_;
+  std::optional<io::VtuSeries> bulk_, fractures_;
+  nlohmann::json json_;
+  int n_steps_ = 0;
+  std::chrono::steady_clock::time_point last_write_;
+};
+
+/// Area, fractions of states, means over the area and maxima of one step, by the names of the fractures. Collective.
+nlohmann::json fracture_summary(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs);
+
+/// Fields, blocks with their unknowns and bytes, and what is exchanged between ranks. Collective.
+nlohmann::json block_summary(const assembly::System& system);
+
+}  // namespace sprekk::model

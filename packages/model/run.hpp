@@ -1,0 +1,28 @@
+// A scene file run from beginning to end.
+#pragma once
+
+#include "base/types.hpp"
+
+#include <string>
+#include <vector>
+
+namespace sprekk::model {
+
+struct RunOptions {
+  std::string scene;                   ///< path of the XML file
+  std::string output;                  ///< directory; empty: output/NAME of the scene, under the current directory
+  std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
+  bool terminal = false;               ///< print a line per time step
+};
+
+/// Runs the scene and writes its results. Returns true if all steps converged; a step that did not is reported, and what
+/// was computed before is kept. Throws an Error for bad input, the same on every rank. Collective.
+bool run(const RunOptions& options, RCP<const Comm> comm);
+
+/// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run(). Collective.
+void check(const RunOptions& options, RCP<const Comm> comm);
+
+/// All parameters of a scene, as Markdown.
+std::string reference();
+
+}  // namespace sprekk::model

@@ -1,0 +1,262 @@
+#include "physics/bulk_momentum.hpp"
+
+#include "assembly/assembler.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using mesh::Shape;
+
+namespace {
+
+/// r = integral sigma(u) : grad N over one cell.
+///
+/// | symbol   | shape            | unit |                                   |
+/// | x        | [node, dim]      | m    | displacement of the cell's nodes  |
+/// | r        | [node, dim]      | N    | forces                            |
+/// | geometry | see Geometry     | m    |                                   |
+/// | material | [region]         | Pa   | Lame's constants                  |
+template <Shape shape>
+struct ElasticCell {
+  using Cell = assembly::ReferenceCell<shape>;
+  using Rule = assembly::StiffnessQuadrature<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes;
+  using Columns = assembly::Slots<assembly::Slot<n, dim>>;
+  using Rows = Columns;
+
+  assembly::Geometry geometry;
+  ConstView<laws::Elasticity*> material;
+
+  /// Gradients in space of the shape functions at point q; returns the volume that the point stands for.
+  KOKKOS_INLINE_FUNCTION Real gradients(const Real (&X)[n][dim], int q, Real (&g)[n][dim]) const {
+    Real xi[dim], dN[n][dim];
+    const Real weight = Rule::at(q, xi);
+    Cell::gradients(xi, dN);
+    const assembly::CellPoint<shape> point(X, dN);
+    for (int a = 0; a < n; ++a) point.gradient(dN[a], g[a]);
+    return weight * point.volume;
+  }
+
+  KOKKOS_INLINE_FUNCTION void stress(const Real (&g)[n][dim], const Real (&x)[n * dim], int region,
+                                     Real (&sigma)[dim][dim]) const {
+    Real H[dim][dim] = {};
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) H[i][j] += x[a * dim + i] * g[a][j];
+    material(region).stress(H, sigma);
+  }
+
+  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[n * dim], Real (&r)[n * dim]) const {
+    Real X[n][dim], g[n][dim], sigma[dim][dim];
+    geometry.gather(cell, X);
+    for (Real& value : r) value = 0;
+    for (int q = 0; q < Rule::n; ++q) {
+      const Real volume = gradients(X, q, g);
+      stress(g, x, geometry.region(cell), sigma);
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) r[a * dim + i] += volume * sigma[i][j] * g[a][j];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
+    Real X[n][dim], g[n][dim];
+    geometry.gather(cell, X);
+    const laws::Elasticity law = material(geometry.region(cell));
+    for (auto& row : K)
+      for (Real& value : row) value = 0;
+    for (int q = 0; q < Rule::n; ++q) {
+      const Real volume = gradients(X, q, g);
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b)
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += volume * law.stiffness(g[a], g[b], i, j);
+    }
+  }
+};
+
+template <Shape shape>
+class BulkMomentum final : public assembly::Module {
+ public:
+  using Op = ElasticCell<shape>;
+  static constexpr int dim = Op::dim, n = Op::n;
+
+  explicit BulkMomentum(BulkMomentumParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "bulk momentum"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    assembly::Unknown u{{"displacement", fields::Entity::node, dim, "m"}, assembly::Quantity::length, assembly::Quantity::force};
+    u.rigid_body_modes = true;
+    d.unknowns = {u};
+    d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    View<laws::Elasticity*> material("material", parameters_.elasticity.size());
+    const auto host = Kokkos::create_mirror_view(material);
+    std::copy(parameters_.elasticity.begin(), parameters_.elasticity.end(), host.data());
+    Kokkos::deep_copy(material, host);
+    op_ = std::make_unique<Op>(Op{context.geometry(), material});
+    displacement_ = context.field("displacement");
+    using Assembler = assembly::Assembler<Op>;
+    cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
+                                         std::vector<int>{displacement_}, Assembler::Positions::once);
+    if (has_load()) load_ = View<Real*>("load", context.layout(displacement_).n_owned());
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    cells_->add_residual(*op_, state, r);
+    if (!has_load()) return;
+    const auto rows = r[displacement_];
+    const auto load = load_;
+    Kokkos::parallel_for(
+        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= load(i); });
+  }
+
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { cells_->add_jacobian(*op_, state, J); }
+
+  bool constant_load() const override {
+    const auto constant = [](const base::Expression& e) { return e.constant_in_time(); };
+    bool all = std::all_of(parameters_.body_force.begin(), parameters_.body_force.end(), constant);
+    for (const auto& traction : parameters_.tractions)
+      all = all && std::all_of(traction.value.begin(), traction.value.end(), constant);
+    return all;
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (!has_load() || (loaded_ && constant_load())) return;
+    const auto host = Kokkos::create_mirror_view(load_);
+    Kokkos::deep_copy(host, 0.0);
+    add_body_force(t, host);
+    for (const auto& traction : parameters_.tractions) add_traction(traction, t, host);
+    Kokkos::deep_copy(load_, host);
+    loaded_ = true;
+  }
+
+  /// Largest traction, and largest body force times the size of this rank's part of the domain, at nodes and corners.
+  Real load(Real t) const override {
+    Real largest = 0;
+    for (const auto& traction : parameters_.tractions)
+      for (const auto& face : mesh_->boundary_faces)
+        if (face.boundary == traction.boundary)
+          assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto&, Real, const auto& x) {
+            for (const auto& e : traction.value) largest = std::max(largest, std::abs(e(x, t)));
+          });
+    if (parameters_.body_force.empty()) return largest;
+    Real low[dim], high[dim], size = 0, force = 0;
+    for (int i = 0; i < dim; ++i) {
+      low[i] = std::numeric_limits<Real>::max();
+      high[i] = -low[i];
+    }
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node) {
+      std::array<Real, 3> x{};
+      for (int i = 0; i < dim; ++i) {
+        x[i] = mesh_->coordinates[node * dim + i];
+        low[i] = std::min(low[i], x[i]);
+        high[i] = std::max(high[i], x[i]);
+      }
+      for (const auto& e : parameters_.body_force) force = std::max(force, std::abs(e(x, t)));
+    }
+    for (int i = 0; i < dim; ++i) size = std::max(size, high[i] - low[i]);
+    return std::max(largest, mesh_->n_nodes() > 0 ? force * size : 0);
+  }
+
+  std::vector<assembly::OutputField> outputs(const assembly::State& state) const override {
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
+    assembly::OutputField displacement{"displacement", "m", fields::Entity::node, dim, {}};
+    displacement.values.assign(u.data(), u.data() + mesh_->n_nodes() * dim);
+    assembly::OutputField stress{"stress", "Pa", fields::Entity::cell, 6, {}};
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, stress.values);
+    return {displacement, stress};
+  }
+
+ private:
+  bool has_load() const { return !parameters_.body_force.empty() || !parameters_.tractions.empty(); }
+
+  template <class Host>
+  void add_body_force(Real t, const Host& load) const {
+    if (parameters_.body_force.empty()) return;
+    Real N[n];
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+      assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
+        Op::Cell::shape_functions(xi, N);
+        for (int i = 0; i < dim; ++i) {
+          const Real force = volume * parameters_.body_force[i](x, t);
+          for (int a = 0; a < n; ++a) add(load, mesh_->cells[c * n + a] * dim + i, N[a] * force);
+        }
+      });
+  }
+
+  template <class Host>
+  void add_traction(const BoundaryTraction& traction, Real t, const Host& load) const {
+    for (const auto& face : mesh_->boundary_faces) {
+      if (face.boundary != traction.boundary) continue;
+      const auto corners = mesh::face_nodes(shape)[face.local_face];
+      assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
+        for (int i = 0; i < dim; ++i) {
+          const Real force = area * traction.value[i](x, t);
+          for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+            add(load, mesh_->cells[face.cell * n + corners[k]] * dim + i, N[k] * force);
+        }
+      });
+    }
+  }
+
+  template <class Host>
+  static void add(const Host& load, LocalIndex row, Real value) {
+    if (row < static_cast<LocalIndex>(load.extent(0))) load(row) += value;
+  }
+
+  /// Appends the stress at the centre of cell c; in 2D with the plane-strain sigma_zz.
+  template <class Host>
+  void add_stress(LocalIndex c, const Host& u, std::vector<Real>& values) const {
+    Real X[n][dim], xi[dim], dN[n][dim], H[dim][dim] = {}, sigma[dim][dim];
+    assembly::gather_host<shape>(*mesh_, c, X);
+    for (int i = 0; i < dim; ++i) xi[i] = assembly::is_simplex(shape) ? 1.0 / (dim + 1) : 0;
+    Op::Cell::gradients(xi, dN);
+    const assembly::CellPoint<shape> point(X, dN);
+    Real trace = 0;
+    for (int a = 0; a < n; ++a) {
+      Real g[dim];
+      point.gradient(dN[a], g);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) H[i][j] += u(mesh_->cells[c * n + a] * dim + i) * g[j];
+    }
+    const auto& law = parameters_.elasticity[mesh_->cell_region[c]];
+    law.stress(H, sigma);
+    for (int i = 0; i < dim; ++i) trace += H[i][i];
+    if constexpr (dim == 2)
+      values.insert(values.end(), {sigma[0][0], sigma[1][1], law.lambda * trace, sigma[0][1], 0, 0});
+    else
+      values.insert(values.end(), {sigma[0][0], sigma[1][1], sigma[2][2], sigma[0][1], sigma[1][2], sigma[0][2]});
+  }
+
+  BulkMomentumParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  int displacement_ = -1;
+  bool loaded_ = false;
+  std::unique_ptr<Op> op_;
+  std::unique_ptr<assembly::Assembler<Op>> cells_;
+  View<Real*> load_;  // [owned row], N
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_bulk_momentum(Shape shape, BulkMomentumParameters parameters) {
+  switch (shape) {
+    case Shape::triangle: return std::make_unique<BulkMomentum<Shape::triangle>>(std::move(parameters));
+    case Shape::quadrilateral: return std::make_unique<BulkMomentum<Shape::quadrilateral>>(std::move(parameters));
+    case Shape::tetrahedron: return std::make_unique<BulkMomentum<Shape::tetrahedron>>(std::move(parameters));
+    default: return std::make_unique<BulkMomentum<Shape::hexahedron>>(std::move(parameters));
+  }
+}
+
+}  // namespace sprekk::physics

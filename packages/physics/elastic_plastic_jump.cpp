@@ -1,0 +1,349 @@
+#include "physics/elastic_plastic_jump.hpp"
+
+#include "assembly/assembler.hpp"
+
+#include <Sacado.hpp>
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using laws::ContactState;
+using mesh::Shape;
+
+namespace {
+
+/// The joint law on one fracture face.
+///
+/// | symbol       | shape                                                    | unit |                              |
+/// | x            | u [minus then plus node, dim], beta [2 dim], lambda [dim] | m, m, Pa | unknowns                |
+/// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
+/// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
+/// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
+/// | law          | [fracture]                                               |      | joint laws                   |
+/// | fracture     | [face]                                                   |      | number of the face's fracture |
+/// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
+/// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
+template <Shape shape>
+struct JointFace {
+  using Cell = assembly::ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_face_nodes;
+  using Columns = assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>>;
+  using Rows = assembly::Slots<assembly::Slot<1, dim>>;
+  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim;  // where they start in x
+  using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+
+  ConstView<Real***> frame;
+  ConstView<Real**> share;
+  ConstView<laws::Joint*> law;
+  ConstView<int*> fracture;
+  ConstView<laws::Augmentation*> augmentation;
+  View<Real**> p_old;
+
+  /// w = mean of R (u+ - u-) over the face.
+  KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
+    Real global[dim];
+    for (int i = 0; i < dim; ++i) {
+      global[i] = Cell::bubble_mean * (x[beta + dim + i] - x[beta + i]);
+      for (int a = 0; a < n; ++a) global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
+    }
+    for (int k = 0; k < dim; ++k) {
+      w[k] = 0;
+      for (int i = 0; i < dim; ++i) w[k] += frame(f, k, i) * global[i];
+    }
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim], T (&R)[dim]) const {
+    Real old[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
+    return laws::contact_residual<dim>(law(fracture(f)), augmentation(f), w, traction, old, R);
+  }
+
+  /// Jump, traction, residual and state of a face.
+  struct Point {
+    Real w[dim], traction[dim], R[dim];
+    ContactState state;
+  };
+  KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
+    Point p;
+    jump(f, x, p.w);
+    for (int i = 0; i < dim; ++i) p.traction[i] = x[lambda + i];
+    p.state = evaluate(f, p.w, p.traction, p.R);
+    return p;
+  }
+
+  KOKKOS_INLINE_FUNCTION void residual(int f, const Real (&x)[Columns::size], Real (&r)[dim]) const {
+    const Point p = point(f, x);
+    for (int i = 0; i < dim; ++i) r[i] = p.R[i];
+  }
+
+  /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.
+  KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&x)[Columns::size], Real (&J)[dim][Columns::size]) const {
+    Real w_value[dim];
+    jump(f, x, w_value);
+    Fad w[dim], traction[dim], R[dim];
+    for (int i = 0; i < dim; ++i) {
+      w[i] = Fad(2 * dim, i, w_value[i]);
+      traction[i] = Fad(2 * dim, dim + i, x[lambda + i]);
+    }
+    evaluate(f, w, traction, R);
+    for (int k = 0; k < dim; ++k) {
+      for (int i = 0; i < dim; ++i) {
+        Real dR_djump = 0;  // derivative in component i of the global jump
+        for (int l = 0; l < dim; ++l) dR_djump += R[k].dx(l) * frame(f, l, i);
+        for (int a = 0; a < n; ++a) {
+          J[k][a * dim + i] = -share(f, a) * dR_djump;
+          J[k][(n + a) * dim + i] = share(f, a) * dR_djump;
+        }
+        J[k][beta + i] = -Cell::bubble_mean * dR_djump;
+        J[k][beta + dim + i] = Cell::bubble_mean * dR_djump;
+        J[k][lambda + i] = R[k].dx(dim + i);
+      }
+    }
+  }
+};
+
+template <Shape shape>
+class ElasticPlasticJump final : public assembly::Module {
+ public:
+  using Op = JointFace<shape>;
+  using Point = typename Op::Point;
+  static constexpr int dim = Op::dim, n = Op::n;
+
+  explicit ElasticPlasticJump(ElasticPlasticJumpParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "elastic-plastic jump"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    assembly::Unknown traction{{"traction", fields::Entity::fracture_face, dim, "Pa"},
+                               assembly::Quantity::stress,
+                               assembly::Quantity::stress};
+    traction.local_group = "fracture face";
+    d.unknowns = {traction};
+    d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
+    d.history = {{"plastic jump", fields::Entity::fracture_face, dim - 1}};
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override;
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    faces_->add_residual(at(state), state, r);
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    faces_->add_jacobian(at(state), state, J);
+  }
+  void commit(assembly::State& state) const override;
+  void measure(const assembly::State& state, const assembly::Scales& scales, std::vector<fields::Measure>& measures) const override;
+  void merit_weights(const assembly::Rows& weights) const override {
+    Kokkos::deep_copy(weights[fields_[2]], merit_weight_);
+  }
+  std::size_t state_hash(const assembly::State& state) const override;
+  bool symmetric(const assembly::State& state) const override;
+  std::vector<assembly::OutputField> outputs(const assembly::State& state) const override;
+
+ private:
+  /// The operator with the history of `state`.
+  Op at(const assembly::State& state) const {
+    Op op = *op_;
+    op.p_old = state.history[0];
+    return op;
+  }
+
+  /// Calls visit(face, point) for every owned face, on the host.
+  template <class Visit>
+  void for_each_face(const assembly::State& state, const Visit& visit) const {
+    const Op op = at(state);
+    View<Point*> points("points", mesh_->n_owned_fracture_faces);
+    faces_->for_each(op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
+  }
+
+  std::vector<Real> fracture_lengths() const;
+
+  ElasticPlasticJumpParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<int> fields_;  // displacement, side bubble, traction
+  std::unique_ptr<Op> op_;
+  std::unique_ptr<assembly::Assembler<Op>> faces_;
+  View<Real*> merit_weight_;  // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+};
+
+template <Shape shape>
+std::vector<Real> ElasticPlasticJump<shape>::fracture_lengths() const {
+  const std::size_t n_fractures = parameters_.joints.size();
+  std::vector<Real> here(n_fractures * 2 * dim, -std::numeric_limits<Real>::max()), all(here.size()), lengths(n_fractures, 0);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto& face = mesh_->fracture_faces[f];
+    for (int k = 0; k < n; ++k)
+      for (int i = 0; i < dim; ++i) {
+        const Real x = mesh_->coordinates[face.nodes[0][k] * dim + i];
+        Real* corner = &here[(face.fracture * dim + i) * 2];
+        corner[0] = std::max(corner[0], x);
+        corner[1] = std::max(corner[1], -x);
+      }
+  }
+  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), all.data());
+  for (std::size_t k = 0; k < n_fractures; ++k) {
+    for (int i = 0; i < dim; ++i) {
+      const Real extent = all[(k * dim + i) * 2] + all[(k * dim + i) * 2 + 1];
+      lengths[k] += extent * extent;
+    }
+    lengths[k] = std::sqrt(lengths[k]);
+  }
+  return lengths;
+}
+
+template <Shape shape>
+void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
+  mesh_ = context.mesh();
+  fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
+  using Assembler = assembly::Assembler<Op>;
+  faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
+                                       Assembler::Positions::keep);
+  const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
+  View<Real***> frame("frame", n_faces, dim, dim);
+  View<Real**> share("share", n_faces, n);
+  View<laws::Joint*> law("law", parameters_.joints.size());
+  View<int*> fracture("fracture", n_faces);
+  View<laws::Augmentation*> augmentation("augmentation", n_faces);
+  merit_weight_ = View<Real*>("weight", n_faces * dim);
+  const auto frame_h = Kokkos::create_mirror_view(frame);
+  const auto share_h = Kokkos::create_mirror_view(share);
+  const auto law_h = Kokkos::create_mirror_view(law);
+  const auto fracture_h = Kokkos::create_mirror_view(fracture);
+  const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
+  const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
+  const auto lengths = fracture_lengths();
+  for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
+  for (LocalIndex f = 0; f < n_faces; ++f) {
+    const auto& face = mesh_->fracture_faces[f];
+    fracture_h(f) = face.fracture;
+    const auto shares = assembly::mean_shares<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
+    for (int k = 0; k < n; ++k) share_h(f, k) = shares[k];
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
+    Real modulus = 0, height = 0;  // of the softer side; of the cells
+    for (int side : {mesh::minus, mesh::plus}) {
+      const Real E = parameters_.elasticity[mesh_->cell_region[face.cell[side]]].youngs_modulus();
+      modulus = side == mesh::minus ? E : std::min(modulus, E);
+      assembly::for_each_cell_point<shape>(*mesh_, face.cell[side],
+                                           [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
+    }
+    augmentation_h(f) = laws::augmentation(law_h(face.fracture), modulus / lengths[face.fracture]);
+    for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
+  }
+  Kokkos::deep_copy(frame, frame_h);
+  Kokkos::deep_copy(share, share_h);
+  Kokkos::deep_copy(law, law_h);
+  Kokkos::deep_copy(fracture, fracture_h);
+  Kokkos::deep_copy(augmentation, augmentation_h);
+  Kokkos::deep_copy(merit_weight_, weight_h);
+  op_ = std::make_unique<Op>(Op{frame, share, law, fracture, augmentation, {}});
+}
+
+template <Shape shape>
+void ElasticPlasticJump<shape>::commit(assembly::State& state) const {
+  const Op op = at(state);
+  const auto p = state.history[0];
+  faces_->for_each(op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
+    const Point point = op.point(f, x);
+    if (point.state == ContactState::stick) return;
+    Real elastic[dim], plastic[dim];
+    laws::split_jump<dim>(op.law(op.fracture(f)), point.state, point.w, point.traction, elastic, plastic);
+    for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
+  });
+}
+
+/// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t where
+/// they stick or slip are held against the displacement scale.
+template <Shape shape>
+void ElasticPlasticJump<shape>::measure(const assembly::State& state, const assembly::Scales& scales,
+                                        std::vector<fields::Measure>& measures) const {
+  Real largest = 0;
+  const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    if (point.state == ContactState::open) return;
+    Real square = 0;
+    for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
+    const Real size = std::max(std::abs(point.R[0]) / augmentation(f).normal, std::sqrt(square) / augmentation(f).tangential);
+    if (!(size <= largest)) largest = size;
+  });
+  measures.push_back({"split of the jump", largest / scales.length});
+}
+
+template <Shape shape>
+std::size_t ElasticPlasticJump<shape>::state_hash(const assembly::State& state) const {
+  std::size_t sum = 0;
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(point.state) + 1;
+    for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
+      h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
+      h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
+    }
+    sum += h;
+  });
+  return sum;
+}
+
+/// Sliding is the only source of non-symmetry.
+template <Shape shape>
+bool ElasticPlasticJump<shape>::symmetric(const assembly::State& state) const {
+  bool slips = false;
+  for_each_face(state, [&](LocalIndex, const Point& point) { slips = slips || point.state == ContactState::slip; });
+  return !slips;
+}
+
+template <Shape shape>
+std::vector<assembly::OutputField> ElasticPlasticJump<shape>::outputs(const assembly::State& state) const {
+  const auto face = fields::Entity::fracture_face;
+  const std::vector<std::string> names = {"jump", "elastic jump", "plastic jump", "traction"};
+  std::vector<assembly::OutputField> out;
+  for (const auto& name : names)
+    for (const char* system : {" local", ""}) out.push_back({name + system, name == "traction" ? "Pa" : "m", face, dim, {}});
+  for (const char* name : {"opening", "slip", "aperture"}) out.push_back({name, "m", face, 1, {}});
+  for (const char* name : {"state", "slip tendency"}) out.push_back({name, "-", face, 1, {}});
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    const auto& geometry = mesh_->fracture_faces[f];
+    const auto& joint = parameters_.joints[geometry.fracture];
+    Real elastic[dim], plastic[dim], tangential[dim - 1], shear[dim - 1];
+    laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, elastic, plastic);
+    const Real* vectors[] = {point.w, elastic, plastic, point.traction};
+    for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < dim; ++i) {
+        out[2 * k].values.push_back(vectors[k][i]);
+        Real global = 0;
+        for (int l = 0; l < dim; ++l) global += geometry.frame[l][i] * vectors[k][l];
+        out[2 * k + 1].values.push_back(global);
+      }
+    for (int i = 0; i < dim - 1; ++i) {
+      tangential[i] = plastic[i + 1];
+      shear[i] = point.traction[i + 1];
+    }
+    const Real bound = joint.law.friction.bound(point.traction[0]), size = laws::norm(shear);
+    out[8].values.push_back(point.w[0]);
+    out[9].values.push_back(laws::norm(tangential));
+    out[10].values.push_back(joint.initial_aperture + point.w[0]);
+    out[11].values.push_back(static_cast<Real>(point.state));
+    out[12].values.push_back(point.state == ContactState::open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
+  });
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_elastic_plastic_jump(Shape shape, ElasticPlasticJumpParameters parameters) {
+  switch (shape) {
+    case Shape::triangle: return std::make_unique<ElasticPlasticJump<Shape::triangle>>(std::move(parameters));
+    case Shape::quadrilateral: return std::make_unique<ElasticPlasticJump<Shape::quadrilateral>>(std::move(parameters));
+    case Shape::tetrahedron: return std::make_unique<ElasticPlasticJump<Shape::tetrahedron>>(std::move(parameters));
+    default: return std::make_unique<ElasticPlasticJump<Shape::hexahedron>>(std::move(parameters));
+  }
+}
+
+}  // namespace sprekk::physics

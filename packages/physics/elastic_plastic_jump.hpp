@@ -1,0 +1,33 @@
+// Elastic-plastic split of the displacement jump with contact and friction: rows of the contact traction.
+#pragma once
+
+#include "assembly/module.hpp"
+#include "laws/elasticity.hpp"
+#include "laws/joint.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// The joint of one fracture.
+struct JointParameters {
+  laws::Joint law;
+  Real initial_aperture = 0;  ///< a0 of (15), m
+};
+
+struct ElasticPlasticJumpParameters {
+  std::vector<JointParameters> joints;       ///< [fracture]
+  std::vector<laws::Elasticity> elasticity;  ///< [region], for the size of the augmentation only
+};
+
+/// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its rows
+/// the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
+///   w = mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
+/// History: the plastic tangential jump p_old [face, dim - 1]; committed to w_t where the face is open, kept where it
+/// sticks, w_t - lambda_t/K_t where it slips.
+/// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture (15),
+/// contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
+std::unique_ptr<assembly::Module> make_elastic_plastic_jump(mesh::Shape shape, ElasticPlasticJumpParameters parameters);
+
+}  // namespace sprekk::physics

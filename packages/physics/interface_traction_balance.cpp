@@ -1,0 +1,212 @@
+#include "physics/interface_traction_balance.hpp"
+
+#include "assembly/assembler.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using mesh::Shape;
+
+namespace {
+
+/// The balance of one side of one fracture face; everything in it is constant.
+///
+/// | symbol    | shape            | unit |                                                            |
+/// | x         | u [node, dim], beta [dim], lambda [dim] | m, m, Pa | unknowns                       |
+/// | r         | displacement rows [node, dim], side bubble rows [dim] | N | forces                    |
+/// | coupling  | [side, dim, node dim] | N/m  | integral sigma(N_a e_j) : grad(b e_i)                 |
+/// | stiffness | [side]           | N/m  | alpha                                                      |
+/// | push      | [side, node]     | m^2  | s |f| times the node's share in the mean over the face     |
+/// | bubble    | [side]           | m^2  | s |f| mean(b)                                              |
+/// | frame     | [side, dim, dim] | -    | rows n, t1[, t2]                                           |
+/// | force     | [side, dim]      | N    | integral F_i b                                             |
+template <Shape shape>
+struct BalancedSide {
+  using Cell = assembly::ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes;
+  using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
+  using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
+  static constexpr int beta = n * dim, lambda = beta + dim;  // where they start in x
+
+  View<Real***> coupling, frame;
+  View<Real*> stiffness, bubble;
+  View<Real**> push, force;
+
+  explicit BalancedSide(std::size_t n_sides)
+      : coupling("coupling", n_sides, dim, n * dim),
+        frame("frame", n_sides, dim, dim),
+        stiffness("stiffness", n_sides),
+        bubble("bubble", n_sides),
+        push("push", n_sides, n),
+        force("force", n_sides, dim) {}
+
+  KOKKOS_INLINE_FUNCTION void residual(int side, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const {
+    Real traction[dim] = {};  // global components
+    for (int i = 0; i < dim; ++i)
+      for (int k = 0; k < dim; ++k) traction[i] += frame(side, k, i) * x[lambda + k];
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) {
+        r[a * dim + i] = push(side, a) * traction[i];
+        for (int k = 0; k < dim; ++k) r[a * dim + i] += coupling(side, k, a * dim + i) * x[beta + k];
+      }
+    for (int k = 0; k < dim; ++k) {
+      r[beta + k] = stiffness(side) * x[beta + k] + bubble(side) * traction[k] - force(side, k);
+      for (int c = 0; c < n * dim; ++c) r[beta + k] += coupling(side, k, c) * x[c];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[Columns::size], Real (&J)[Rows::size][Columns::size]) const {
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    for (int k = 0; k < dim; ++k) {
+      for (int c = 0; c < n * dim; ++c) J[beta + k][c] = J[c][beta + k] = coupling(side, k, c);
+      J[beta + k][beta + k] = stiffness(side);
+      for (int i = 0; i < dim; ++i) {
+        for (int a = 0; a < n; ++a) J[a * dim + i][lambda + k] = push(side, a) * frame(side, k, i);
+        J[beta + i][lambda + k] = bubble(side) * frame(side, k, i);
+      }
+    }
+  }
+};
+
+template <Shape shape>
+class InterfaceTractionBalance final : public assembly::Module {
+ public:
+  using Op = BalancedSide<shape>;
+  static constexpr int dim = Op::dim, n = Op::n;
+
+  explicit InterfaceTractionBalance(InterfaceTractionBalanceParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "interface traction balance"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    assembly::Unknown bubble{{"side bubble", fields::Entity::fracture_face, 2 * dim, "m"},
+                             assembly::Quantity::length,
+                             assembly::Quantity::force};
+    bubble.local_group = "fracture face";
+    d.unknowns = {bubble};
+    d.couplings = {{Loop::fracture_sides, "displacement", {"side bubble", "traction"}},
+                   {Loop::fracture_sides, "side bubble", {"displacement", "side bubble", "traction"}}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    const int u = context.field("displacement"), beta = context.field("side bubble"), lambda = context.field("traction");
+    using Assembler = assembly::Assembler<Op>;
+    sides_ = std::make_unique<Assembler>(context, Loop::fracture_sides, std::vector<int>{u, beta},
+                                         std::vector<int>{u, beta, lambda}, Assembler::Positions::once);
+    build_operator();
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override { sides_->add_residual(*op_, state, r); }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { sides_->add_jacobian(*op_, state, J); }
+
+  bool constant_load() const override {
+    return std::all_of(parameters_.body_force.begin(), parameters_.body_force.end(),
+                       [](const base::Expression& e) { return e.constant_in_time(); });
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (parameters_.body_force.empty() || (loaded_ && constant_load())) return;
+    const auto force = Kokkos::create_mirror_view(op_->force);
+    Kokkos::deep_copy(force, 0.0);
+    const auto sides = assembly::fracture_sides(*mesh_);
+    Real db[dim];
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      const auto& face = mesh_->fracture_faces[sides[s][0]];
+      const int local_face = face.local_face[sides[s][1]];
+      assembly::for_each_cell_point<shape>(*mesh_, face.cell[sides[s][1]], [&](const Real(&xi)[dim], Real volume, const auto& x) {
+        const Real b = Op::Cell::bubble(local_face, xi, db);
+        for (int i = 0; i < dim; ++i) force(s, i) += volume * b * parameters_.body_force[i](x, t);
+      });
+    }
+    Kokkos::deep_copy(op_->force, force);
+    loaded_ = true;
+  }
+
+ private:
+  using Host = Kokkos::HostSpace;
+
+  void build_operator() {
+    const auto sides = assembly::fracture_sides(*mesh_);
+    op_ = std::make_unique<Op>(sides.size());
+    std::vector<int> n_faces(mesh_->n_cells(), 0);  // m of every cell
+    for (const auto& [f, side] : sides) ++n_faces[mesh_->fracture_faces[f].cell[side]];
+    const auto coupling = Kokkos::create_mirror_view(op_->coupling), frame = Kokkos::create_mirror_view(op_->frame);
+    const auto stiffness = Kokkos::create_mirror_view(op_->stiffness), bubble = Kokkos::create_mirror_view(op_->bubble);
+    const auto push = Kokkos::create_mirror_view(op_->push);
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      const auto& face = mesh_->fracture_faces[sides[s][0]];
+      const int side = sides[s][1], local_face = face.local_face[side];
+      const LocalIndex cell = face.cell[side];
+      const Real signed_area = side == mesh::plus ? face.area : -face.area;
+      stiffness(s) = n_faces[cell] * integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
+      bubble(s) = signed_area * Op::Cell::bubble_mean;
+      const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
+      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+        push(s, mesh::face_nodes(shape)[local_face][k]) = signed_area * shares[k];
+      for (int k = 0; k < dim; ++k)
+        for (int i = 0; i < dim; ++i) frame(s, k, i) = face.frame[k][i];
+    }
+    Kokkos::deep_copy(op_->coupling, coupling);
+    Kokkos::deep_copy(op_->frame, frame);
+    Kokkos::deep_copy(op_->stiffness, stiffness);
+    Kokkos::deep_copy(op_->bubble, bubble);
+    Kokkos::deep_copy(op_->push, push);
+  }
+
+  /// Integrates the coupling of a face's bubble with the cell's nodes, coupling(i, a dim + j), and returns the largest
+  /// eigenvalue of the bubble's own stiffness B.
+  template <class Coupling>
+  Real integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
+    const auto& law = parameters_.elasticity[mesh_->cell_region[cell]];
+    Real X[n][dim], dN[n][dim], db[dim], B[dim * dim] = {};
+    assembly::gather_host<shape>(*mesh_, cell, X);
+    assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto&) {
+      Op::Cell::gradients(xi, dN);
+      Op::Cell::bubble(local_face, xi, db);
+      const assembly::CellPoint<shape> point(X, dN);
+      Real gb[dim], ga[dim];
+      point.gradient(db, gb);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) B[i * dim + j] += volume * law.stiffness(gb, gb, i, j);
+      for (int a = 0; a < n; ++a) {
+        point.gradient(dN[a], ga);
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) coupling(i, a * dim + j) += volume * law.stiffness(gb, ga, i, j);
+      }
+    });
+    Real eigenvalues[dim], work[16];
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().SYEV('N', 'U', dim, B, dim, eigenvalues, work, 16, &info);
+    SPREKK_CHECK(info == 0, "fracture face of cell {}: the bubble's stiffness has no eigenvalues", mesh_->cell_id[cell]);
+    return eigenvalues[dim - 1];
+  }
+
+  InterfaceTractionBalanceParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  bool loaded_ = false;
+  std::unique_ptr<Op> op_;
+  std::unique_ptr<assembly::Assembler<Op>> sides_;
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_interface_traction_balance(Shape shape, InterfaceTractionBalanceParameters parameters) {
+  switch (shape) {
+    case Shape::triangle: return std::make_unique<InterfaceTractionBalance<Shape::triangle>>(std::move(parameters));
+    case Shape::quadrilateral: return std::make_unique<InterfaceTractionBalance<Shape::quadrilateral>>(std::move(parameters));
+    case Shape::tetrahedron: return std::make_unique<InterfaceTractionBalance<Shape::tetrahedron>>(std::move(parameters));
+    default: return std::make_unique<InterfaceTractionBalance<Shape::hexahedron>>(std::move(parameters));
+  }
+}
+
+}  // namespace sprekk::physics

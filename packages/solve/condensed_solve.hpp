@@ -1,0 +1,37 @@
+// Solves with the whole Jacobian: local elimination, a linear solver for what remains, and back-substitution.
+#pragma once
+
+#include "solve/linear_solver.hpp"
+#include "solve/local_elimination.hpp"
+
+namespace sprekk::solve {
+
+/// What is kept between solves: positions, factors or the hierarchy; renewed only when values have changed. All members
+/// are collective unless they return stored data. Exactly one block must remain after elimination.
+class CondensedSolve {
+ public:
+  CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options);
+
+  /// Makes ready to solve with the present problem.matrix(). What fails is reported by the next solve.
+  void update();
+
+  /// dx <- A^-1 b, rows of constrained unknowns being dx_i = b_i. [block]
+  LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
+
+  Real tolerance() const { return tolerance_; }
+  const ChosenSolver& solver() const { return chosen_; }
+  int n_setups() const { return n_setups_; }  ///< factorisations or hierarchies made so far
+
+ private:
+  const Block& remaining() const { return problem_.blocks()[elimination_.remaining().front()]; }
+
+  BlockProblem& problem_;
+  LocalElimination elimination_;
+  ChosenSolver chosen_;
+  Real tolerance_;
+  bool symmetric_ = false;
+  int n_setups_ = 0;
+  std::string failure_;
+};
+
+}  // namespace sprekk::solve

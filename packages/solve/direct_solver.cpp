@@ -1,0 +1,210 @@
+// MUMPS through its C interface.
+#include "solve/linear_solver.hpp"
+
+#include "base/check.hpp"
+
+#include <Tpetra_Details_extractMpiCommFromTeuchos.hpp>
+
+#include <dmumps_c.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sprekk::solve {
+namespace {
+
+enum Job { initialise = -1, terminate = -2, analyse = 1, factorise = 2, substitute = 3 };
+
+std::string message(const DMUMPS_STRUC_C& mumps) {
+  const int code = mumps.infog[0], detail = mumps.infog[1];
+  switch (code) {
+    case -5:
+    case -13: return fmt::format("MUMPS: out of memory (wanted {} more)", detail);
+    case -6: return fmt::format("MUMPS: the matrix is structurally singular (rank {})", detail);
+    case -8:
+    case -9: return "MUMPS: the work space is too small even after enlarging it; raise ICNTL(14)";
+    case -10: return fmt::format("MUMPS: the matrix is singular (after {} pivots)", detail);
+    default: return fmt::format("MUMPS: error {} ({}), see its manual", code, detail);
+  }
+}
+
+class DirectSolver : public LinearSolver {
+ public:
+  explicit DirectSolver(const Teuchos::ParameterList& overrides) : parameters_("MUMPS") {
+    parameters_.set("ICNTL(7)", 7, "ordering: automatic");
+    parameters_.set("ICNTL(14)", 40, "extra work space, percent");
+    parameters_.setParameters(overrides);
+  }
+
+  ~DirectSolver() override { release(); }
+  DirectSolver(const DirectSolver&) = delete;
+  DirectSolver& operator=(const DirectSolver&) = delete;
+
+  std::string setup(const RCP<const CrsMatrix>& matrix, const Block& block, bool symmetric,
+                    const RCP<const CrsMatrix>&) override {
+    if (!ready_ || (symmetric_ && !symmetric)) {  // not back again: an analysis costs more than symmetry saves
+      release();
+      start(*matrix, block, symmetric);
+    }
+    matrix_ = matrix;
+    failure_.clear();
+    fill_values();
+    if (!analysed_ && run(analyse) < 0) return failure_ = message(mumps_);
+    analysed_ = true;
+    int info = run(factorise);
+    for (int enlarged = 0; (info == -8 || info == -9) && enlarged < 4; ++enlarged) {
+      mumps_.icntl[13] *= 2;
+      info = run(factorise);
+    }
+    return failure_ = info < 0 ? message(mumps_) : "";
+  }
+
+  LinearReport solve(const Vector& b, Vector& x, Real) override {
+    LinearReport report;
+    x.putScalar(0);
+    if (!failure_.empty()) {
+      report.reason = failure_;
+      return report;
+    }
+    Vector r(b, Teuchos::Copy), dx(x.getMap()), best(x, Teuchos::Copy);
+    report.residual = 1;
+    for (int refinement = 0; refinement <= 3 && report.residual > 1e-14; ++refinement) {
+      if (!substitute_rhs(r, dx)) {
+        report.reason = message(mumps_);
+        return report;
+      }
+      x.update(1, dx, 1);
+      const Real residual = relative_residual(*matrix_, b, x, r);
+      if (refinement > 0 && !(residual < report.residual)) break;
+      const bool slow = refinement > 0 && residual > 0.1 * report.residual;
+      report.residual = residual;
+      Tpetra::deep_copy(best, x);
+      if (slow) break;
+    }
+    Tpetra::deep_copy(x, best);
+    report.iterations = 1;
+    report.converged = report.residual <= acceptable_linear_residual;
+    if (!report.converged)
+      report.reason = fmt::format("direct solve: relative residual {:.1e}, at most {:.0e} is acceptable: the matrix is "
+                                  "singular or nearly so", report.residual, acceptable_linear_residual);
+    return report;
+  }
+
+  const Teuchos::ParameterList& parameters() const override { return parameters_; }
+
+ private:
+  int run(Job job) {
+    mumps_.job = job;
+    dmumps_c(&mumps_);
+    return mumps_.infog[0];
+  }
+
+  /// Starts MUMPS on its own communicator and tells it the graph.
+  void start(const CrsMatrix& matrix, const Block& block, bool symmetric) {
+    const auto& map = *block.map;
+    const GlobalIndex n = map.getGlobalNumElements();
+    SPREKK_CHECK(map.getMinAllGlobalIndex() == 0 && map.getMaxAllGlobalIndex() == n - 1 && n < 2147483647,
+                 "direct solve of block '{}': unknowns must be numbered from 0 without gaps, below 2^31", block.name);
+    const auto comm = map.getComm();
+    MPI_Comm_dup(Tpetra::Details::extractMpiCommFromTeuchos(*comm), &mpi_comm_);
+    symmetric_ = symmetric;
+    mumps_ = {};
+    mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);
+    mumps_.par = 1;
+    mumps_.sym = symmetric ? 2 : 0;
+    run(initialise);
+    for (int quiet : {1, 2, 3, 4}) mumps_.icntl[quiet - 1] = quiet < 4 ? -1 : 0;
+    mumps_.icntl[17] = 3;  // distributed matrix
+    override_controls();
+
+    const auto graph = matrix.getLocalMatrixHost().graph;
+    const auto& columns = *matrix.getColMap();
+    rows_.clear();
+    columns_.clear();
+    positions_.clear();
+    for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; ++row)
+      for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k) {
+        const GlobalIndex i = map.getGlobalElement(row), j = columns.getGlobalElement(graph.entries(k));
+        if (symmetric && j > i) continue;
+        rows_.push_back(i + 1);
+        columns_.push_back(j + 1);
+        positions_.push_back(k);
+      }
+    values_.resize(positions_.size());
+    for (auto* indices : {&rows_, &columns_}) indices->reserve(1);  // MUMPS wants a pointer also where nothing is
+    values_.reserve(1);
+    mumps_.n = n;
+    mumps_.nnz_loc = rows_.size();
+    mumps_.irn_loc = rows_.data();
+    mumps_.jcn_loc = columns_.data();
+    mumps_.a_loc = values_.data();
+
+    const bool root = comm->getRank() == 0;
+    const auto root_map = rcp(new fields::Map(n, root ? n : 0, 0, comm));
+    to_root_ = rcp(new fields::Import(block.map, root_map));
+    from_root_ = rcp(new fields::Import(root_map, block.map));
+    at_root_ = rcp(new Vector(root_map));
+    ready_ = true;
+    analysed_ = false;
+  }
+
+  void override_controls() {
+    for (const auto& parameter : parameters_) {
+      const std::string& name = parameter.first;
+      const Teuchos::ParameterEntry& entry = parameter.second;
+      int i = 0;
+      if (std::sscanf(name.c_str(), "ICNTL(%d)", &i) == 1 && i >= 1 && i <= 60)
+        mumps_.icntl[i - 1] = Teuchos::getValue<int>(entry);
+      else if (std::sscanf(name.c_str(), "CNTL(%d)", &i) == 1 && i >= 1 && i <= 15)
+        mumps_.cntl[i - 1] = Teuchos::getValue<double>(entry);
+      else
+        throw Error(fmt::format("MUMPS: unknown parameter '{}'; allowed are ICNTL(1..60) and CNTL(1..15)", name));
+    }
+  }
+
+  void fill_values() {
+    const auto values = matrix_->getLocalMatrixHost().values;
+    for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = values(positions_[k]);
+  }
+
+  bool substitute_rhs(const Vector& b, Vector& x) {
+    at_root_->doImport(b, *to_root_, Tpetra::INSERT);
+    int info = 0;
+    {
+      const auto rhs = at_root_->getLocalViewHost(Tpetra::Access::ReadWrite);
+      mumps_.rhs = rhs.data();
+      info = run(substitute);
+    }
+    x.doImport(*at_root_, *from_root_, Tpetra::INSERT);
+    return info >= 0;
+  }
+
+  void release() {
+    if (!ready_) return;
+    run(terminate);
+    MPI_Comm_free(&mpi_comm_);
+    ready_ = false;
+  }
+
+  Teuchos::ParameterList parameters_;
+  DMUMPS_STRUC_C mumps_{};
+  MPI_Comm mpi_comm_ = MPI_COMM_NULL;
+  bool ready_ = false, analysed_ = false, symmetric_ = false;
+  std::string failure_ = "the matrix was not set up";
+  RCP<const CrsMatrix> matrix_;
+  std::vector<int> rows_, columns_;       // 1-based
+  std::vector<std::size_t> positions_;    // of the entries handed over, in the matrix' values
+  std::vector<double> values_;
+  RCP<fields::Import> to_root_, from_root_;
+  RCP<Vector> at_root_;                   // all of a vector on rank 0
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps) {
+  return std::make_unique<DirectSolver>(mumps);
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,86 @@
+// Where every number of a local elimination goes: found once from the graphs of the blocks, used at every update.
+#pragma once
+
+#include "fields/block_problem.hpp"
+
+#include <string>
+#include <vector>
+
+namespace sprekk::solve {
+
+using fields::Block;
+using fields::BlockProblem;
+using fields::BlockVector;
+using fields::CrsGraph;
+using fields::CrsMatrix;
+using fields::Import;
+using fields::Map;
+using fields::Vector;
+
+/// out(target(k)) = value k of the matrix.
+struct Scatter {
+  RCP<const CrsMatrix> matrix;
+  View<LocalIndex*> target;
+
+  void operator()(const View<Real*>& out) const;
+};
+
+/// A_zz^-1 A_zb of one local group z and one remaining block b. An entity's rows are one dense block [m, its columns],
+/// row by row; the columns are the union over the rows. Slots count entities: owned ones first, then the ghosts that
+/// rows owned here couple to.
+struct Response {
+  std::vector<Scatter> fill;            ///< A_zb -> owned values
+  View<LocalIndex*> column_start;       ///< [slot + 1] first column of a slot; its first value is m times that
+  std::vector<GlobalIndex> column;      ///< [all columns] global unknown of b; only needed to make graphs
+  RCP<Vector> owned, ghost;             ///< values
+  RCP<Import> import;                   ///< owned -> ghost values
+};
+
+/// A_az of one remaining block a, packed: one row of m coefficients for each pair (owned row of a, slot) that couples.
+struct Coupling {
+  std::vector<Scatter> fill;        ///< A_az -> coefficient
+  View<LocalIndex*> row_start;      ///< [owned row + 1] first pair of a row
+  View<LocalIndex*> slot;           ///< [pair]
+  View<Real*> coefficient;          ///< [pair * m]
+};
+
+/// Where coefficient(pair) . response(slot of pair) is added in J_ab.
+struct Product {
+  View<LocalIndex*> start;     ///< [pair]
+  View<LocalIndex*> position;  ///< [start + column of the slot] -> value of J_ab
+};
+
+/// One local group. [r] counts remaining blocks.
+struct GroupPlan {
+  std::string name;
+  std::vector<int> blocks;
+  std::vector<int> offset;  ///< first unknown of a block within the entity
+  int size = 0;             ///< m: unknowns of one entity
+  RCP<const Map> entities;  ///< owned
+  std::vector<Scatter> fill;
+  View<Real*> dense, lu;           ///< [entity * m * m]
+  View<int*> pivot;                ///< [entity * m]
+  View<Real*> column_scale;        ///< [m]
+  View<Real*> work;                ///< [entity * m]
+  std::vector<Response> response;  ///< [r]
+  std::vector<Coupling> coupling;  ///< [r]
+  std::vector<Product> product;    ///< [r * n_r + r']
+};
+
+/// J_ab; matrix is null where nothing couples a and b.
+struct CondensedBlock {
+  RCP<CrsMatrix> matrix;
+  Scatter copy;             ///< A_ab -> J_ab; its matrix is null where A_ab is absent
+  RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
+};
+
+struct EliminationPlan {
+  std::vector<int> remaining;
+  std::vector<GroupPlan> groups;
+  std::vector<CondensedBlock> condensed;  ///< [r * n_r + r']
+};
+
+/// Collective; throws on all ranks where the blocks do not have the shape that BlockProblem promises.
+EliminationPlan plan_elimination(const BlockProblem& problem);
+
+}  // namespace sprekk::solve

@@ -1,0 +1,178 @@
+// Belos, preconditioned from the right by MueLu.
+#include "solve/linear_solver.hpp"
+
+#include "base/check.hpp"
+
+#include <BelosSolverFactory.hpp>
+#include <BelosTpetraAdapter.hpp>
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+
+namespace sprekk::solve {
+namespace {
+
+using fields::MultiVector;
+using fields::Operator;
+using Teuchos::ParameterList;
+
+constexpr int coarse_size = 1000;
+
+/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is wrong
+/// on several. The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit
+/// when contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
+ParameterList multigrid_defaults(int n_components, int n_ranks) {
+  ParameterList list("MueLu");
+  list.set("verbosity", "none");
+  list.set("number of equations", n_components);
+  list.set("multigrid algorithm", "sa");
+  list.set("coarse: max size", coarse_size);
+  list.set("transpose: use implicit", true);
+  list.set("reuse: type", "tP");
+  list.set("aggregation: drop tol", 1e-12);
+  list.set("sa: use filtered matrix", true);
+  list.set("smoother: type", "CHEBYSHEV");
+  list.sublist("smoother: params").set("chebyshev: degree", 2).set("chebyshev: ratio eigenvalue", 7.0);
+  if (n_ranks > 1) {
+    list.set("repartition: enable", true);
+    list.set("repartition: partitioner", "zoltan2");
+    list.set("repartition: start level", 1);
+    list.set("repartition: min rows per proc", 3 * coarse_size);
+    list.set("repartition: target rows per proc", 3 * coarse_size);
+    list.set("repartition: max imbalance", 1.3);
+  }
+  return list;
+}
+
+ParameterList krylov_defaults() {
+  ParameterList list("Belos");
+  list.set("Maximum Iterations", 500);
+  list.set("Num Blocks", 200, "basis of GMRES");
+  list.set("Implicit Residual Scaling", "Norm of RHS");
+  list.set("Explicit Residual Scaling", "Norm of RHS");
+  return list;
+}
+
+/// The last paragraph of an exception's text: what went wrong, without the place in the library.
+std::string gist(const std::string& text) {
+  const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1);
+  return gap == std::string::npos ? text : text.substr(gap + 2, end - gap - 2);
+}
+
+class IterativeSolver : public LinearSolver {
+ public:
+  IterativeSolver(const LinearSolverOptions& options, const Block& block) : parameters_("iterative") {
+    parameters_.sublist("MueLu") = multigrid_defaults(block.n_components, block.map->getComm()->getSize());
+    if (options.muelu.isParameter("smoother: type")) parameters_.sublist("MueLu").remove("smoother: params");
+    parameters_.sublist("MueLu").setParameters(options.muelu);
+    parameters_.sublist("Belos") = krylov_defaults();
+    parameters_.sublist("Belos").setParameters(options.belos);
+    // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
+    const int largest_coarse = parameters_.sublist("MueLu").get<int>("coarse: max size");
+    if (static_cast<long long>(block.map->getGlobalNumElements()) <= largest_coarse) {
+      coarse_ = make_direct_solver(options.mumps);
+      parameters_.sublist("MUMPS") = coarse_->parameters();
+    }
+  }
+
+  bool reads_bulk() const override { return !coarse_; }
+
+  std::string setup(const RCP<const CrsMatrix>& matrix, const Block& block, bool symmetric,
+                    const RCP<const CrsMatrix>& bulk) override {
+    if (coarse_) return coarse_->setup(matrix, block, symmetric, bulk);
+    symmetric_ = symmetric;
+    // Tpetra's and MueLu's interfaces take operators that may change; nothing here changes the matrix.
+    matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(matrix);
+    try {
+      base::collectively(*matrix->getComm(), [&] {
+        if (preconditioner_.is_null()) create(block, bulk);
+        MueLu::ReuseTpetraPreconditioner(matrix_, *preconditioner_);
+      });
+      failure_.clear();
+    } catch (const Error& error) {
+      preconditioner_ = Teuchos::null;
+      failure_ = fmt::format("multigrid set-up: {}", gist(error.what()));
+    }
+    return failure_;
+  }
+
+  LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
+    if (coarse_) return coarse_->solve(b, x, tolerance);
+    LinearReport report;
+    x.putScalar(0);
+    report.reason = failure_;
+    if (!failure_.empty() || b.normInf() == 0) {
+      report.converged = failure_.empty();
+      return report;
+    }
+    try {
+      base::collectively(*matrix_->getComm(), [&] { report.iterations = iterate(b, x, tolerance); });
+    } catch (const Error& error) {
+      report.reason = fmt::format("iterative solve: {}", gist(error.what()));
+      return report;
+    }
+    Vector r(b.getMap());
+    report.residual = relative_residual(*matrix_, b, x, r);
+    report.converged = report.residual <= std::max(10 * tolerance, acceptable_linear_residual);
+    if (!report.converged)
+      report.reason = fmt::format("iterative solve: relative residual {:.1e} after {} iterations, {:.0e} was asked for",
+                                  report.residual, report.iterations, tolerance);
+    return report;
+  }
+
+  const ParameterList& parameters() const override { return parameters_; }
+
+ private:
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface; the diagonal is raised a little, for floating
+  /// parts are singular there.
+  void create(const Block& block, const RCP<const CrsMatrix>& bulk) {
+    ParameterList list(parameters_.sublist("MueLu"));
+    auto& user_data = list.sublist("user data");
+    if (!block.near_null_space.is_null())
+      user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
+    if (!block.coordinates.is_null())
+      user_data.set("Coordinates", rcp(new MultiVector(*block.coordinates, Teuchos::Copy)));
+    RCP<Operator> from = matrix_;
+    if (!bulk.is_null()) {
+      const auto raised = rcp(new CrsMatrix(*bulk, Teuchos::Copy));
+      const auto local = raised->getLocalMatrixHost();
+      const auto& columns = *raised->getColMap();
+      for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+          if (columns.getGlobalElement(local.graph.entries(k)) == block.map->getGlobalElement(row))
+            local.values(k) *= 1 + 1e-8;
+      from = raised;
+    }
+    preconditioner_ = MueLu::CreateTpetraPreconditioner(from, list);
+  }
+
+  int iterate(const Vector& b, Vector& x, Real tolerance) {
+    using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
+    const auto problem = rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
+    problem->setRightPrec(preconditioner_);
+    problem->setProblem();
+    const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
+    const std::string method = list->get("Solver Type", symmetric_ ? "Pseudo Block CG" : "Pseudo Block GMRES");
+    list->remove("Solver Type");
+    if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
+    list->get("Convergence Tolerance", tolerance);
+    Belos::SolverFactory<Real, MultiVector, Operator> factory;
+    const auto solver = factory.create(method, list);
+    solver->setProblem(problem);
+    solver->solve();
+    return solver->getNumIters();
+  }
+
+  ParameterList parameters_;
+  std::unique_ptr<LinearSolver> coarse_;
+  RCP<CrsMatrix> matrix_;
+  RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> preconditioner_;
+  bool symmetric_ = false;
+  std::string failure_ = "the matrix was not set up";
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options, const Block& block) {
+  return std::make_unique<IterativeSolver>(options, block);
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,53 @@
+// The line search of Newton: non-monotone, for kinks in f make the merit rise on the way to a solution.
+#pragma once
+
+#include "solve/thyra_model.hpp"
+
+#include <NOX_LineSearch_Generic.H>
+#include <NOX_LineSearch_UserDefinedFactory.H>
+
+#include <deque>
+#include <map>
+
+namespace sprekk::solve {
+
+/// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
+/// if none is, the best one tried. When a discrete state comes back and the merit is no better than then, iterates would go
+/// round in circles: from there on only the last merit counts.
+class LineSearch : public NOX::LineSearch::Generic {
+ public:
+  LineSearch(BlockProblem& problem, const ThyraModel& model) : problem_(problem), model_(model) {}
+
+  /// Fails, with step 0, where the direction does: after a linear solve that did.
+  bool compute(NOX::Abstract::Group& group, double& step, const NOX::Abstract::Vector& direction,
+               const NOX::Solver::Generic& solver) override;
+
+ private:
+  Real limit() const;
+  void accept(const BlockVector& x, Real merit);
+
+  BlockProblem& problem_;
+  const ThyraModel& model_;
+  std::deque<Real> merits_;              // of the last iterates, at most 3
+  std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
+  bool monotone_ = false;
+};
+
+/// Lets NOX make line searches for a problem.
+class LineSearchFactory : public NOX::LineSearch::UserDefinedFactory {
+ public:
+  LineSearchFactory(BlockProblem& problem, const ThyraModel& model) : problem_(problem), model_(model) {}
+  RCP<NOX::LineSearch::Generic> buildLineSearch(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) const override {
+    return rcp(new LineSearch(problem_, model_));
+  }
+
+ private:
+  BlockProblem& problem_;
+  const ThyraModel& model_;
+};
+
+/// The unknowns and the residual of a NOX group over Thyra, not copied, to be read only.
+BlockVector solution_of(const NOX::Abstract::Group& group);
+BlockVector residual_of(const NOX::Abstract::Group& group);
+
+}  // namespace sprekk::solve

@@ -1,0 +1,48 @@
+#include "solve/linear_solver.hpp"
+
+#include "base/check.hpp"
+#include "base/parameters.hpp"
+
+#include <sstream>
+
+namespace sprekk::solve {
+
+void LinearSolverOptions::describe(base::Section& section) {
+  section.choice(type, "type", {"auto", "direct", "iterative"},
+                 "direct: MUMPS; iterative: Belos with MueLu; auto: direct up to the limits below");
+  section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
+  section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
+  section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
+  section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
+  section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
+  section.passthrough(muelu, "MueLu", "parameters of MueLu");
+}
+
+std::string ChosenSolver::describe() const {
+  std::ostringstream text;
+  text << reason << '\n';
+  solver->parameters().print(text, Teuchos::ParameterList::PrintOptions().indent(2).showTypes(false));
+  return text.str();
+}
+
+ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Block& block) {
+  const bool is_3d = !block.coordinates.is_null() && block.coordinates->getNumVectors() == 3;
+  const long long n = block.map->getGlobalNumElements();
+  const long long limit = is_3d ? options.direct_limit_3d : options.direct_limit_2d;
+  const bool direct = options.type == "direct" || (options.type == "auto" && n <= limit);
+  const std::string reason =
+      options.type == "auto"
+          ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
+                        is_3d ? "3D" : "2D", n, limit)
+          : fmt::format("{}: asked for; {} unknowns", options.type, n);
+  return {direct ? make_direct_solver(options.mumps) : make_iterative_solver(options, block), reason};
+}
+
+Real relative_residual(const CrsMatrix& matrix, const Vector& b, const Vector& x, Vector& r) {
+  matrix.apply(x, r);
+  r.update(1, b, -1);
+  const Real size = b.norm2(), residual = r.norm2();
+  return residual == 0 ? 0 : residual / size;
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,279 @@
+#include "solve/local_elimination.hpp"
+
+#include "solve/small_lu.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <limits>
+
+namespace sprekk::solve {
+namespace {
+
+using Policy = Kokkos::RangePolicy<Execution>;
+
+auto values_of(const CrsMatrix& matrix) { return matrix.getLocalMatrixDevice().values; }
+
+auto write(Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadWrite), Kokkos::ALL(), 0); }
+
+auto read(const Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0); }
+
+/// Zeroes rows and columns of the flagged unknowns; keeps |diagonal|, or 1 where it is zero, if the block is diagonal.
+void constrain(CrsMatrix& matrix, const Vector& row_flags, const Vector& column_flags, bool diagonal) {
+  const auto local = matrix.getLocalMatrixDevice();
+  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
+  const auto row_flag = read(row_flags), column_flag = read(column_flags);
+  Kokkos::parallel_for(
+      "constrain", Policy(0, local.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
+        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
+          const LocalIndex column = local.graph.entries(k);
+          if (row_flag(row) == 0 && column_flag(column) == 0) continue;
+          const bool on_diagonal = diagonal && columns.getGlobalElement(column) == rows.getGlobalElement(row);
+          const Real size = Kokkos::Experimental::fabs(local.values(k));
+          local.values(k) = on_diagonal ? (size > 0 ? size : 1) : 0;
+        }
+      });
+}
+
+/// target <- the owned flags and those of ghosts.
+void spread(const Vector& owned, const CrsMatrix& matrix, Vector& columns) {
+  const auto import = matrix.getGraph()->getImporter();
+  if (import.is_null())
+    Tpetra::deep_copy(columns, owned);
+  else
+    columns.doImport(owned, *import, Tpetra::INSERT);
+}
+
+/// Changes, but for a chance of 2^-64, when any bit of any value does.
+std::uint64_t checksum(const CrsMatrix& matrix) {
+  const auto values = values_of(matrix);
+  std::uint64_t sum = 0;
+  Kokkos::parallel_reduce(
+      "checksum", Policy(0, values.extent(0)),
+      KOKKOS_LAMBDA(std::int64_t k, std::uint64_t & partial) {
+        const Real value = values(k);
+        std::uint64_t hash;
+        memcpy(&hash, &value, sizeof hash);
+        hash += 0x9e3779b97f4a7c15ull * std::uint64_t(k + 1);
+        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
+        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
+        partial += hash ^ (hash >> 31);
+      },
+      sum);
+  return sum;
+}
+
+}  // namespace
+
+void Scatter::operator()(const View<Real*>& out) const {
+  const auto values = values_of(*matrix);
+  const auto to = target;
+  Kokkos::parallel_for(
+      "scatter values", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) { out(to(k)) = values(k); });
+}
+
+LocalElimination::LocalElimination(const BlockProblem& problem)
+    : comm_(problem.comm()), matrix_(&problem.matrix()), plan_(plan_elimination(problem)) {
+  for (int r : plan_.remaining) constrained_.push_back(rcp(new Vector(problem.blocks()[r].map)));
+}
+
+LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
+  for (int r = 0; r < n_remaining(); ++r) {
+    const auto flags = problem.constrained(plan_.remaining[r]);
+    const auto flag = write(*constrained_[r]);
+    Kokkos::parallel_for(
+        "flags", Policy(0, flags.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { flag(i) = flags(i) ? 1 : 0; });
+  }
+  for (auto& condensed : plan_.condensed) {
+    if (condensed.matrix.is_null()) continue;
+    condensed.matrix->resumeFill();
+    Kokkos::deep_copy(values_of(*condensed.matrix), 0.0);
+    if (!condensed.copy.matrix.is_null()) condensed.copy(values_of(*condensed.matrix));
+  }
+  std::string failure;
+  for (auto& group : plan_.groups)
+    if (factor(group, failure))
+      for (int r = 0; r < n_remaining(); ++r)
+        for (int s = 0; s < n_remaining(); ++s) condense(group, r, s);
+
+  std::uint64_t sum = 0;
+  for (int r = 0; r < n_remaining(); ++r)
+    for (int s = 0; s < n_remaining(); ++s) {
+      auto& condensed = block(r, s);
+      if (condensed.matrix.is_null()) continue;
+      spread(*constrained_[s], *condensed.matrix, *condensed.constrained);
+      constrain(*condensed.matrix, *constrained_[r], *condensed.constrained, r == s);
+      condensed.matrix->fillComplete(condensed.matrix->getDomainMap(), condensed.matrix->getRangeMap());
+      sum = 3 * sum + checksum(*condensed.matrix);
+    }
+  const int changed_here = fresh_ || sum != checksum_;
+  int changed = 0;
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &changed_here, &changed);
+  checksum_ = sum;
+  fresh_ = !failure.empty();
+  return {changed != 0, failure};
+}
+
+/// Packs and factors A_zz, and makes A_zz^-1 A_zb. False on every rank, with the reason, if an entity is singular.
+bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
+  const int m = group.size;
+  Kokkos::deep_copy(group.dense, 0.0);
+  for (const auto& fill : group.fill) fill(group.dense);
+  Kokkos::deep_copy(group.lu, group.dense);
+  const auto lu = group.lu;
+  const auto pivot = group.pivot;
+  const auto scale = group.column_scale;
+  const LocalIndex n = pivot.extent(0) / m;
+  LocalIndex first = n;
+  Kokkos::parallel_reduce(
+      "factor entities", Policy(0, n),
+      KOKKOS_LAMBDA(LocalIndex e, LocalIndex & singular) {
+        if (!lu_factor(m, &lu(e * m * m), &pivot(e * m), scale.data()) && e < singular) singular = e;
+      },
+      Kokkos::Min<LocalIndex>(first));
+  const auto none = std::numeric_limits<GlobalIndex>::max();
+  const GlobalIndex singular_here = first < n ? group.entities->getGlobalElement(first) : none;
+  GlobalIndex singular = none;
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MIN, 1, &singular_here, &singular);
+  if (singular != none) {
+    failure = fmt::format("local group '{}': the matrix of entity {} is singular", group.name, singular);
+    return false;
+  }
+  for (auto& response : group.response) {
+    response.owned->putScalar(0);
+    const View<Real*> z(response.owned->getLocalViewDevice(Tpetra::Access::ReadWrite).data(),
+                        response.owned->getLocalLength());
+    for (const auto& fill : response.fill) fill(z);
+    const auto start = response.column_start;
+    Kokkos::parallel_for(
+        "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
+          const LocalIndex n_columns = start(e + 1) - start(e), base = m * start(e);
+          Real column[max_small_size];
+          for (LocalIndex k = 0; k < n_columns; ++k) {
+            for (int i = 0; i < m; ++i) column[i] = z(base + i * n_columns + k);
+            lu_solve(m, &lu(e * m * m), &pivot(e * m), column);
+            for (int i = 0; i < m; ++i) z(base + i * n_columns + k) = column[i];
+          }
+        });
+    response.ghost->doImport(*response.owned, *response.import, Tpetra::INSERT);
+  }
+  for (auto& coupling : group.coupling) {
+    Kokkos::deep_copy(coupling.coefficient, 0.0);
+    for (const auto& fill : coupling.fill) fill(coupling.coefficient);
+  }
+  return true;
+}
+
+/// J_rs -= A_rz (A_zz^-1 A_zs), row by row into positions known beforehand.
+void LocalElimination::condense(GroupPlan& group, int r, int s) const {
+  if (block(r, s).matrix.is_null()) return;
+  const int m = group.size;
+  const auto& response = group.response[s];
+  const auto& coupling = group.coupling[r];
+  const auto& product = group.product[r * n_remaining() + s];
+  const LocalIndex n_owned = group.pivot.extent(0) / m, n_owned_values = response.owned->getLocalLength();
+  const auto owned = read(*response.owned), ghost = read(*response.ghost);
+  const auto column_start = response.column_start, row_start = coupling.row_start, slots = coupling.slot;
+  const auto first = product.start, position = product.position;
+  const auto coefficient = coupling.coefficient;
+  const auto values = values_of(*block(r, s).matrix);
+  Kokkos::parallel_for(
+      "condense", Policy(0, row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
+        for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
+          const LocalIndex slot = slots(pair), n_columns = column_start(slot + 1) - column_start(slot);
+          const LocalIndex base = m * column_start(slot) - (slot < n_owned ? 0 : n_owned_values);
+          const auto& z = slot < n_owned ? owned : ghost;
+          for (LocalIndex k = 0; k < n_columns; ++k) {
+            Real sum = 0;
+            for (int i = 0; i < m; ++i) sum += coefficient(pair * m + i) * z(base + i * n_columns + k);
+            values(position(first(pair) + k)) -= sum;
+          }
+        }
+      });
+}
+
+RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
+
+RCP<const CrsMatrix> LocalElimination::bulk(int r) const {
+  const auto copy = rcp(new CrsMatrix(*(*matrix_)(plan_.remaining[r], plan_.remaining[r]), Teuchos::Copy));
+  Vector columns(copy->getColMap());
+  spread(*constrained_[r], *copy, columns);
+  constrain(*copy, *constrained_[r], columns, true);
+  return copy;
+}
+
+/// z <- A_zz^-1 z for the blocks of one group.
+void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) const {
+  const int m = group.size;
+  const auto work = group.work, dense = group.dense, lu = group.lu;
+  const auto pivot = group.pivot;
+  const auto each = [&](const auto& move) {
+    for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+      const auto part = write(*z[group.blocks[i]]);
+      const int offset = group.offset[i];
+      const int n = (i + 1 < group.blocks.size() ? group.offset[i + 1] : m) - offset;
+      move(part, offset, n);
+    }
+  };
+  each([&](const auto& part, int offset, int n) {
+    Kokkos::parallel_for(
+        "pack", Policy(0, part.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i) { work(i / n * m + offset + i % n) = part(i); });
+  });
+  Kokkos::parallel_for(
+      "solve entities", Policy(0, pivot.extent(0) / m), KOKKOS_LAMBDA(LocalIndex e) {
+        lu_solve_refined(m, &dense(e * m * m), &lu(e * m * m), &pivot(e * m), &work(e * m));
+      });
+  each([&](const auto& part, int offset, int n) {
+    Kokkos::parallel_for(
+        "unpack", Policy(0, part.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i) { part(i) = work(i / n * m + offset + i % n); });
+  });
+}
+
+BlockVector LocalElimination::reduce(const BlockVector& b) const {
+  auto lift = fields::create_like(b), s = fields::create_like(b);
+  for (int r = 0; r < n_remaining(); ++r)
+    lift[plan_.remaining[r]]->elementWiseMultiply(1, *constrained_[r], *b[plan_.remaining[r]], 0);
+  matrix_->apply(lift, s);
+  for (std::size_t i = 0; i < b.size(); ++i) s[i]->update(1, *b[i], -1);
+  for (const auto& group : plan_.groups) {
+    apply_inverse(group, s);
+    for (int a : plan_.remaining)
+      for (int z : group.blocks)
+        if (!(*matrix_)(a, z).is_null()) (*matrix_)(a, z)->apply(*s[z], *s[a], Teuchos::NO_TRANS, -1, 1);
+  }
+  BlockVector c;
+  for (int r = 0; r < n_remaining(); ++r) {
+    c.push_back(s[plan_.remaining[r]]);
+    const auto value = write(*c.back());
+    const auto flag = read(*constrained_[r]);
+    Kokkos::parallel_for(
+        "constrain", Policy(0, value.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+          if (flag(i) != 0) value(i) = 0;
+        });
+  }
+  return c;
+}
+
+void LocalElimination::expand(const BlockVector& b, const BlockVector& y, BlockVector& dx) const {
+  for (int r = 0; r < n_remaining(); ++r) {
+    const int a = plan_.remaining[r];
+    const auto value = write(*dx[a]);
+    const auto flag = read(*constrained_[r]), prescribed = read(*b[a]), solved = read(*y[r]);
+    Kokkos::parallel_for(
+        "expand", Policy(0, value.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i) { value(i) = flag(i) != 0 ? prescribed(i) : solved(i); });
+  }
+  for (const auto& group : plan_.groups) {
+    for (int z : group.blocks) {
+      Tpetra::deep_copy(*dx[z], *b[z]);
+      for (int a : plan_.remaining)
+        if (!(*matrix_)(z, a).is_null()) (*matrix_)(z, a)->apply(*dx[a], *dx[z], Teuchos::NO_TRANS, -1, 1);
+    }
+    apply_inverse(group, dx);
+  }
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,126 @@
+#include "solve/newton.hpp"
+
+#include "base/check.hpp"
+#include "base/parameters.hpp"
+#include "solve/line_search.hpp"
+
+#include <NOX.H>
+#include <NOX_StatusTest_Generic.H>
+#include <NOX_Thyra.H>
+#include <Thyra_TpetraThyraWrappers.hpp>
+
+#include <cmath>
+
+namespace sprekk::solve {
+namespace {
+
+using NOX::StatusTest::StatusType;
+
+/// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is not
+/// finite, or out of iterations. Keeps the history and the reason.
+class MeasureTest : public NOX::StatusTest::Generic {
+ public:
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, NewtonReport& report)
+      : problem_(problem), options_(options), report_(report) {}
+
+  StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
+    const auto& group = solver.getSolutionGroup();
+    report_.iterations = solver.getNumIterations();
+    report_.measures = problem_.measures(solution_of(group), residual_of(group));
+    report_.history.push_back(report_.measures);
+    const Measure* worst = nullptr;
+    for (const auto& measure : report_.measures)
+      if (!worst || !(measure.value <= worst->value)) worst = &measure;
+    const Real value = worst ? worst->value : 0;
+    report_.reason.clear();
+    status_ = NOX::StatusTest::Unconverged;
+    if (!std::isfinite(group.getNormF())) {
+      fail("the residual is not finite");
+    } else if (value <= options_.tolerance) {
+      status_ = NOX::StatusTest::Converged;
+    } else if (!std::isfinite(value)) {
+      fail(fmt::format("'{}' is {}", worst->name, value));
+    } else if (report_.iterations >= options_.max_iterations) {
+      fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
+                       worst->name, value, options_.tolerance));
+    }
+    return status_;
+  }
+
+  StatusType getStatus() const override { return status_; }
+  std::ostream& print(std::ostream& stream, int indent) const override {
+    stream << std::string(indent, ' ');
+    for (const auto& measure : report_.measures) stream << fmt::format("{} {:.3e}  ", measure.name, measure.value);
+    return stream << std::endl;
+  }
+
+ private:
+  void fail(const std::string& reason) {
+    report_.reason = reason;
+    status_ = NOX::StatusTest::Failed;
+  }
+
+  BlockProblem& problem_;
+  const NewtonOptions& options_;
+  NewtonReport& report_;
+  StatusType status_ = NOX::StatusTest::Unevaluated;
+};
+
+RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem, const ThyraModel& model) {
+  const auto list = Teuchos::parameterList("NOX");
+  list->set("Nonlinear Solver", "Line Search Based");
+  list->sublist("Direction").set("Method", "Newton");
+  auto& newton = list->sublist("Direction").sublist("Newton");
+  newton.set("Forcing Term Method", "Constant");
+  newton.set("Rescue Bad Newton Solve", true);  // the line search refuses it, and says why
+  newton.sublist("Linear Solver").set("Tolerance", options.linear_solver.tolerance);
+  auto& search = list->sublist("Line Search");
+  search.set("Method", "User Defined");
+  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model));
+  search.set("User Defined Line Search Factory", factory);
+  const int shown = NOX::Utils::OuterIteration + NOX::Utils::OuterIterationStatusTest + NOX::Utils::Error;
+  auto& printing = list->sublist("Printing");
+  printing.set("Output Information", options.print ? shown : 0);
+  printing.set("MyPID", problem.comm()->getRank());
+  printing.set("Output Processor", options.print ? 0 : -1);  // NOX would say that a line search failed in any case
+  list->setParameters(options.nox);
+  return list;
+}
+
+}  // namespace
+
+void NewtonOptions::describe(base::Section& section) {
+  section.entry(tolerance, "tolerance", "-", base::positive(), "largest measure of convergence, relative to the loads");
+  section.entry(max_iterations, "maximum iterations", "-", base::at_least(1), "Newton steps before a solve has failed");
+  section.entry(print, "print", "-", "print every Newton step");
+  section.section(linear_solver, "Linear Solver", "solver of the linear systems");
+  section.passthrough(nox, "NOX", "parameters of NOX");
+}
+
+Newton::Newton(BlockProblem& problem, const NewtonOptions& options)
+    : problem_(problem),
+      options_(options),
+      linear_(std::make_unique<CondensedSolve>(problem, options.linear_solver)),
+      model_(std::make_unique<ThyraModel>(problem, *linear_)) {}
+
+Newton::~Newton() = default;
+
+NewtonReport Newton::solve(BlockVector& x) {
+  NewtonReport report;
+  model_->clear_history();
+  const auto start = model_->make_vector(x);
+  // NOX holds references by RCP; the model outlives the solver here
+  const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
+  const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model));
+  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, report));
+  const auto solver = NOX::Solver::buildSolver(group, test, nox_parameters(options_, problem_, *model_));
+  report.converged = solver->solve() == NOX::StatusTest::Converged;
+  fields::copy(solution_of(solver->getSolutionGroup()), x);
+  const auto& linear = model_->linear_history();
+  report.linear_iterations = linear.iterations;
+  if (linear.solves > 0 && !linear.last.converged) report.reason = linear.last.reason;
+  if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
+  return report;
+}
+
+}  // namespace sprekk::solve

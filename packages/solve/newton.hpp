@@ -1,0 +1,58 @@
+// Newton's method on a BlockProblem, driven by NOX.
+#pragma once
+
+#include "solve/linear_solver.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprekk::solve {
+
+using fields::BlockProblem;
+using fields::BlockVector;
+using fields::Measure;
+
+class CondensedSolve;
+class ThyraModel;
+
+struct NewtonOptions {
+  Real tolerance = 1e-10;   ///< of every measure of the problem
+  int max_iterations = 30;
+  bool print = false;       ///< let NOX report every iteration
+  LinearSolverOptions linear_solver;
+  Teuchos::ParameterList nox;  ///< over the defaults
+
+  void describe(base::Section& section);
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;         ///< Newton steps, each with one linear solve
+  int linear_iterations = 0;  ///< over all linear solves
+  std::string reason;         ///< of a failure
+  std::vector<Measure> measures;              ///< at the end
+  std::vector<std::vector<Measure>> history;  ///< [iteration, from 0 for the start]
+};
+
+/// Keeps factors or the hierarchy from one solve to the next. Refers to the problem.
+class Newton {
+ public:
+  Newton(BlockProblem& problem, const NewtonOptions& options);
+  ~Newton();
+
+  /// Solves f(x) = 0 from x: full first step; after that backtracking that lets the merit rise above the last but not
+  /// above the worst of three iterates. A failure is reported, and x is the last iterate then; Errors of the problem's own
+  /// evaluations pass through. Collective; the same report on every rank.
+  NewtonReport solve(BlockVector& x);
+
+  const CondensedSolve& linear() const { return *linear_; }
+
+ private:
+  BlockProblem& problem_;
+  NewtonOptions options_;
+  std::unique_ptr<CondensedSolve> linear_;
+  std::unique_ptr<ThyraModel> model_;
+};
+
+}  // namespace sprekk::solve

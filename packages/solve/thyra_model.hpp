@@ -1,0 +1,51 @@
+// A BlockProblem as Thyra sees it.
+#pragma once
+
+#include "solve/condensed_solve.hpp"
+
+#include <Thyra_StateFuncModelEvaluatorBase.hpp>
+
+namespace sprekk::solve {
+
+/// The Tpetra vectors of a product vector, not copied. The result must not be written to if the argument is const.
+BlockVector blocks_of(const Thyra::VectorBase<Real>& v);
+
+/// f(x) = problem.residual and W = df/dx, over product vectors of all blocks. W's solve is `solve`; its apply is
+/// problem.matrix() with the rows of constrained unknowns replaced by identity. Refers to both arguments.
+class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
+ public:
+  using Space = Thyra::VectorSpaceBase<Real>;
+  using InArgs = Thyra::ModelEvaluatorBase::InArgs<Real>;
+  using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<Real>;
+
+  ThyraModel(BlockProblem& problem, CondensedSolve& solve);
+
+  /// Counts and keeps what linear solves say since the last clear.
+  struct LinearHistory {
+    int solves = 0, iterations = 0;
+    LinearReport last;
+  };
+  const LinearHistory& linear_history() const { return *history_; }
+  void clear_history() { *history_ = {}; }
+
+  /// A product vector that is a copy of x. [block]
+  RCP<Thyra::VectorBase<Real>> make_vector(const BlockVector& x) const;
+
+  RCP<const Space> get_x_space() const override { return space_; }
+  RCP<const Space> get_f_space() const override { return space_; }
+  InArgs createInArgs() const override;
+  InArgs getNominalValues() const override { return createInArgs(); }
+  RCP<Thyra::LinearOpBase<Real>> create_W_op() const override;
+  RCP<const Thyra::LinearOpWithSolveFactoryBase<Real>> get_W_factory() const override;
+
+ private:
+  OutArgs createOutArgsImpl() const override;
+  void evalModelImpl(const InArgs& in, const OutArgs& out) const override;
+
+  BlockProblem& problem_;
+  CondensedSolve& solve_;
+  RCP<const Space> space_;
+  RCP<LinearHistory> history_;
+};
+
+}  // namespace sprekk::solve

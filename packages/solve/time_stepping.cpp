@@ -1,0 +1,51 @@
+#include "solve/time_stepping.hpp"
+
+#include "base/check.hpp"
+#include "base/parameters.hpp"
+
+#include <algorithm>
+
+namespace sprekk::solve {
+
+void TimeSteppingOptions::describe(base::Section& section) {
+  section.entry(max_halvings, "maximum halvings", "-", base::between(0, 20),
+                "how often a step that fails is halved before the run ends");
+}
+
+StepReport TimeStepper::advance(BlockVector& x, Real t_from, Real t_to) {
+  StepReport report;
+  auto committed = fields::create_like(x);
+  fields::copy(x, committed);
+  // in units of the smallest substep, so that substeps end exactly at t_to
+  const long long whole = 1LL << options_.max_halvings;
+  const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
+  long long done = 0, size = whole;
+  report.time = t_from;
+  while (done < whole) {
+    size = std::min(size, whole - done);
+    const Real end = time(done + size);
+    problem_.set_time(end, end - report.time);
+    const auto newton = newton_.solve(x);
+    report.newton_iterations += newton.iterations;
+    report.linear_iterations += newton.linear_iterations;
+    report.measures = newton.measures;
+    if (newton.converged) {
+      problem_.commit(x);
+      fields::copy(x, committed);
+      done += size;
+      report.time = end;
+      ++report.substeps;
+      size *= 2;
+      continue;
+    }
+    fields::copy(committed, x);
+    report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
+    if (size == 1) return report;
+    size /= 2;
+    ++report.cuts;
+  }
+  report.converged = true;
+  return report;
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,42 @@
+// From one time to the next, in as many substeps as Newton needs.
+#pragma once
+
+#include "solve/newton.hpp"
+
+namespace sprekk::solve {
+
+struct TimeSteppingOptions {
+  int max_halvings = 6;  ///< the smallest substep is the step / 2^max_halvings
+
+  void describe(base::Section& section);
+};
+
+struct StepReport {
+  bool converged = false;
+  Real time = 0;              ///< that x now belongs to
+  int newton_iterations = 0;  ///< rejected substeps included
+  int linear_iterations = 0;  ///< likewise
+  int substeps = 0;           ///< committed
+  int cuts = 0;
+  std::string reason;             ///< of the last failure, if there was one
+  std::vector<Measure> measures;  ///< of the last Newton solve
+};
+
+/// Refers to the problem and to Newton.
+class TimeStepper {
+ public:
+  TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
+      : problem_(problem), newton_(newton), options_(options) {}
+
+  /// Takes x, the committed state at t_from, to t_to. Where Newton fails the substep is halved and x restored; after one
+  /// that converged it doubles. Each is committed. If the smallest one fails too, x is the last committed state, at
+  /// report.time. Collective.
+  StepReport advance(BlockVector& x, Real t_from, Real t_to);
+
+ private:
+  BlockProblem& problem_;
+  Newton& newton_;
+  TimeSteppingOptions options_;
+};
+
+}  // namespace sprekk::solve

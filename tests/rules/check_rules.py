@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Checks the rules of the house that can be read off the sources.
+
+    check_rules.py ROOT     prints "file:line: [rule] what" for every violation; exit status 1 if there is any
+
+Rules: include-order, solver-header, host-only, kernel, unfinished, self-contained, static-state.
+"""
+import re
+import sys
+from pathlib import Path
+
+USES = {
+    "base": "",
+    "laws": "base",
+    "mesh": "base",
+    "fields": "base mesh",
+    "assembly": "base mesh fields",
+    "physics": "base laws mesh fields assembly",
+    "solve": "base fields",
+    "io": "base mesh fields",
+    "model": "base laws mesh fields assembly physics solve io",
+}
+FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files beside them
+SOURCES = {".hpp", ".cpp", ".h"}
+
+SOLVER_HEADER = re.compile(r'\s*#\s*include\s*[<"]((?:NOX|Stratimikos|Belos|Teko|MueLu|Amesos2)[^>"]*)')
+HOST_ONLY = re.compile(
+    r"\bMPI_COMM_WORLD\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
+NOT_IN_KERNELS = re.compile(
+    r"\bstd::(?:vector|map|unordered_map|set|string|cout|cerr|function)\b|\bnew\b|\b(?:malloc|printf)\s*\("
+    r"|(?:\.|->)data\s*\(\s*\)")
+UNFINISHED = re.compile(r"\b(?:TOD[O]|FIXM[E]|XX[X]|HAC[K])\b")
+NOT_SELF_CONTAINED = re.compile(r"/wor[k]/|\b[s]essions?\b|\b[i]ssue #", re.IGNORECASE)
+KERNEL_MACRO = r"KOKKOS_(?:CLASS_)?LAMBDA|KOKKOS_(?:FORCE)?(?:INLINE_)?FUNCTION"
+
+# Variables that outlive a call: at column 0 (a namespace's content is not indented), or static at any depth.
+IMMUTABLE = r"(?:[\w:<>,\s*&]*\b(?:const|constexpr)\b)"
+STATIC = re.compile(r"^[ \t]*(?:inline[ \t]+)?(?:static|thread_local)\b(?!_)(?P<rest>[^;{=]*(?:[;{=]))", re.MULTILINE)
+GLOBAL = re.compile(
+    r"^(?!(?:using|namespace|template|struct|class|enum|union|typedef|return|friend|extern|static|thread_local|public"
+    r"|private|protected|case|default|goto|else|delete)\b)(?:inline[ \t]+)?[A-Za-z_][\w:]*(?:<[^;(){}]*>)?[ \t*&]+"
+    r"\w[\w:]*(?:\[\w*\])*[ \t]*(?:=[^=]|;|\{)", re.MULTILINE)
+
+
+def blanked(text):
+    """The text with comments and the insides of literals replaced by blanks; every line keeps its number."""
+    token = re.compile(
+        r'//[^\n]*|/\*.*?\*/|R"(?P<tag>[^\s()\\]*)\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"|(?<![\w\'])'
+        r"'(?:\\.|[^'\\\n])+'", re.DOTALL)
+    return token.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
+
+
+def end_of_braces(code, start):
+    """The position after the brace that closes the one at start."""
+    depth = 0
+    for i in range(start, len(code)):
+        depth += {"{": 1, "}": -1}.get(code[i], 0)
+        if depth == 0:
+            return i + 1
+    return len(code)
+
+
+def kernel_bodies(code, macro):
+    """(start, end) of the body after each kernel macro; declarations have none."""
+    for match in re.finditer(rf"\b(?:{macro})\b", code):
+        line_start = code.rfind("\n", 0, match.start()) + 1
+        if re.match(r"\s*#", code[line_start:match.start()]):
+            continue
+        depth, i = 0, match.end()
+        while i < len(code):
+            depth += {"(": 1, ")": -1}.get(code[i], 0)
+            if depth == 0 and code[i] == ";":
+                break
+            if depth == 0 and code[i] == "{":
+                end = end_of_braces(code, i)
+                yield i, end
+                # member initializers with braces come before a constructor's body: a_{x}, b_{y} { ... }
+                if "LAMBDA" in match.group() or not re.match(r"\s*[,{]", code[end:]):
+                    break
+                i = end - 1
+            i += 1
+
+
+def without_templates(text):
+    """Template arguments removed, so that their parentheses do not look like a function's."""
+    while True:
+        shorter = re.sub(r"<[^<>]*>", "", text)
+        if shorter == text:
+            return text
+        text = shorter
+
+
+def mutable_statics(code):
+    for match in STATIC.finditer(code):
+        declaration = without_templates(match["rest"])
+        if not re.match(IMMUTABLE, declaration) and "(" not in declaration:
+            yield match.start(), match.group().split("\n")[-1].strip()
+        elif re.search(r"\(\s*[\d\"'-]", declaration) and not re.match(IMMUTABLE, declaration):
+            yield match.start(), match.group().strip()  # static Thing thing(3);
+    for match in GLOBAL.finditer(code):
+        if not re.match(IMMUTABLE, match.group()):
+            yield match.start(), match.group().strip()
+
+
+def check_cpp(path, text, aliases):
+    """Violations (position, rule, what) of a C++ source; path is relative to the root."""
+    parts, code = path.parts, blanked(text)
+    package = parts[1] if parts[0] == "packages" else None
+    if parts[0] in ("packages", "apps") and package != "solve":
+        for match in re.finditer(SOLVER_HEADER.pattern, text, re.MULTILINE):
+            yield match.start(1), "solver-header", f"{match[1]} outside packages/solve"
+    if package is None:
+        return
+    allowed = {package, *USES.get(package, "").split()}
+    for match in re.finditer(r'^\s*#\s*include\s*"(\w+)/', text, re.MULTILINE):
+        if match[1] not in allowed:
+            yield match.start(1), "include-order", f"{package} may not include {match[1]}/"
+    for match in HOST_ONLY.finditer(code):
+        yield match.start(), "host-only", f"{match.group()} belongs to apps and tests"
+    for start, end in kernel_bodies(code, "|".join([KERNEL_MACRO, *aliases])):
+        for match in NOT_IN_KERNELS.finditer(code, start, end):
+            yield match.start(), "kernel", f"{match.group()} in a kernel"
+    for position, what in mutable_statics(code):
+        yield position, "static-state", what
+
+
+def check_text(text):
+    for match in UNFINISHED.finditer(text):
+        yield match.start(), "unfinished", match.group()
+    for match in NOT_SELF_CONTAINED.finditer(text):
+        yield match.start(), "self-contained", match.group()
+
+
+def check(root):
+    """All violations under root as (file, line, rule, what), sorted."""
+    files = [f for f in root.iterdir() if f.is_file()]
+    for folder in FOLDERS:
+        files += [f for f in (root / folder).rglob("*") if f.is_file()]
+    texts = {}
+    for file in files:
+        try:
+            texts[file.relative_to(root)] = file.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            pass  # a picture
+    aliases = set()
+    for path, text in texts.items():
+        if path.suffix in SOURCES:
+            aliases.update(re.findall(rf"#\s*define\s+(\w+)[^\n]*\b(?:{KERNEL_MACRO})\b", text))
+    violations = set()
+    for path, text in texts.items():
+        found = list(check_text(text))
+        if path.suffix in SOURCES and path.parts[0] in ("packages", "apps"):
+            found += check_cpp(path, text, aliases)
+        violations.update((str(path), text.count("\n", 0, at) + 1, rule, what) for at, rule, what in found)
+    return sorted(violations)
+
+
+def main():
+    root = Path(sys.argv[1])
+    if not (root / "packages").is_dir():
+        sys.exit(f"{root}: has no packages/ to check")
+    violations = check(root)
+    for file, line, rule, what in violations:
+        print(f"{file}:{line}: [{rule}] {what}")
+    sys.exit(1 if violations else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""The checker must find each violation, and nothing in sources that keep the rules."""
+import tempfile
+import unittest
+from pathlib import Path
+
+from check_rules import check
+
+KERNEL = "KOKKOS_INLINE_FUNCTION Real f(const View<Real*>& x) const {\n  %s\n}\n"
+UNFINISHED_WORDS = ["TO" "DO", "FIX" "ME", "XX" "X", "HA" "CK"]
+
+BAD = [  # file, text, rule
+    ("packages/base/a.hpp", '#include "mesh/mesh.hpp"', "include-order"),
+    ("packages/solve/a.cpp", '#include "physics/bulk.hpp"', "include-order"),
+    ("packages/physics/a.cpp", '#  include "solve/newton.hpp"', "include-order"),
+    ("packages/laws/a.hpp", '#include "mesh/mesh.hpp"', "include-order"),
+    ("packages/stray/a.hpp", '#include "base/types.hpp"', "include-order"),
+    ("packages/model/a.cpp", "#include <NOX_Abstract_Group.H>", "solver-header"),
+    ("apps/sprekk/main.cpp", '#include "BelosLinearProblem.hpp"', "solver-header"),
+    ("packages/io/a.cpp", "void f() { g(MPI_COMM_WORLD); }", "host-only"),
+    ("packages/io/a.cpp", "void f() { MPI_Init(nullptr, nullptr); }", "host-only"),
+    ("packages/io/a.cpp", "void f() { Kokkos::initialize(); }", "host-only"),
+    ("packages/io/a.cpp", "void f() { std::exit(1); }", "host-only"),
+    ("packages/io/a.cpp", "void f() { exit (1); }", "host-only"),
+    ("packages/io/a.cpp", "void f() { std::abort(); }", "host-only"),
+    *[("packages/assembly/a.hpp", KERNEL % line, "kernel") for line in [
+        "std::vector<Real> y;", "if (x) { std::map<int, int> m; }", "std::string s;", "auto p = new Real[3];",
+        "malloc(3);", "std::cout << 1;", "auto p = x.data();", "return v->data ()[0];"]],
+    ("packages/assembly/a.cpp", "void g() {\n  each(n, KOKKOS_LAMBDA(int i) { y(i) = z.data()[i]; });\n}", "kernel"),
+    ("packages/assembly/a.hpp", "struct A {\n  KOKKOS_FUNCTION A(int n) : n_{n} { p_ = new int; }\n};", "kernel"),
+    ("packages/laws/a.hpp", "#define DEVICE KOKKOS_INLINE_FUNCTION\nDEVICE int f() { return *new int; }", "kernel"),
+    *[("packages/base/a.hpp", f"// {word}: later", "unfinished") for word in UNFINISHED_WORDS],
+    ("docs/guide.md", "see /wo" "rk/shared", "self-contained"),
+    ("tests/unit/a.cpp", "// an earlier ses" "sion", "self-contained"),
+    ("README.md", "is" "sue #3", "self-contained"),
+    ("packages/base/a.cpp", "int f() {\n  static int calls = 0;\n  return ++calls;\n}", "static-state"),
+    ("packages/base/a.cpp", "namespace {\n\nstd::vector<int> cache;\n\n}", "static-state"),
+    ("packages/base/a.cpp", "Real scale = 1;", "static-state"),
+    ("packages/base/a.hpp", "inline int counter{0};", "static-state"),
+    ("packages/base/a.hpp", "struct A {\n  static inline Map<int, Function<void()>> registry;\n};", "static-state"),
+    ("packages/base/a.cpp", "thread_local Real buffer[3];", "static-state"),
+    ("packages/base/a.cpp", "void f() {\n  static Thing thing(3);\n}", "static-state"),
+    ("packages/base/a.cpp", "int Thing::count = 0;", "static-state"),
+]
+
+GOOD = {
+    "packages/physics/a.cpp": '#include "physics/a.hpp"\n#include "laws/joint.hpp"\n#include <vector>\n',
+    "packages/solve/a.cpp": "#include <NOX_Solver_Generic.H>\n#include <MueLu.hpp>\n",
+    "packages/assembly/a.hpp": """
+// Not in kernels: std::vector, new, x.data(); and never exit(1) or std::abort.
+struct Gather {
+  KOKKOS_FUNCTION Real operator()(int i) const;
+  KOKKOS_INLINE_FUNCTION explicit Gather(int n) : n_{n}, m_{n} { renew(n); }
+  std::vector<Real> host() const { return std::vector<Real>(view.data(), view.data() + n_); }
+};
+void message() { throw Error("a new std::vector: exit(1)"); }
+bool on_exit_of(int f);
+""",
+    "packages/base/a.hpp": """
+static const int a = 1;
+static constexpr double b = 2;
+static inline int twice(int x) { return 2 * x; }
+const std::vector<std::string> names{"a"};
+constexpr Real pi = 3.14;
+inline constexpr int c = 3;
+struct A {
+  static A parse(const std::string& text, int n = 0);
+  static std::function<void()> make();
+  int member = 0;
+};
+enum class Side { minus, plus };
+using Pair = std::pair<int, int>;
+template class Box<double>;
+namespace fs = std::filesystem;
+int f(int x) {
+  auto lambda = [](int y) { return static_cast<int>(y); };
+  int local = lambda(x);
+  return local;
+}
+Real operator*(const A& a, const A& b) { return 0; }
+""",
+    "apps/sprekk/main.cpp": '#include "model/model.hpp"\nint main() { MPI_Init(0, 0); exit(0); }\n',
+    "docs/a.md": "The work is in tension; an issue of units. networks/x\n",
+}
+
+
+def violations(files):
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name)
+        (root / "packages").mkdir()
+        for path, text in files.items():
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(text + "\n", encoding="utf-8")
+        (root / "docs").mkdir(exist_ok=True)
+        (root / "docs/picture.png").write_bytes(b"\x89PNG\xff\xfe")
+        return check(root)
+
+
+class CheckRules(unittest.TestCase):
+    def test_every_violation_is_found(self):
+        for path, text, rule in BAD:
+            with self.subTest(path=path, text=text):
+                self.assertEqual([v[2] for v in violations({path: text})], [rule])
+
+    def test_line_is_named(self):
+        text = "/* two\nlines */\n\nvoid f() { exit(1); }"
+        self.assertEqual([v[:2] for v in violations({"packages/base/a.cpp": text})], [("packages/base/a.cpp", 4)])
+
+    def test_good_sources_pass(self):
+        self.assertEqual(violations(GOOD), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,63 @@
+#include "base/log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <sstream>
+#include <thread>
+
+#include "base/timer.hpp"
+
+namespace sprekk::base {
+namespace {
+
+std::string output(Log::Level level, bool terminal) {
+  const auto comm = Tpetra::getDefaultComm();
+  std::ostringstream out;
+  Log log(*comm, level, out, terminal);
+  log.info("step {}", 1);
+  log.progress("iteration {}", 2);
+  log.progress("iteration {}", 3);
+  log.warning("odd");
+  EXPECT_EQ(out.str().empty(), comm->getRank() != 0);
+  return comm->getRank() == 0 ? out.str() : "";
+}
+
+TEST(Log, prints_on_rank_0_and_shows_progress_on_terminals) {
+  if (Tpetra::getDefaultComm()->getRank() == 0) {
+    EXPECT_EQ(output(Log::Level::normal, false), "step 1\nwarning: odd\n");
+    EXPECT_EQ(output(Log::Level::normal, true), "step 1\niteration 2\r\x1b[Kiteration 3\r\x1b[Kwarning: odd\n");
+    EXPECT_EQ(output(Log::Level::quiet, true), "warning: odd\n");
+  } else {
+    output(Log::Level::normal, true);
+  }
+}
+
+TEST(Timers, add_up_phases_in_the_order_of_their_first_use) {
+  Timers timers;
+  for (int i = 0; i < 3; ++i) {
+    const auto outer = timers.scope("outer");
+    const auto inner = timers.scope("inner");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  { const auto last = timers.scope("last"); }
+  ASSERT_EQ(timers.phases().size(), 3u);
+  const auto &outer = timers.phases()[0], &inner = timers.phases()[1], &last = timers.phases()[2];
+  EXPECT_EQ(outer.name, "outer");
+  EXPECT_EQ(inner.name, "inner");
+  EXPECT_EQ(outer.count, 3);
+  EXPECT_EQ(last.count, 1);
+  EXPECT_GE(inner.seconds, 0.015);
+  EXPECT_GE(outer.seconds, inner.seconds);
+  EXPECT_LT(last.seconds, inner.seconds);
+}
+
+TEST(Memory, peak_grows_with_what_is_touched) {
+  const auto before = peak_memory_bytes();
+  const std::vector<char> block(before + (std::size_t(64) << 20), 1);
+  EXPECT_GE(peak_memory_bytes(), block.size());
+  EXPECT_GT(before, std::size_t(1) << 20);
+}
+
+}  // namespace
+}  // namespace sprekk::base

@@ -1,0 +1,73 @@
+#include "base/check.hpp"
+#include "io/json.hpp"
+#include "scratch.hpp"
+
+#include <nlohmann/json.hpp>
+#include <Tpetra_Core.hpp>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace sprekk::test {
+
+namespace fs = std::filesystem;
+
+TEST(Json, ReadsBackToTheSameBits) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::vector<double> values{
+      0.1, 1.0 / 3, -1e-300, 5e-324, std::numeric_limits<double>::max(), 123456789.123456789};
+  const nlohmann::json written{{"values", values}, {"name", "slip \"x\""}, {"n", 12345678901234LL}};
+  io::write_json(*comm, scratch / "results.json", written);
+  const auto read = nlohmann::json::parse(content(scratch / "results.json"));
+  EXPECT_EQ(read, written);
+  EXPECT_EQ(read["values"].get<std::vector<double>>(), values);
+  EXPECT_FALSE(fs::exists(scratch / "results.json.part"));
+}
+
+TEST(Json, FullDiskLeavesTheEarlierFile) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::string path = scratch / "results.json";
+  io::write_json(*comm, path, {{"step", 1}});
+  scratch.on_rank_0([&] { fs::create_symlink("/dev/full", path + ".part"); });
+  const auto message = error_of<Error>([&] { io::write_json(*comm, path, {{"step", 2}}); });
+  EXPECT_TRUE(contains(message, path)) << message;
+  EXPECT_TRUE(contains(message, "No space left")) << message;
+  EXPECT_EQ(nlohmann::json::parse(content(path))["step"], 1);
+  comm->barrier();                             // all have read
+  io::write_json(*comm, path, {{"step", 3}});  // nothing of the failure is in the way
+  EXPECT_EQ(nlohmann::json::parse(content(path))["step"], 3);
+}
+
+TEST(Json, MissingDirectoryIsAnErrorOnEveryRank) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::string path = scratch / "nowhere/results.json";
+  const auto message = error_of<Error>([&] { io::write_json(*comm, path, {}); });
+  EXPECT_TRUE(contains(message, path)) << message;
+  EXPECT_TRUE(contains(message, "No such file")) << message;
+}
+
+TEST(MakeDirectory, MakesParentsAndKeepsContent) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  io::make_directory(*comm, scratch / "a b/c");
+  EXPECT_TRUE(fs::is_directory(scratch / "a b/c"));
+  scratch.on_rank_0([&] { io::write_file(scratch / "a b/c/file", "text"); });
+  io::make_directory(*comm, scratch / "a b/c");
+  EXPECT_EQ(content(scratch / "a b/c/file"), "text");
+}
+
+TEST(MakeDirectory, FileInTheWayAndProc) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  scratch.on_rank_0([&] { io::write_file(scratch / "file", ""); });
+  for (const auto& path : {scratch / "file", scratch / "file/below", std::string("/proc/sprekk")}) {
+    const auto message = error_of<Error>([&] { io::make_directory(*comm, path); });
+    EXPECT_TRUE(contains(message, path + ": cannot be made a directory: ")) << message;
+  }
+}
+
+}  // namespace sprekk::test

@@ -1,0 +1,246 @@
+#include "mesh/distribute.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <set>
+
+#include "mesh/partition.hpp"
+#include "meshes.hpp"
+
+namespace sprekk::mesh::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Partition, UsesEveryPart) {
+  for (const auto& cell : all_cells) {
+    const auto mesh = make_box(crossed(cell));
+    for (int n : {1, 2, 3, 7, 12}) {
+      const auto part = partition(mesh, n);
+      ASSERT_EQ(static_cast<GlobalIndex>(part.size()), mesh.n_cells());
+      const std::set<int> used(part.begin(), part.end());
+      EXPECT_EQ(static_cast<int>(used.size()), n) << cell;
+      EXPECT_EQ(*used.begin(), 0);
+      EXPECT_EQ(*used.rbegin(), n - 1);
+      EXPECT_EQ(part, partition(mesh, n));
+    }
+  }
+}
+
+TEST(Partition, LeavesPartsEmptyWhereCellsAreFew) {
+  const auto mesh = make_box(unit_steps("quadrilateral", {2, 1}));
+  const auto part = partition(mesh, 5);
+  ASSERT_EQ(part.size(), 2u);
+  EXPECT_NE(part[0], part[1]);
+  for (int p : part) EXPECT_TRUE(0 <= p && p < 5);
+  EXPECT_THAT(error_of([&] { partition(mesh, 0); }), HasSubstr("at least one"));
+}
+
+TEST(Partition, SeesTheFracture) {
+  auto box = unit_steps("quadrilateral", {16, 2});
+  box.fractures["f"] = fracture({0, 1}, {16, 1});
+  const auto mesh = make_box(box);
+  const auto part = partition(mesh, 2);  // two edges are cut across, sixteen along the fracture
+  for (const auto& face : mesh.fracture_faces) EXPECT_EQ(part[face.cell[minus]], part[face.cell[plus]]);
+}
+
+std::vector<int> sum_over_ranks(const Comm& comm, const std::vector<int>& mine) {
+  std::vector<int> sum(mine.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), sum.data());
+  return sum;
+}
+
+void expect_one_owner_each(const GlobalMesh& global, const Mesh& mesh) {
+  std::vector<int> cell_owners(global.n_cells()), node_owners(global.n_nodes()),
+      face_owners(global.fracture_faces.size());
+  for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) ++cell_owners[mesh.cell_id[c]];
+  for (LocalIndex n = 0; n < mesh.n_owned_nodes; ++n) ++node_owners[mesh.node_id[n]];
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) ++face_owners[mesh.fracture_faces[f].id];
+  for (const auto& owners : {cell_owners, node_owners, face_owners})
+    EXPECT_EQ(sum_over_ranks(*mesh.comm, owners), std::vector<int>(owners.size(), 1));
+}
+
+/// Everything that the documentation of Mesh promises, by brute force on the global mesh.
+void expect_as_documented(const GlobalMesh& global, const std::vector<int>& part, const Mesh& mesh) {
+  const int rank = mesh.comm->getRank(), dim = global.dim(), npc = n_nodes(global.shape),
+            nfn = n_face_nodes(global.shape);
+  expect_one_owner_each(global, mesh);  // first, as it is collective and the assertions below may return
+  const auto nodes_of = [&](GlobalIndex c) {
+    return std::set<GlobalIndex>(&global.cells[c * npc], &global.cells[c * npc] + npc);
+  };
+
+  std::set<GlobalIndex> owned_cells, near, cells, nodes;
+  for (GlobalIndex c = 0; c < global.n_cells(); ++c)
+    if (part[c] == rank) {
+      owned_cells.insert(c);
+      for (auto n : nodes_of(c)) near.insert(n);
+    }
+  for (GlobalIndex c = 0; c < global.n_cells(); ++c)
+    for (auto n : nodes_of(c))
+      if (near.count(n)) cells.insert(c);
+  for (const auto& f : global.fracture_faces)
+    if (part[f.cell[minus]] == rank) cells.insert(f.cell[plus]);
+  for (auto c : cells)
+    for (auto n : nodes_of(c)) nodes.insert(n);
+
+  ASSERT_EQ(mesh.n_owned_cells, static_cast<LocalIndex>(owned_cells.size()));
+  EXPECT_TRUE(std::equal(owned_cells.begin(), owned_cells.end(), mesh.cell_id.begin()));
+  EXPECT_EQ(std::set<GlobalIndex>(mesh.cell_id.begin(), mesh.cell_id.end()), cells);
+  EXPECT_EQ(mesh.cell_id.size(), cells.size());
+  EXPECT_EQ(std::set<GlobalIndex>(mesh.node_id.begin(), mesh.node_id.end()), nodes);
+  EXPECT_EQ(mesh.node_id.size(), nodes.size());
+  ASSERT_EQ(mesh.coordinates.size(), mesh.node_id.size() * dim);
+  ASSERT_EQ(mesh.cells.size(), mesh.cell_id.size() * npc);
+
+  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+    EXPECT_EQ(mesh.cell_owner[c], part[mesh.cell_id[c]]);
+    EXPECT_EQ(mesh.cell_region[c], global.cell_region[mesh.cell_id[c]]);
+    for (int k = 0; k < npc; ++k)
+      EXPECT_EQ(mesh.node_id[mesh.cells[c * npc + k]], global.cells[mesh.cell_id[c] * npc + k]);
+  }
+  for (LocalIndex n = 0; n < mesh.n_nodes(); ++n) {
+    for (int i = 0; i < dim; ++i)
+      EXPECT_EQ(mesh.coordinates[n * dim + i], global.coordinates[mesh.node_id[n] * dim + i]);
+    int owner = mesh.comm->getSize();
+    for (GlobalIndex c = 0; c < global.n_cells(); ++c)
+      if (nodes_of(c).count(mesh.node_id[n])) owner = std::min(owner, part[c]);
+    EXPECT_EQ(owner == rank, n < mesh.n_owned_nodes);
+  }
+
+  std::set<GlobalIndex> expected_faces;
+  for (std::size_t f = 0; f < global.fracture_faces.size(); ++f)
+    for (auto c : global.fracture_faces[f].cell)
+      if (cells.count(c)) expected_faces.insert(f);
+  EXPECT_EQ(mesh.fracture_faces.size(), expected_faces.size());
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    const auto& original = global.fracture_faces.at(face.id);
+    EXPECT_TRUE(expected_faces.count(face.id));
+    EXPECT_EQ(face.fracture, original.fracture);
+    EXPECT_EQ(face.local_face, original.local_face);
+    EXPECT_EQ(part[original.cell[minus]] == rank, f < mesh.n_owned_fracture_faces);
+    for (int side : {minus, plus}) {
+      const bool present = cells.count(original.cell[side]);
+      ASSERT_EQ(face.cell[side] >= 0, present);
+      EXPECT_EQ(present ? mesh.cell_id[face.cell[side]] : original.cell[side], original.cell[side]);
+      EXPECT_TRUE(present || f >= mesh.n_owned_fracture_faces);
+      std::set<GlobalIndex> found, wanted;
+      for (int k = 0; k < 4; ++k) {
+        ASSERT_EQ(face.nodes[side][k] >= 0, present && k < nfn);
+        if (face.nodes[side][k] >= 0) found.insert(mesh.node_id[face.nodes[side][k]]);
+      }
+      for (auto n : nodes_of_face(global, original.cell[side], original.local_face[side]))
+        if (present && n >= 0) wanted.insert(n);
+      EXPECT_EQ(found, wanted);
+    }
+    for (int k = 0; k < nfn && face.cell[minus] >= 0 && face.cell[plus] >= 0; ++k)
+      for (int i = 0; i < dim; ++i)
+        EXPECT_EQ(mesh.coordinates[face.nodes[minus][k] * dim + i], mesh.coordinates[face.nodes[plus][k] * dim + i]);
+  }
+
+  std::multiset<std::array<GlobalIndex, 4>> boundary, expected_boundary;
+  for (const auto& f : mesh.boundary_faces)
+    boundary.insert({f.boundary, mesh.cell_id[f.cell], f.local_face, f.owned ? 1 : 0});
+  for (const auto& f : global.boundary_faces)
+    if (cells.count(f.cell)) expected_boundary.insert({f.boundary, f.cell, f.local_face, part[f.cell] == rank ? 1 : 0});
+  EXPECT_EQ(boundary, expected_boundary);
+
+  EXPECT_EQ(mesh.n_global_cells, global.n_cells());
+  EXPECT_EQ(mesh.n_global_nodes, global.n_nodes());
+  EXPECT_EQ(mesh.n_global_fracture_faces, static_cast<GlobalIndex>(global.fracture_faces.size()));
+  EXPECT_EQ(mesh.boundary_names, global.boundary_names);
+  EXPECT_EQ(mesh.fracture_names, global.fracture_names);
+  EXPECT_EQ(mesh.region_names, global.region_names);
+}
+
+TEST(Distribute, IsAsDocumentedForMetisParts) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    auto box = crossed(cell);
+    box.renumbering_seed = 5;
+    box.rotation = 20;
+    const auto global = make_box(box);
+    expect_as_documented(global, partition(global, comm->getSize()), *make_distributed(global, comm));
+  }
+}
+
+TEST(Distribute, IsAsDocumentedForScatteredAndSidedParts) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    const auto global = make_box(crossed(cell));
+    std::vector<int> scattered, sided;
+    for (GlobalIndex c = 0; c < global.n_cells(); ++c) {
+      scattered.push_back(static_cast<int>(c * c % 7) % comm->getSize());
+      sided.push_back(cell_centre(global, c)[1] > 2 ? comm->getSize() - 1 : 0);  // cut along fracture "a"; others empty
+    }
+    expect_as_documented(global, scattered, *distribute(global, scattered, comm));
+    expect_as_documented(global, sided, *distribute(global, sided, comm));
+  }
+}
+
+TEST(Distribute, RanksMayOwnNothing) {
+  const auto comm = Tpetra::getDefaultComm();
+  const auto single = make_box(unit_steps("hexahedron", {1, 1, 1}));
+  const auto mesh = make_distributed(single, comm);
+  expect_as_documented(single, {0}, *mesh);
+  if (comm->getRank() > 0) {
+    EXPECT_EQ(mesh->n_cells(), 0);
+    EXPECT_EQ(mesh->n_nodes(), 0);
+  }
+}
+
+TEST(Distribute, FramesAreOrthonormalAndFollowTheConvention) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells)
+    for (Real angle : {0.0, 30.0, 90.0}) {
+      auto box = crossed(cell);
+      box.rotation = angle;
+      box.rotation_axis = {1, 0, 0};
+      const auto global = make_box(box);
+      const auto mesh = make_distributed(global, comm);
+      for (const auto& face : mesh->fracture_faces) {
+        const auto& [n, t1, t2] = face.frame;
+        const auto& original = global.fracture_faces[face.id];
+        const Vector expected = normal(global, original);
+        EXPECT_LT(norm(n - expected), 1e-14);
+        if (global.dim() == 2) {
+          EXPECT_EQ(t1, (Vector{n[1], -n[0], 0}));
+          EXPECT_NEAR(norm(n), 1, 1e-15);
+          EXPECT_EQ(face.area, norm(area_vector(global, original.cell[minus], original.local_face[minus])));
+          EXPECT_NEAR(face.area, 1, 1e-14);
+        } else {
+          for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) EXPECT_NEAR(dot(face.frame[i], face.frame[j]), i == j, 1e-14);
+          const Vector a = std::abs(n[2]) < 0.9 ? Vector{0, 0, 1} : Vector{1, 0, 0};
+          EXPECT_NEAR(dot(t1, a), 0, 1e-15);
+          EXPECT_GT(dot(t1, cross(a, n)), 0);
+          EXPECT_GT(dot(t2, a), 0);
+          EXPECT_NEAR(face.area, cell == "tetrahedron" ? 0.5 : 1, 1e-14);
+        }
+        EXPECT_EQ(face.centre, face_centre(global, original.cell[minus], original.local_face[minus]));
+      }
+    }
+}
+
+TEST(Distribute, Errors) {
+  const auto comm = Tpetra::getDefaultComm();
+  auto box = unit_steps("quadrilateral", {4, 2});
+  box.fractures["f"] = fracture({0, 1}, {4, 1});
+  auto mesh = make_box(box);
+  std::vector<int> part(8, 0);
+  part[3] = comm->getSize();
+  EXPECT_THAT(error_of([&] { distribute(mesh, part, comm); }), HasSubstr("cell 3 is in part"));
+  part.pop_back();
+  EXPECT_THAT(error_of([&] { distribute(mesh, part, comm); }), HasSubstr("7 parts for 8 cells"));
+  mesh.coordinates[mesh.coordinates.size() - 1] += 0.1;  // a copy that the split has made
+  EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("do not coincide"));
+  mesh.coordinates.insert(mesh.coordinates.end(), {0, 0});
+  EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("belongs to no cell"));
+}
+
+}  // namespace
+}  // namespace sprekk::mesh::testing

@@ -1,0 +1,147 @@
+#include "dense.hpp"
+#include "solve/condensed_solve.hpp"
+#include "solve/small_lu.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+namespace sprekk::test {
+namespace {
+
+using solve::CondensedSolve;
+using solve::LinearSolverOptions;
+using solve::LocalElimination;
+
+std::vector<Real> some_values(std::size_t n) {
+  std::vector<Real> values(n);
+  for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(3.7 * i + 1);
+  return values;
+}
+
+/// A state with open and closed faces.
+BlockVector mixed_state(const GridProblem& problem) {
+  auto x = problem.zero();
+  scatter(some_values(gather(x).size()), x);
+  return x;
+}
+
+void expect_equal_solutions(const GridOptions& options) {
+  GridProblem problem(Tpetra::getDefaultComm(), options);
+  problem.jacobian(mixed_state(problem));
+  auto b = problem.zero(), x = problem.zero();
+  const auto values = some_values(gather(b).size());
+  scatter(values, b);
+  CondensedSolve solve(problem, {});
+  solve.update();
+  const auto report = solve.solve(b, x, 1e-12);
+  ASSERT_TRUE(report.converged) << report.reason;
+  const auto exact = solve_dense(gather_matrix(problem), {values.begin(), values.end()});
+  const auto found = gather(x);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], exact[i], 1e-11) << "unknown " << i;
+}
+
+TEST(LocalElimination, SolvesTheFullSystem2D) { expect_equal_solutions({}); }
+
+TEST(LocalElimination, SolvesTheFullSystem3D) {
+  GridOptions options;
+  options.d = 3;
+  expect_equal_solutions(options);
+}
+
+TEST(LocalElimination, SolvesWithoutGroups) {
+  GridOptions options;
+  options.faces = false;
+  expect_equal_solutions(options);
+}
+
+TEST(LocalElimination, CondensedMatrixIsSymmetricWithZeroedConstraints) {
+  GridProblem problem(Tpetra::getDefaultComm(), {});
+  problem.jacobian(mixed_state(problem));
+  LocalElimination elimination(problem);
+  ASSERT_EQ(elimination.update(problem).failure, "");
+  const auto j = elimination.condensed(0, 0);
+  Vector x(j->getDomainMap()), y(j->getDomainMap()), jx(j->getRangeMap()), jy(j->getRangeMap());
+  x.randomize();
+  y.randomize();
+  j->apply(x, jx);
+  j->apply(y, jy);
+  EXPECT_NEAR(y.dot(jx), x.dot(jy), 1e-12 * x.norm2() * jy.norm2());
+  const auto local = j->getLocalMatrixHost();
+  const auto constrained = problem.constrained(0);
+  for (LocalIndex row = 0; row < local.numRows(); ++row)
+    for (auto k = local.graph.row_map(row); constrained(row) && k < local.graph.row_map(row + 1); ++k) {
+      const bool diagonal = j->getColMap()->getGlobalElement(local.graph.entries(k)) ==
+                            j->getRowMap()->getGlobalElement(row);
+      if (diagonal)
+        EXPECT_GT(local.values(k), 0);
+      else
+        EXPECT_EQ(local.values(k), 0);
+    }
+}
+
+TEST(LocalElimination, KnowsWhatChanged) {
+  GridProblem problem(Tpetra::getDefaultComm(), {});
+  LocalElimination elimination(problem);
+  auto x = problem.zero();
+  problem.jacobian(x);
+  EXPECT_TRUE(elimination.update(problem).changed);
+  problem.jacobian(x);
+  EXPECT_FALSE(elimination.update(problem).changed);
+  problem.jacobian(mixed_state(problem));
+  EXPECT_TRUE(elimination.update(problem).changed);
+}
+
+TEST(LocalElimination, NamesASingularEntity) {
+  GridOptions options;
+  options.singular_face = 3;
+  GridProblem problem(Tpetra::getDefaultComm(), options);
+  auto x = problem.zero();
+  x[2]->putScalar(1);  // open
+  problem.jacobian(x);
+  CondensedSolve solve(problem, {});
+  solve.update();
+  auto dx = problem.zero();
+  const auto report = solve.solve(x, dx, 1e-10);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.reason, "local group 'contact': the matrix of entity 3 is singular");
+  x[2]->putScalar(-1);  // closed: regular, and the solver recovers
+  problem.jacobian(x);
+  solve.update();
+  EXPECT_TRUE(solve.solve(x, dx, 1e-10).converged);
+}
+
+TEST(SmallLu, TinyComponentsAreAccurate) {
+  // rows: two balances with bubble stiffness 1e10, two laws; normal (0, 2) and tangential (1, 3) do not couple
+  const int m = 4;
+  const Real a[m * m] = {1e10, 0, 0.3, 0, 0, 2e10, 0, 0.7, -3e9, 0, 1e-1, 0, 0, -7e9, 0, 1};
+  const Real b[m] = {1e7, 1e-4, -2e7, 3e-5};
+  Dense dense(m, std::vector<long double>(m));
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) dense[i][j] = a[i * m + j];
+  const auto exact = solve_dense(dense, {b, b + m});
+  Real lu[m * m], x[m];
+  std::copy(a, a + m * m, lu);
+  std::copy(b, b + m, x);
+  const Real scale[m] = {1e-3, 1e-3, 1e7, 1e7};
+  int pivot[m];
+  ASSERT_TRUE(solve::lu_factor(m, lu, pivot, scale));
+  solve::lu_solve_refined(m, a, lu, pivot, x);
+  for (int i = 0; i < m; ++i) EXPECT_NEAR(x[i] / Real(exact[i]), 1, 1e-14) << i;
+}
+
+TEST(SmallLu, FindsRankDeficiencyAtAnyScale) {
+  for (Real size : {1e-20, 1.0, 1e20}) {
+    Real a[9] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+    for (Real& value : a) value *= size;
+    const Real scale[3] = {1, 1, 1};
+    int pivot[3];
+    EXPECT_FALSE(solve::lu_factor(3, a, pivot, scale));
+    Real regular[9] = {1, 2, 3, 4, 5, 6, 7, 8, 10};
+    for (Real& value : regular) value *= size;
+    EXPECT_TRUE(solve::lu_factor(3, regular, pivot, scale));
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::test

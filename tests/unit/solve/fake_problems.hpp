@@ -1,0 +1,311 @@
+// Small BlockProblems to solve.
+#pragma once
+
+#include "fields/block_problem.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace sprekk::test {
+
+using fields::Block;
+using fields::BlockMatrix;
+using fields::BlockProblem;
+using fields::BlockVector;
+using fields::CrsMatrix;
+using fields::LocalGroup;
+using fields::Map;
+using fields::Measure;
+using fields::MultiVector;
+using fields::Vector;
+
+inline RCP<const Map> make_map(const std::vector<GlobalIndex>& indices, const RCP<const Comm>& comm) {
+  const auto n = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  return rcp(new Map(n, Teuchos::arrayView(indices.data(), indices.size()), 0, comm));
+}
+
+/// Adds to a distributed matrix by (global row, global column); rows of other ranks are ignored.
+class Filler {
+ public:
+  Filler(const RCP<const Map>& rows, const RCP<const Map>& columns)
+      : columns_(columns), matrix_(rcp(new CrsMatrix(rows, 64))) {}
+  void add(GlobalIndex i, GlobalIndex j, Real value) {
+    if (matrix_->getRowMap()->isNodeGlobalElement(i))
+      matrix_->insertGlobalValues(i, Teuchos::tuple<GlobalIndex>(j), Teuchos::tuple<Real>(value));
+  }
+  RCP<CrsMatrix> done() {
+    matrix_->fillComplete(columns_, matrix_->getRowMap());
+    return matrix_;
+  }
+
+ private:
+  RCP<const Map> columns_;
+  RCP<CrsMatrix> matrix_;
+};
+
+struct GridOptions {
+  int d = 2, nx = 5, ny = 6;
+  bool faces = true, constraints = true;
+  int singular_face = -1;  ///< a face whose bubble has no stiffness
+};
+
+/// Springs on a grid of nodes, cut by a row of faces between two rows of nodes: 'displacement' u at nodes; at faces a
+/// 'bubble' a and a 'traction' l, with jump w = u_p - u_q + beta a:
+///   r_u = K u + l at p, -l at q, eta a at p, -eta a at the node above;  r_a = alpha a + eta (u_p - u_above) + beta l
+///   r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
+/// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are more, has
+/// no nodes; faces live elsewhere than their nodes.
+class GridProblem : public BlockProblem {
+ public:
+  static constexpr Real alpha = 3, eta = 0.4, beta = 0.7, c = 5, kt = 0.5;
+
+  GridProblem(const RCP<const Comm>& comm, const GridOptions& options) : comm_(comm), o_(options) {
+    const int d = o_.d, size = comm->getSize(), rank = comm->getRank(), with_nodes = std::max(1, size - 1);
+    std::vector<GlobalIndex> nodes, faces;
+    std::vector<GlobalIndex> unknowns, face_unknowns;
+    for (int n = 0; n < o_.nx * o_.ny; ++n)
+      if (n / 3 % with_nodes == rank)
+        for (int j = 0; j < d; ++j) unknowns.push_back(n * d + j);
+    for (int f = 0; o_.faces && f < o_.nx; ++f)
+      if ((f + 1) % size == rank)
+        for (int j = 0; j < d; ++j) face_unknowns.push_back(f * d + j);
+    const auto u = make_map(unknowns, comm), z = make_map(face_unknowns, comm);
+    add_node_block(u);
+    if (o_.faces) {
+      blocks_.push_back({"bubble", z, d, 1, 1, Teuchos::null, Teuchos::null});
+      blocks_.push_back({"traction", z, d, 1, 1, Teuchos::null, Teuchos::null});
+      groups_.push_back({"contact", {1, 2}});
+    }
+    constrained_ = View<char*>("constrained", unknowns.size());
+    for (std::size_t i = 0; i < unknowns.size(); ++i) constrained_(i) = o_.constraints && row_of(unknowns[i] / d) >= 0;
+    fill_matrices();
+  }
+
+  int p(int face) const { return (o_.ny / 2) * o_.nx + face; }
+  int q(int face) const { return (o_.ny / 2 - 1) * o_.nx + face; }
+  Real top(int i) const { return std::sin(6.3 * (i + 0.6) / o_.nx) + 0.1; }
+  int n_jacobians = 0, n_commits = 0;
+
+  RCP<const Comm> comm() const override { return comm_; }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  const std::vector<LocalGroup>& local_groups() const override { return groups_; }
+  void set_time(Real t, Real) override { t_ = t; }
+  void commit(const BlockVector&) override { ++n_commits; }
+
+  void raw_residual(const BlockVector& x, BlockVector& r) override {
+    stiffness_->apply(*x[0], *r[0]);
+    if (!o_.faces) return;
+    matrix_(0, 1)->apply(*x[1], *r[0], Teuchos::NO_TRANS, 1, 1);
+    matrix_(0, 2)->apply(*x[2], *r[0], Teuchos::NO_TRANS, 1, 1);
+    const auto w = jump(*x[0]);
+    matrix_(1, 0)->apply(*x[0], *r[1]);
+    for (LocalIndex i = 0; i < LocalIndex(w->getLocalLength()); ++i) {
+      const Real a = x[1]->getData()[i], l = x[2]->getData()[i], jump = w->getData()[i] + beta * a;
+      r[1]->sumIntoLocalValue(i, alpha_of(i) * a + beta * l);
+      r[2]->replaceLocalValue(i, i % o_.d == 0 ? l - std::min(l + c * jump, 0.0) : l - kt * jump);
+    }
+  }
+  void residual(const BlockVector& x, BlockVector& r) override {
+    raw_residual(x, r);
+    for (LocalIndex i = 0; i < LocalIndex(constrained_.extent(0)); ++i)
+      if (constrained_(i)) r[0]->replaceLocalValue(i, x[0]->getData()[i] - prescribed(i));
+  }
+  void jacobian(const BlockVector& x) override {
+    ++n_jacobians;
+    if (!o_.faces) return;
+    const auto w = jump(*x[0]);
+    const auto lu = matrix_(2, 0)->getLocalMatrixHost(), la = matrix_(2, 1)->getLocalMatrixHost(),
+               ll = matrix_(2, 2)->getLocalMatrixHost();
+    const auto bu = jump_->getLocalMatrixHost();
+    for (LocalIndex i = 0; i < LocalIndex(w->getLocalLength()); ++i) {
+      const Real l = x[2]->getData()[i], jump = w->getData()[i] + beta * x[1]->getData()[i];
+      const bool normal = i % o_.d == 0, open = l + c * jump > 0;
+      const Real dr_dw = normal ? (open ? 0 : -c) : -kt;
+      ll.values(i) = normal && !open ? 0 : 1;
+      la.values(i) = dr_dw * beta;
+      for (int k = 0; k < 2; ++k) lu.values(2 * i + k) = dr_dw * bu.values(2 * i + k);
+    }
+  }
+  const BlockMatrix& matrix() const override { return matrix_; }
+  bool symmetric() const override { return true; }
+  ConstView<char*> constrained(int block) const override {
+    return block == 0 ? ConstView<char*>(constrained_) : ConstView<char*>();
+  }
+  std::vector<Measure> measures(const BlockVector&, const BlockVector& r) override {
+    std::vector<Measure> all;
+    for (std::size_t b = 0; b < r.size(); ++b) all.push_back({blocks_[b].name, r[b]->norm2()});
+    return all;
+  }
+  Real merit(const BlockVector&, const BlockVector& r) override {
+    Real sum = 0;
+    for (const auto& v : r) sum += std::pow(v->norm2(), 2);
+    return sum;
+  }
+  std::size_t state_hash(const BlockVector& x) override {
+    if (!o_.faces) return 0;
+    const auto w = jump(*x[0]);
+    long long here = 0, all = 0;
+    for (LocalIndex i = 0; i < LocalIndex(w->getLocalLength()); i += o_.d)
+      if (x[2]->getData()[i] + c * (w->getData()[i] + beta * x[1]->getData()[i]) > 0)
+        here += 1LL << (w->getMap()->getGlobalElement(i) / o_.d % 60);
+    Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 1, &here, &all);
+    return all;
+  }
+  BlockVector zero() const {
+    BlockVector x;
+    for (const auto& block : blocks_) x.push_back(rcp(new Vector(block.map)));
+    return x;
+  }
+  RCP<Vector> jump(const Vector& u) const {
+    const auto w = rcp(new Vector(blocks_[2].map));
+    jump_->apply(u, *w);
+    return w;
+  }
+
+ private:
+  /// -1 inside, 0 for the fixed row, 1 for the moved one.
+  int row_of(GlobalIndex node) const {
+    const int j = node / o_.nx;
+    return j == 0 ? 0 : j == o_.ny - 1 ? 1 : -1;
+  }
+  Real prescribed(LocalIndex i) const {
+    const GlobalIndex g = blocks_[0].map->getGlobalElement(i);
+    return g % o_.d == 0 && row_of(g / o_.d) == 1 ? t_ * top(g / o_.d % o_.nx) : 0;
+  }
+  Real alpha_of(LocalIndex i) const {
+    return blocks_[1].map->getGlobalElement(i) / o_.d == o_.singular_face ? 0 : alpha;
+  }
+
+  void add_node_block(const RCP<const Map>& u) {
+    const int d = o_.d, n = u->getNodeNumElements();
+    std::vector<GlobalIndex> nodes;
+    for (int i = 0; i < n; i += d) nodes.push_back(u->getGlobalElement(i) / d);
+    const auto coordinates = rcp(new MultiVector(make_map(nodes, comm_), d));
+    const auto modes = rcp(new MultiVector(u, d));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      coordinates->replaceLocalValue(i, 0, Real(nodes[i] % o_.nx));
+      coordinates->replaceLocalValue(i, 1, Real(nodes[i] / o_.nx));
+      for (int j = 0; j < d; ++j) modes->replaceLocalValue(i * d + j, j, 1.0);
+    }
+    blocks_.push_back({"displacement", u, d, 1, 1, coordinates, modes});
+  }
+
+  void fill_matrices() {
+    const int d = o_.d;
+    const auto u = blocks_[0].map;
+    Filler k(u, u);
+    const auto spring = [&](int m, int n) {
+      for (int i = 0; i < d; ++i)
+        for (int j = 0; j < d; ++j) {
+          const Real s = i == j ? 2 : 0.3;
+          k.add(m * d + i, m * d + j, s);
+          k.add(n * d + i, n * d + j, s);
+          k.add(m * d + i, n * d + j, -s);
+          k.add(n * d + i, m * d + j, -s);
+        }
+    };
+    for (int j = 0; j < o_.ny; ++j)
+      for (int i = 0; i < o_.nx; ++i) {
+        if (i + 1 < o_.nx) spring(j * o_.nx + i, j * o_.nx + i + 1);
+        if (j + 1 < o_.ny && !(o_.faces && j + 1 == o_.ny / 2)) spring(j * o_.nx + i, (j + 1) * o_.nx + i);
+      }
+    stiffness_ = k.done();
+    matrix_ = BlockMatrix(blocks_.size());
+    matrix_(0, 0) = stiffness_;
+    if (!o_.faces) return;
+    const auto z = blocks_[1].map;
+    Filler ua(u, z), ul(u, z), au(z, u), aa(z, z), al(z, z), lu(z, u), la(z, z), ll(z, z), jump(z, u);
+    for (int f = 0; f < o_.nx; ++f)
+      for (int j = 0; j < d; ++j) {
+        const GlobalIndex i = f * d + j;
+        for (int side : {1, -1}) {
+          const GlobalIndex n = (side == 1 ? p(f) : q(f)) * d + j, m = (side == 1 ? p(f) : p(f) + o_.nx) * d + j;
+          ua.add(m, i, side * eta);
+          au.add(i, m, side * eta);
+          ul.add(n, i, side);
+          lu.add(i, n, side);
+          jump.add(i, n, side);
+        }
+        aa.add(i, i, f == o_.singular_face ? 0 : alpha);
+        al.add(i, i, beta);
+        la.add(i, i, beta);
+        ll.add(i, i, 1);
+      }
+    matrix_(0, 1) = ua.done();
+    matrix_(0, 2) = ul.done();
+    matrix_(1, 0) = au.done();
+    matrix_(1, 1) = aa.done();
+    matrix_(1, 2) = al.done();
+    matrix_(2, 0) = lu.done();
+    matrix_(2, 1) = la.done();
+    matrix_(2, 2) = ll.done();
+    jump_ = jump.done();
+  }
+
+  RCP<const Comm> comm_;
+  GridOptions o_;
+  std::vector<Block> blocks_;
+  std::vector<LocalGroup> groups_;
+  View<char*> constrained_;
+  RCP<CrsMatrix> stiffness_, jump_;
+  BlockMatrix matrix_;
+  Real t_ = 0;
+};
+
+/// n independent copies of f(x, t, dt) = 0, the i-th on rank i % size.
+class ScalarProblem : public BlockProblem {
+ public:
+  using Function = std::function<Real(Real x, Real t, Real dt)>;
+
+  ScalarProblem(const RCP<const Comm>& comm, int n, Function f, Function df_dx)
+      : comm_(comm), f_(std::move(f)), df_(std::move(df_dx)), matrix_(1) {
+    std::vector<GlobalIndex> mine;
+    for (int i = comm->getRank(); i < n; i += comm->getSize()) mine.push_back(i);
+    const auto map = make_map(mine, comm);
+    blocks_.push_back({"x", map, 1, 1, 1, Teuchos::null, Teuchos::null});
+    Filler diagonal(map, map);
+    for (auto i : mine) diagonal.add(i, i, 1);
+    matrix_(0, 0) = diagonal.done();
+  }
+
+  std::vector<Real> committed_times;
+
+  RCP<const Comm> comm() const override { return comm_; }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  const std::vector<LocalGroup>& local_groups() const override { return groups_; }
+  void set_time(Real t, Real dt) override { t_ = t, dt_ = dt; }
+  void commit(const BlockVector&) override { committed_times.push_back(t_); }
+  void residual(const BlockVector& x, BlockVector& r) override { raw_residual(x, r); }
+  void raw_residual(const BlockVector& x, BlockVector& r) override {
+    for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
+      r[0]->replaceLocalValue(i, f_(x[0]->getData()[i], t_, dt_));
+  }
+  void jacobian(const BlockVector& x) override {
+    const auto local = matrix_(0, 0)->getLocalMatrixHost();
+    for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) local.values(i) = df_(x[0]->getData()[i], t_, dt_);
+  }
+  const BlockMatrix& matrix() const override { return matrix_; }
+  bool symmetric() const override { return true; }
+  ConstView<char*> constrained(int) const override { return {}; }
+  std::vector<Measure> measures(const BlockVector&, const BlockVector& r) override { return {{"r", r[0]->normInf()}}; }
+  Real merit(const BlockVector&, const BlockVector& r) override { return std::pow(r[0]->norm2(), 2); }
+  std::size_t state_hash(const BlockVector&) override { return 0; }
+  BlockVector constant(Real value) const {
+    BlockVector x{rcp(new Vector(blocks_[0].map))};
+    x[0]->putScalar(value);
+    return x;
+  }
+
+ private:
+  RCP<const Comm> comm_;
+  Function f_, df_;
+  std::vector<Block> blocks_;
+  std::vector<LocalGroup> groups_;
+  BlockMatrix matrix_;
+  Real t_ = 0, dt_ = 0;
+};
+
+}  // namespace sprekk::test

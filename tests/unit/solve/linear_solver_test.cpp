@@ -1,0 +1,176 @@
+#include "base/check.hpp"
+#include "dense.hpp"
+#include "solve/condensed_solve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+namespace sprekk::test {
+namespace {
+
+using solve::CondensedSolve;
+using solve::LinearSolverOptions;
+
+/// Builds A x = b with a known x and solves it.
+void expect_solved(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric, solve::LinearSolver& solver) {
+  ASSERT_EQ(solver.setup(matrix, block, symmetric), "");
+  for (int again = 0; again < 2; ++again) {
+    Vector exact(block.map), b(block.map), x(block.map);
+    for (std::size_t i = 0; i < exact.getLocalLength(); ++i)
+      exact.replaceLocalValue(i, std::cos(0.1 * block.map->getGlobalElement(i)));
+    matrix->apply(exact, b);
+    const auto report = solver.solve(b, x, 1e-12);
+    ASSERT_TRUE(report.converged) << report.reason;
+    EXPECT_LE(report.residual, 1e-10);
+    x.update(-1, exact, 1);
+    EXPECT_LE(x.normInf(), 1e-9);
+    matrix->resumeFill();  // other values on the same graph
+    matrix->scale(2);
+    matrix->fillComplete(matrix->getDomainMap(), matrix->getRangeMap());
+    ASSERT_EQ(solver.setup(matrix, block, symmetric), "");
+  }
+}
+
+/// The constrained grid as one matrix.
+struct Grid {
+  explicit Grid(int n, int d = 2) : problem(Tpetra::getDefaultComm(), {d, n, n, false, true, -1}) {
+    solve::LocalElimination elimination(problem);
+    elimination.update(problem);
+    matrix = rcp(new CrsMatrix(*elimination.condensed(0, 0), Teuchos::Copy));
+  }
+  GridProblem problem;
+  RCP<CrsMatrix> matrix;
+};
+
+TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
+  for (bool symmetric : {true, false}) {
+    Grid grid(12);
+    if (!symmetric) {
+      Vector scale(grid.matrix->getRowMap());
+      for (std::size_t i = 0; i < scale.getLocalLength(); ++i)
+        scale.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
+      grid.matrix->leftScale(scale);
+    }
+    const auto solver = solve::make_direct_solver({});
+    expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
+  }
+}
+
+TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
+  const auto comm = Tpetra::getDefaultComm();
+  const auto map = make_map(comm->getRank() == comm->getSize() - 1 ? std::vector<GlobalIndex>{0, 1, 2}
+                                                                    : std::vector<GlobalIndex>{}, comm);
+  Filler fill(map, map);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) fill.add(i, j, i == j ? 4 : i + 0.5 * j);
+  const auto solver = solve::make_direct_solver({});
+  expect_solved(fill.done(), {"few", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false, *solver);
+}
+
+TEST(DirectSolver, ReportsASingularMatrix) {
+  for (bool structural : {true, false}) {
+    const auto comm = Tpetra::getDefaultComm();
+    std::vector<GlobalIndex> mine;
+    for (int i = comm->getRank(); i < 6; i += comm->getSize()) mine.push_back(i);
+    const auto map = make_map(mine, comm);
+    Filler fill(map, map);
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) fill.add(i, j, structural ? (j < 3) : i * 6 + j);  // rank 1 or 2
+    const auto matrix = fill.done();
+    const auto solver = solve::make_direct_solver({});
+    const std::string failure = solver->setup(matrix, {"s", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false);
+    Vector b(map), x(map);
+    for (std::size_t i = 0; i < b.getLocalLength(); ++i) b.replaceLocalValue(i, std::cos(map->getGlobalElement(i)));
+    const auto report = solver->solve(b, x, 1e-10);
+    EXPECT_FALSE(report.converged);
+    EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
+  }
+}
+
+TEST(DirectSolver, RefusesUnknownParameters) {
+  Grid grid(4);
+  Teuchos::ParameterList list;
+  list.set("ICNTL(99)", 1);
+  EXPECT_THROW(solve::make_direct_solver(list)->setup(grid.matrix, grid.problem.blocks()[0], true), Error);
+}
+
+TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
+  for (bool symmetric : {true, false}) {
+    Grid grid(48);
+    LinearSolverOptions options;
+    const auto solver = solve::make_iterative_solver(options, grid.problem.blocks()[0]);
+    expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
+  }
+}
+
+TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
+  for (int n : {32, 64}) {
+    Grid grid(n);
+    const auto solver = solve::make_iterative_solver({}, grid.problem.blocks()[0]);
+    ASSERT_EQ(solver->setup(grid.matrix, grid.problem.blocks()[0], true), "");
+    Vector b(grid.matrix->getRangeMap()), x(grid.matrix->getDomainMap());
+    b.putScalar(1);
+    const auto report = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(report.converged) << report.reason;
+    EXPECT_LE(report.iterations, 25);
+  }
+}
+
+TEST(IterativeSolver, SolvesLessThanACoarseLevel) {
+  Grid grid(4);
+  const auto solver = solve::make_iterative_solver({}, grid.problem.blocks()[0]);
+  expect_solved(grid.matrix, grid.problem.blocks()[0], true, *solver);
+}
+
+TEST(IterativeSolver, ReportsWhatDidNotConverge) {
+  Grid grid(32);
+  LinearSolverOptions options;
+  options.belos.set("Maximum Iterations", 2);
+  const auto solver = solve::make_iterative_solver(options, grid.problem.blocks()[0]);
+  ASSERT_EQ(solver->setup(grid.matrix, grid.problem.blocks()[0], true), "");
+  Vector b(grid.matrix->getRangeMap()), x(grid.matrix->getDomainMap());
+  b.putScalar(1);
+  const auto report = solver->solve(b, x, 1e-10);
+  EXPECT_FALSE(report.converged);
+  EXPECT_NE(report.reason.find("after 2 iterations"), std::string::npos) << report.reason;
+}
+
+TEST(IterativeSolver, AggregatesByTheBulkAndSolvesContact) {
+  GridProblem problem(Tpetra::getDefaultComm(), {2, 40, 40, true, true, -1});
+  LinearSolverOptions options;
+  options.type = "iterative";
+  CondensedSolve solve(problem, options);
+  auto x = problem.zero(), b = problem.zero(), dx = problem.zero(), r = problem.zero();
+  for (Real state : {1.0, -1.0, 1.0}) {  // all open, closed, open again on the same hierarchy
+    x[2]->putScalar(state);
+    problem.jacobian(x);
+    solve.update();
+    for (auto& v : b) v->putScalar(1);
+    const auto report = solve.solve(b, dx, 1e-10);
+    ASSERT_TRUE(report.converged) << report.reason;
+    EXPECT_LE(report.iterations, 40);
+    problem.matrix().apply(dx, r);
+    for (std::size_t block = 0; block < r.size(); ++block)
+      for (std::size_t i = 0; i < r[block]->getLocalLength(); ++i)
+        if (block > 0 || !problem.constrained(0)(i)) {
+          EXPECT_NEAR(r[block]->getData()[i], 1, 1e-7);
+        }
+  }
+  EXPECT_EQ(solve.n_setups(), 3);
+}
+
+TEST(MakeLinearSolver, ChoosesBySizeAndSaysWhy) {
+  Grid grid(6);
+  LinearSolverOptions options;
+  options.direct_limit_2d = 72;
+  EXPECT_EQ(make_linear_solver(options, grid.problem.blocks()[0]).reason,
+            "direct: 2D with 72 unknowns; direct up to 72");
+  options.direct_limit_2d = 71;
+  const auto chosen = make_linear_solver(options, grid.problem.blocks()[0]);
+  EXPECT_EQ(chosen.reason, "iterative: 2D with 72 unknowns; direct up to 71");
+  EXPECT_NE(chosen.describe().find("smoother: type"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sprekk::test

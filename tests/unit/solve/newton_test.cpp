@@ -1,0 +1,238 @@
+#include "base/parameters.hpp"
+#include "dense.hpp"
+#include "solve/condensed_solve.hpp"
+#include "solve/thyra_model.hpp"
+#include "solve/time_stepping.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+#include <limits>
+
+namespace sprekk::test {
+namespace {
+
+using solve::Newton;
+using solve::NewtonOptions;
+using solve::TimeStepper;
+
+TEST(Newton, SolvesContact) {
+  for (const char* type : {"direct", "iterative"}) {
+    GridProblem problem(Tpetra::getDefaultComm(), {2, 80, 8, true, true, -1});
+    NewtonOptions options;
+    options.linear_solver.type = type;
+    Newton newton(problem, options);
+    auto x = problem.zero();
+    problem.set_time(1, 1);
+    const auto report = newton.solve(x);
+    ASSERT_TRUE(report.converged) << report.reason;
+    EXPECT_GE(report.iterations, 2);
+    EXPECT_LE(report.iterations, 12);
+    EXPECT_EQ(int(report.history.size()), report.iterations + 1);
+    // complementarity, checked without the residual; both states occur
+    const auto w = problem.jump(*x[0]);
+    int here[2] = {0, 0}, all[2];
+    for (std::size_t i = 0; i < w->getLocalLength(); i += 2) {
+      const Real l = x[2]->getData()[i], jump = w->getData()[i] + GridProblem::beta * x[1]->getData()[i];
+      EXPECT_LE(l, 1e-9);
+      EXPECT_GE(jump, -1e-9);
+      EXPECT_NEAR(l * jump, 0, 1e-9);
+      ++here[l < -1e-6];
+    }
+    Teuchos::reduceAll(*problem.comm(), Teuchos::REDUCE_SUM, 2, here, all);
+    EXPECT_GT(all[0], 0);
+    EXPECT_GT(all[1], 0);
+    // prescribed values are exact
+    for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) {
+      const auto g = x[0]->getMap()->getGlobalElement(i);
+      if (g / 2 / 80 == 7) {
+        EXPECT_DOUBLE_EQ(x[0]->getData()[i], g % 2 == 0 ? problem.top(g / 2 % 80) : 0);
+      }
+    }
+    // nothing to do the second time
+    const auto again = newton.solve(x);
+    EXPECT_TRUE(again.converged);
+    EXPECT_EQ(again.iterations, 0);
+    EXPECT_EQ(again.linear_iterations, 0);
+  }
+}
+
+TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
+  GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
+  Newton newton(problem, {});
+  auto x = problem.zero();
+  for (int step = 1; step <= 3; ++step) {
+    problem.set_time(step, 1);
+    const auto report = newton.solve(x);
+    ASSERT_TRUE(report.converged) << report.reason;
+    EXPECT_EQ(report.iterations, 1);
+    EXPECT_EQ(report.linear_iterations, 1);
+  }
+  EXPECT_EQ(newton.linear().n_setups(), 1);
+  EXPECT_EQ(problem.n_jacobians, 3);
+}
+
+TEST(Newton, LineSearchSavesWhatFullStepsLose) {
+  // full steps of atan from 3 alternate with growing size
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 5, [](Real x, Real, Real) { return std::atan(x); },
+      [](Real x, Real, Real) { return 1 / (1 + x * x); });
+  Newton newton(problem, {});
+  auto x = problem.constant(3);
+  const auto report = newton.solve(x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_NEAR(x[0]->normInf(), 0, 1e-10);
+}
+
+TEST(Newton, ReportsWhatHasNoSolution) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return 1 + x * x; },
+      [](Real x, Real, Real) { return 2 * x; });
+  NewtonOptions options;
+  options.max_iterations = 7;
+  Newton newton(problem, options);
+  auto x = problem.constant(3);
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 7);
+  EXPECT_NE(report.reason.find("no convergence in 7 iterations: 'r' is"), std::string::npos) << report.reason;
+}
+
+TEST(Newton, ReportsASingularJacobian) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return 1 + x * x; },
+      [](Real x, Real, Real) { return 2 * x; });
+  Newton newton(problem, {});
+  auto x = problem.constant(0);
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
+}
+
+TEST(Newton, ReportsWhatIsNotANumber) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return std::log(x); },
+      [](Real x, Real, Real) { return 1 / x; });
+  Newton newton(problem, {});
+  auto x = problem.constant(10);  // the full step leads to 10 - 10 log(10) < 0
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.reason, "the residual is not finite");
+}
+
+TEST(Newton, PassesErrorsOfTheProblemOn) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real, Real, Real) -> Real { throw Error("law: out of range"); },
+      [](Real, Real, Real) { return 1; });
+  Newton newton(problem, {});
+  auto x = problem.constant(0);
+  EXPECT_THROW(newton.solve(x), Error);
+}
+
+TEST(NewtonOptions, AreReadFromParameters) {
+  Teuchos::ParameterList list;
+  list.set("tolerance", 1e-7);
+  auto& linear = list.sublist("Linear Solver");
+  linear.set("type", "direct");
+  linear.sublist("MUMPS").set("ICNTL(14)", 55);
+  auto options = base::read<NewtonOptions>(list, "scene.xml", "Newton");
+  EXPECT_EQ(options.tolerance, 1e-7);
+  EXPECT_EQ(options.max_iterations, 30);
+  GridProblem problem(Tpetra::getDefaultComm(), {});
+  const Newton newton(problem, options);
+  const auto text = newton.linear().solver().describe();
+  EXPECT_EQ(text.find("direct: asked for; 60 unknowns"), 0u) << text;
+  EXPECT_NE(text.find("ICNTL(14) = 55"), std::string::npos) << text;
+  EXPECT_NE(text.find("ICNTL(7) = 7"), std::string::npos) << text;
+  linear.set("type", "fast");
+  EXPECT_THROW(base::read<NewtonOptions>(list, "scene.xml", "Newton"), Error);
+}
+
+TEST(ThyraModel, AppliesTheJacobianOfTheResidual) {
+  GridProblem problem(Tpetra::getDefaultComm(), {});
+  solve::CondensedSolve linear(problem, {});
+  const solve::ThyraModel model(problem, linear);
+  auto x = problem.zero(), dx = problem.zero();
+  for (auto* v : {&x, &dx}) {
+    std::vector<Real> values(gather(*v).size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(2.3 * i + (v == &x));
+    scatter(values, *v);
+  }
+  const auto f_of = [&](Real h) {
+    auto y = problem.zero();
+    for (std::size_t b = 0; b < y.size(); ++b) y[b]->update(1, *x[b], h, *dx[b], 0);
+    auto in = model.createInArgs();
+    auto out = model.createOutArgs();
+    const auto f = Thyra::createMember(model.get_f_space());
+    in.set_x(model.make_vector(y));
+    out.set_f(Thyra::ModelEvaluatorBase::Evaluation<Thyra::VectorBase<Real>>(f));
+    model.evalModel(in, out);
+    return gather(solve::blocks_of(*f));
+  };
+  const auto w = model.create_W_op();
+  auto in = model.createInArgs();
+  auto out = model.createOutArgs();
+  in.set_x(model.make_vector(x));
+  out.set_W_op(w);
+  model.evalModel(in, out);
+  const auto y = Thyra::createMember(model.get_f_space());
+  Thyra::apply(*w, Thyra::NOTRANS, *model.make_vector(dx), y.ptr());
+  const auto product = gather(solve::blocks_of(*y)), plus = f_of(1e-6), minus = f_of(-1e-6);
+  for (std::size_t i = 0; i < product.size(); ++i) EXPECT_NEAR(product[i], (plus[i] - minus[i]) / 2e-6, 1e-7);
+}
+
+/// x = t for substeps up to `largest`; without a solution for longer ones.
+ScalarProblem impatient(Real largest) {
+  return ScalarProblem(
+      Tpetra::getDefaultComm(), 4, [largest](Real x, Real t, Real dt) { return dt <= largest ? x - t : 1 + x * x; },
+      [largest](Real x, Real, Real dt) { return dt <= largest ? 1 : 2 * x + 1e-3; });
+}
+
+TEST(TimeStepper, CutsAndGrowsBack) {
+  auto problem = impatient(0.3);
+  NewtonOptions options;
+  options.max_iterations = 5;
+  Newton newton(problem, options);
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(2);
+  const auto report = stepper.advance(x, 2, 3);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(problem.committed_times, (std::vector<Real>{2.25, 2.5, 2.75, 3}));
+  EXPECT_EQ(report.time, 3);
+  EXPECT_EQ(report.substeps, 4);
+  EXPECT_GE(report.cuts, 2);
+  EXPECT_GT(report.newton_iterations, 4 + 2 * 5 - 1);
+  EXPECT_NEAR(x[0]->normInf(), 3, 1e-12);
+}
+
+TEST(TimeStepper, ReportsAndRestoresPastTheSmallestSubstep) {
+  auto problem = impatient(0);
+  NewtonOptions options;
+  options.max_iterations = 3;
+  Newton newton(problem, options);
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(0.125);
+  const auto report = stepper.advance(x, 0, 1);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.cuts, 6);
+  EXPECT_EQ(report.time, 0);
+  EXPECT_NE(report.reason.find("dt = 0.0156"), std::string::npos) << report.reason;
+  EXPECT_TRUE(problem.committed_times.empty());
+  for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_EQ(x[0]->getData()[i], 0.125);
+}
+
+TEST(TimeStepper, TakesOneStepWhereNothingIsWrong) {
+  GridProblem problem(Tpetra::getDefaultComm(), {});
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.zero();
+  const auto report = stepper.advance(x, 0, 1);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(report.substeps, 1);
+  EXPECT_EQ(report.cuts, 0);
+  EXPECT_EQ(problem.n_commits, 1);
+}
+
+}  // namespace
+}  // namespace sprekk::test
