@@ -1,16 +1,14 @@
 // MUMPS through its C interface.
-#include "solve/linear_solver.hpp"
-
-#include "base/check.hpp"
-
-#include <Tpetra_Details_extractMpiCommFromTeuchos.hpp>
-
 #include <dmumps_c.h>
 #include <mpi.h>
 
+#include <Tpetra_Details_extractMpiCommFromTeuchos.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "base/check.hpp"
+#include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -21,12 +19,17 @@ std::string message(const DMUMPS_STRUC_C& mumps) {
   const int code = mumps.infog[0], detail = mumps.infog[1];
   switch (code) {
     case -5:
-    case -13: return fmt::format("MUMPS: out of memory (wanted {} more)", detail);
-    case -6: return fmt::format("MUMPS: the matrix is structurally singular (rank {})", detail);
+    case -13:
+      return fmt::format("MUMPS: out of memory (wanted {} more)", detail);
+    case -6:
+      return fmt::format("MUMPS: the matrix is structurally singular (rank {})", detail);
     case -8:
-    case -9: return "MUMPS: the work space is too small even after enlarging it; raise ICNTL(14)";
-    case -10: return fmt::format("MUMPS: the matrix is singular (after {} pivots)", detail);
-    default: return fmt::format("MUMPS: error {} ({}), see its manual", code, detail);
+    case -9:
+      return "MUMPS: the work space is too small even after enlarging it; raise ICNTL(14)";
+    case -10:
+      return fmt::format("MUMPS: the matrix is singular (after {} pivots)", detail);
+    default:
+      return fmt::format("MUMPS: error {} ({}), see its manual", code, detail);
   }
 }
 
@@ -87,8 +90,10 @@ class DirectSolver : public LinearSolver {
     report.iterations = 1;
     report.converged = report.residual <= acceptable_linear_residual;
     if (!report.converged)
-      report.reason = fmt::format("direct solve: relative residual {:.1e}, at most {:.0e} is acceptable: the matrix is "
-                                  "singular or nearly so", report.residual, acceptable_linear_residual);
+      report.reason = fmt::format(
+          "direct solve: relative residual {:.1e}, at most {:.0e} is acceptable: the matrix is "
+          "singular or nearly so",
+          report.residual, acceptable_linear_residual);
     return report;
   }
 
@@ -194,11 +199,11 @@ class DirectSolver : public LinearSolver {
   bool ready_ = false, analysed_ = false, symmetric_ = false;
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
-  std::vector<int> rows_, columns_;       // 1-based
-  std::vector<std::size_t> positions_;    // of the entries handed over, in the matrix' values
+  std::vector<int> rows_, columns_;     // 1-based
+  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' values
   std::vector<double> values_;
   RCP<fields::Import> to_root_, from_root_;
-  RCP<Vector> at_root_;                   // all of a vector on rank 0
+  RCP<Vector> at_root_;  // all of a vector on rank 0
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "solve/elimination_plan.hpp"
 
+#include <Teuchos_OrdinalTraits.hpp>
+#include <algorithm>
+
 #include "base/check.hpp"
 #include "solve/small_lu.hpp"
-
-#include <Teuchos_OrdinalTraits.hpp>
-
-#include <algorithm>
 
 namespace sprekk::solve {
 namespace {
@@ -18,8 +17,9 @@ const GlobalIndex count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::in
 
 View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
   View<LocalIndex*> to(name, from.size());
-  Kokkos::deep_copy(to, Kokkos::View<const LocalIndex*, Kokkos::LayoutRight, Kokkos::HostSpace,
-                                     Kokkos::MemoryUnmanaged>(from.data(), from.size()));
+  Kokkos::deep_copy(to,
+                    Kokkos::View<const LocalIndex*, Kokkos::LayoutRight, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                        from.data(), from.size()));
   return to;
 }
 
@@ -208,8 +208,8 @@ class Planner {
     exchange(group, columns, response);
   }
 
-  /// Makes the ghosts' columns and the import of their values known. Columns, and with them values, are numbered over all
-  /// ranks; ghosts learn the range of theirs.
+  /// Makes the ghosts' columns and the import of their values known. Columns, and with them values, are numbered over
+  /// all ranks; ghosts learn the range of theirs.
   void exchange(const GroupPlan& group, const ColumnSets& columns, Response& response) const {
     const auto column_map = make_contiguous_map(columns.column.size(), comm_);
     const GlobalIndex first = columns.column.empty() ? 0 : column_map->getMinGlobalIndex();
@@ -279,8 +279,7 @@ class Planner {
     if (!matrix(a, b).is_null())
       for_entries(*matrix(a, b), [&](LocalIndex row, LocalIndex, GlobalIndex column) { sets[row].push_back(column); });
     if (a == b)
-      for (std::size_t row = 0; row < sets.size(); ++row)
-        sets[row].push_back(blocks()[a].map->getGlobalElement(row));
+      for (std::size_t row = 0; row < sets.size(); ++row) sets[row].push_back(blocks()[a].map->getGlobalElement(row));
     for (const auto& group : plan_.groups) {
       const Response& response = group.response[rb];
       present = present || (!response.fill.empty() && !group.coupling[ra].fill.empty());

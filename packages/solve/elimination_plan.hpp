@@ -1,10 +1,10 @@
 // Where every number of a local elimination goes: found once from the graphs of the blocks, used at every update.
 #pragma once
 
-#include "fields/block_problem.hpp"
-
 #include <string>
 #include <vector>
+
+#include "fields/block_problem.hpp"
 
 namespace sprekk::solve {
 
@@ -29,19 +29,19 @@ struct Scatter {
 /// row by row; the columns are the union over the rows. Slots count entities: owned ones first, then the ghosts that
 /// rows owned here couple to.
 struct Response {
-  std::vector<Scatter> fill;            ///< A_zb -> owned values
-  View<LocalIndex*> column_start;       ///< [slot + 1] first column of a slot; its first value is m times that
-  std::vector<GlobalIndex> column;      ///< [all columns] global unknown of b; only needed to make graphs
-  RCP<Vector> owned, ghost;             ///< values
-  RCP<Import> import;                   ///< owned -> ghost values
+  std::vector<Scatter> fill;        ///< A_zb -> owned values
+  View<LocalIndex*> column_start;   ///< [slot + 1] first column of a slot; its first value is m times that
+  std::vector<GlobalIndex> column;  ///< [all columns] global unknown of b; only needed to make graphs
+  RCP<Vector> owned, ghost;         ///< values
+  RCP<Import> import;               ///< owned -> ghost values
 };
 
 /// A_az of one remaining block a, packed: one row of m coefficients for each pair (owned row of a, slot) that couples.
 struct Coupling {
-  std::vector<Scatter> fill;        ///< A_az -> coefficient
-  View<LocalIndex*> row_start;      ///< [owned row + 1] first pair of a row
-  View<LocalIndex*> slot;           ///< [pair]
-  View<Real*> coefficient;          ///< [pair * m]
+  std::vector<Scatter> fill;    ///< A_az -> coefficient
+  View<LocalIndex*> row_start;  ///< [owned row + 1] first pair of a row
+  View<LocalIndex*> slot;       ///< [pair]
+  View<Real*> coefficient;      ///< [pair * m]
 };
 
 /// Where coefficient(pair) . response(slot of pair) is added in J_ab.

@@ -1,11 +1,10 @@
 // Belos, preconditioned from the right by MueLu.
-#include "solve/linear_solver.hpp"
-
-#include "base/check.hpp"
-
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
+
+#include "base/check.hpp"
+#include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -16,9 +15,9 @@ using Teuchos::ParameterList;
 
 constexpr int coarse_size = 1000;
 
-/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is wrong
-/// on several. The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit
-/// when contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
+/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
+/// wrong on several. The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would
+/// not fit when contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
 ParameterList multigrid_defaults(int n_components, int n_ranks) {
   ParameterList list("MueLu");
   list.set("verbosity", "none");
@@ -121,8 +120,8 @@ class IterativeSolver : public LinearSolver {
   const ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Aggregates by the graph of the bulk, where no edge crosses an interface; the diagonal is raised a little, for floating
-  /// parts are singular there.
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface; the diagonal is raised a little, for
+  /// floating parts are singular there.
   void create(const Block& block, const RCP<const CrsMatrix>& bulk) {
     ParameterList list(parameters_.sublist("MueLu"));
     auto& user_data = list.sublist("user data");
@@ -146,7 +145,8 @@ class IterativeSolver : public LinearSolver {
 
   int iterate(const Vector& b, Vector& x, Real tolerance) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
-    const auto problem = rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
+    const auto problem =
+        rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
     problem->setRightPrec(preconditioner_);
     problem->setProblem();
     const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));

@@ -1,19 +1,19 @@
 // The line search of Newton: non-monotone, for kinks in f make the merit rise on the way to a solution.
 #pragma once
 
-#include "solve/thyra_model.hpp"
-
 #include <NOX_LineSearch_Generic.H>
 #include <NOX_LineSearch_UserDefinedFactory.H>
 
 #include <deque>
 #include <map>
 
+#include "solve/thyra_model.hpp"
+
 namespace sprekk::solve {
 
 /// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
-/// if none is, the best one tried. When a discrete state comes back and the merit is no better than then, iterates would go
-/// round in circles: from there on only the last merit counts.
+/// if none is, the best one tried. When a discrete state comes back and the merit is no better than then, iterates
+/// would go round in circles: from there on only the last merit counts.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model) : problem_(problem), model_(model) {}

@@ -1,9 +1,9 @@
 #include "solve/linear_solver.hpp"
 
+#include <sstream>
+
 #include "base/check.hpp"
 #include "base/parameters.hpp"
-
-#include <sstream>
 
 namespace sprekk::solve {
 
@@ -30,11 +30,10 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Block&
   const long long n = block.map->getGlobalNumElements();
   const long long limit = is_3d ? options.direct_limit_3d : options.direct_limit_2d;
   const bool direct = options.type == "direct" || (options.type == "auto" && n <= limit);
-  const std::string reason =
-      options.type == "auto"
-          ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
-                        is_3d ? "3D" : "2D", n, limit)
-          : fmt::format("{}: asked for; {} unknowns", options.type, n);
+  const std::string reason = options.type == "auto"
+                                 ? fmt::format("{}: {} with {} unknowns; direct up to {}",
+                                               direct ? "direct" : "iterative", is_3d ? "3D" : "2D", n, limit)
+                                 : fmt::format("{}: asked for; {} unknowns", options.type, n);
   return {direct ? make_direct_solver(options.mumps) : make_iterative_solver(options, block), reason};
 }
 

@@ -1,12 +1,11 @@
 // Solves the linear system that local elimination leaves: directly, or by multigrid and Krylov.
 #pragma once
 
-#include "fields/block_problem.hpp"
-
 #include <Teuchos_ParameterList.hpp>
-
 #include <memory>
 #include <string>
+
+#include "fields/block_problem.hpp"
 
 namespace sprekk::base {
 class Section;
@@ -20,10 +19,10 @@ using fields::Vector;
 
 /// What is wanted of a linear solver. The lists are handed to the libraries untouched, over the defaults.
 struct LinearSolverOptions {
-  std::string type = "auto";              ///< auto | direct | iterative
-  Real tolerance = 1e-11;                 ///< relative residual that is asked for
-  long long direct_limit_2d = 150000;     ///< auto: most unknowns for direct in 2D (and 1D)
-  long long direct_limit_3d = 20000;      ///< auto: the same in 3D
+  std::string type = "auto";           ///< auto | direct | iterative
+  Real tolerance = 1e-11;              ///< relative residual that is asked for
+  long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
+  long long direct_limit_3d = 20000;   ///< auto: the same in 3D
   Teuchos::ParameterList mumps, belos, muelu;
 
   void describe(base::Section& section);
@@ -48,8 +47,8 @@ class LinearSolver {
   /// Whether setup reads `bulk`.
   virtual bool reads_bulk() const { return false; }
 
-  /// Makes ready to solve with this matrix, of one block; its graph must be the same at every call. The unknowns must be
-  /// numbered 0, 1, ... over all ranks in any distribution. `bulk` is the matrix without what crosses interfaces, by
+  /// Makes ready to solve with this matrix, of one block; its graph must be the same at every call. The unknowns must
+  /// be numbered 0, 1, ... over all ranks in any distribution. `bulk` is the matrix without what crosses interfaces, by
   /// whose graph multigrid aggregates; null: the matrix itself. Empty, or what failed.
   virtual std::string setup(const RCP<const CrsMatrix>& matrix, const Block& block, bool symmetric,
                             const RCP<const CrsMatrix>& bulk = Teuchos::null) = 0;

@@ -1,12 +1,12 @@
 #include "solve/local_elimination.hpp"
 
-#include "solve/small_lu.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 #include <fmt/format.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <cstring>
 #include <limits>
+
+#include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -218,8 +218,7 @@ void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) con
   };
   each([&](const auto& part, int offset, int n) {
     Kokkos::parallel_for(
-        "pack", Policy(0, part.extent(0)),
-        KOKKOS_LAMBDA(LocalIndex i) { work(i / n * m + offset + i % n) = part(i); });
+        "pack", Policy(0, part.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { work(i / n * m + offset + i % n) = part(i); });
   });
   Kokkos::parallel_for(
       "solve entities", Policy(0, pivot.extent(0) / m), KOKKOS_LAMBDA(LocalIndex e) {

@@ -1,14 +1,14 @@
 // Eliminates local groups entity by entity and prescribed unknowns one by one, exactly; what remains goes to a solver.
 #pragma once
 
-#include "solve/elimination_plan.hpp"
-
 #include <cstdint>
+
+#include "solve/elimination_plan.hpp"
 
 namespace sprekk::solve {
 
-/// For A dx = b with A = problem.matrix(), where the rows of constrained unknowns read dx_i = b_i. With z the unknowns of
-/// the local groups, D the constrained ones and a, b the remaining blocks:
+/// For A dx = b with A = problem.matrix(), where the rows of constrained unknowns read dx_i = b_i. With z the unknowns
+/// of the local groups, D the constrained ones and a, b the remaining blocks:
 ///     J_ab = A_ab - A_az A_zz^-1 A_zb, rows and columns of D zero but for a positive diagonal
 ///     c_a  = s_a - A_az A_zz^-1 s_z, 0 in D, with s = b - A (0, b_D)
 ///     dx_b = (0, b_D) + J^-1 c,  dx_z = A_zz^-1 (b_z - A_zb dx_b)
@@ -28,7 +28,8 @@ class LocalElimination {
 
   /// The blocks that remain, as indices into problem.blocks(). [r]
   const std::vector<int>& remaining() const { return plan_.remaining; }
-  /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for good.
+  /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for
+  /// good.
   RCP<const CrsMatrix> condensed(int r, int s) const;
   /// A_aa of the r-th remaining block, constrained like J, without what the local groups add.
   RCP<const CrsMatrix> bulk(int r) const;
@@ -47,9 +48,9 @@ class LocalElimination {
   const CondensedBlock& block(int r, int s) const { return plan_.condensed[r * n_remaining() + s]; }
 
   RCP<const Comm> comm_;
-  const fields::BlockMatrix* matrix_;      ///< the problem's own
+  const fields::BlockMatrix* matrix_;  ///< the problem's own
   EliminationPlan plan_;
-  std::vector<RCP<Vector>> constrained_;   ///< [r] owned unknown: 1 where prescribed
+  std::vector<RCP<Vector>> constrained_;  ///< [r] owned unknown: 1 where prescribed
   std::uint64_t checksum_ = 0;
   bool fresh_ = true;
 };

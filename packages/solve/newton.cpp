@@ -1,23 +1,23 @@
 #include "solve/newton.hpp"
 
-#include "base/check.hpp"
-#include "base/parameters.hpp"
-#include "solve/line_search.hpp"
-
 #include <NOX.H>
 #include <NOX_StatusTest_Generic.H>
 #include <NOX_Thyra.H>
-#include <Thyra_TpetraThyraWrappers.hpp>
 
+#include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
+
+#include "base/check.hpp"
+#include "base/parameters.hpp"
+#include "solve/line_search.hpp"
 
 namespace sprekk::solve {
 namespace {
 
 using NOX::StatusTest::StatusType;
 
-/// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is not
-/// finite, or out of iterations. Keeps the history and the reason.
+/// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is
+/// not finite, or out of iterations. Keeps the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, NewtonReport& report)
@@ -66,7 +66,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem, const ThyraModel& model) {
+RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem,
+                                           const ThyraModel& model) {
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
   list->sublist("Direction").set("Method", "Newton");

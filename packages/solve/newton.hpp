@@ -1,11 +1,11 @@
 // Newton's method on a BlockProblem, driven by NOX.
 #pragma once
 
-#include "solve/linear_solver.hpp"
-
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
 
@@ -17,9 +17,9 @@ class CondensedSolve;
 class ThyraModel;
 
 struct NewtonOptions {
-  Real tolerance = 1e-10;   ///< of every measure of the problem
+  Real tolerance = 1e-10;  ///< of every measure of the problem
   int max_iterations = 30;
-  bool print = false;       ///< let NOX report every iteration
+  bool print = false;  ///< let NOX report every iteration
   LinearSolverOptions linear_solver;
   Teuchos::ParameterList nox;  ///< over the defaults
 
@@ -28,9 +28,9 @@ struct NewtonOptions {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;         ///< Newton steps, each with one linear solve
-  int linear_iterations = 0;  ///< over all linear solves
-  std::string reason;         ///< of a failure
+  int iterations = 0;                         ///< Newton steps, each with one linear solve
+  int linear_iterations = 0;                  ///< over all linear solves
+  std::string reason;                         ///< of a failure
   std::vector<Measure> measures;              ///< at the end
   std::vector<std::vector<Measure>> history;  ///< [iteration, from 0 for the start]
 };
@@ -42,8 +42,8 @@ class Newton {
   ~Newton();
 
   /// Solves f(x) = 0 from x: full first step; after that backtracking that lets the merit rise above the last but not
-  /// above the worst of three iterates. A failure is reported, and x is the last iterate then; Errors of the problem's own
-  /// evaluations pass through. Collective; the same report on every rank.
+  /// above the worst of three iterates. A failure is reported, and x is the last iterate then; Errors of the problem's
+  /// own evaluations pass through. Collective; the same report on every rank.
   NewtonReport solve(BlockVector& x);
 
   const CondensedSolve& linear() const { return *linear_; }

@@ -1,10 +1,10 @@
 // LU factors of the small dense matrices of single entities. Device-callable.
 #pragma once
 
-#include "base/types.hpp"
-
 #include <cfloat>
 #include <cmath>
+
+#include "base/types.hpp"
 
 namespace sprekk::solve {
 
@@ -17,8 +17,8 @@ KOKKOS_INLINE_FUNCTION void exchange(Real& x, Real& y) {
 }
 
 /// Replaces a [m, m] (row by row) by its LU factors. Rows are exchanged as if the matrix had been equilibrated: columns
-/// by column_scale, rows to a largest entry of 1; the entries themselves are not scaled. False if a pivot cannot be told
-/// from the rounding errors of its own terms, or is not finite.
+/// by column_scale, rows to a largest entry of 1; the entries themselves are not scaled. False if a pivot cannot be
+/// told from the rounding errors of its own terms, or is not finite.
 KOKKOS_INLINE_FUNCTION bool lu_factor(int m, Real* a, int* pivot, const Real* column_scale) {
   Real weight[max_small_size], magnitude[max_small_size * max_small_size];
   for (int i = 0; i < m; ++i) {

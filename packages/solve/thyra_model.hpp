@@ -1,9 +1,9 @@
 // A BlockProblem as Thyra sees it.
 #pragma once
 
-#include "solve/condensed_solve.hpp"
-
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
+
+#include "solve/condensed_solve.hpp"
 
 namespace sprekk::solve {
 

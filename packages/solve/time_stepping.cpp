@@ -1,9 +1,9 @@
 #include "solve/time_stepping.hpp"
 
+#include <algorithm>
+
 #include "base/check.hpp"
 #include "base/parameters.hpp"
-
-#include <algorithm>
 
 namespace sprekk::solve {
 

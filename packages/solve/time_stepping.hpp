@@ -28,8 +28,8 @@ class TimeStepper {
   TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
       : problem_(problem), newton_(newton), options_(options) {}
 
-  /// Takes x, the committed state at t_from, to t_to. Where Newton fails the substep is halved and x restored; after one
-  /// that converged it doubles. Each is committed. If the smallest one fails too, x is the last committed state, at
+  /// Takes x, the committed state at t_from, to t_to. Where Newton fails the substep is halved and x restored; after
+  /// one that converged it doubles. Each is committed. If the smallest one fails too, x is the last committed state, at
   /// report.time. Collective.
   StepReport advance(BlockVector& x, Real t_from, Real t_to);
 

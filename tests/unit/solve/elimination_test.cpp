@@ -1,10 +1,10 @@
-#include "dense.hpp"
-#include "solve/condensed_solve.hpp"
-#include "solve/small_lu.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+
+#include "dense.hpp"
+#include "solve/condensed_solve.hpp"
+#include "solve/small_lu.hpp"
 
 namespace sprekk::test {
 namespace {
@@ -71,8 +71,8 @@ TEST(LocalElimination, CondensedMatrixIsSymmetricWithZeroedConstraints) {
   const auto constrained = problem.constrained(0);
   for (LocalIndex row = 0; row < local.numRows(); ++row)
     for (auto k = local.graph.row_map(row); constrained(row) && k < local.graph.row_map(row + 1); ++k) {
-      const bool diagonal = j->getColMap()->getGlobalElement(local.graph.entries(k)) ==
-                            j->getRowMap()->getGlobalElement(row);
+      const bool diagonal =
+          j->getColMap()->getGlobalElement(local.graph.entries(k)) == j->getRowMap()->getGlobalElement(row);
       if (diagonal)
         EXPECT_GT(local.values(k), 0);
       else

@@ -1,13 +1,12 @@
 // Small BlockProblems to solve.
 #pragma once
 
-#include "fields/block_problem.hpp"
-
 #include <Teuchos_CommHelpers.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "fields/block_problem.hpp"
 
 namespace sprekk::test {
 
@@ -56,8 +55,8 @@ struct GridOptions {
 /// 'bubble' a and a 'traction' l, with jump w = u_p - u_q + beta a:
 ///   r_u = K u + l at p, -l at q, eta a at p, -eta a at the node above;  r_a = alpha a + eta (u_p - u_above) + beta l
 ///   r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
-/// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are more, has
-/// no nodes; faces live elsewhere than their nodes.
+/// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are
+/// more, has no nodes; faces live elsewhere than their nodes.
 class GridProblem : public BlockProblem {
  public:
   static constexpr Real alpha = 3, eta = 0.4, beta = 0.7, c = 5, kt = 0.5;

@@ -1,10 +1,10 @@
-#include "base/check.hpp"
-#include "dense.hpp"
-#include "solve/condensed_solve.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+
+#include "base/check.hpp"
+#include "dense.hpp"
+#include "solve/condensed_solve.hpp"
 
 namespace sprekk::test {
 namespace {
@@ -59,8 +59,8 @@ TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
 
 TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
   const auto comm = Tpetra::getDefaultComm();
-  const auto map = make_map(comm->getRank() == comm->getSize() - 1 ? std::vector<GlobalIndex>{0, 1, 2}
-                                                                    : std::vector<GlobalIndex>{}, comm);
+  const auto map = make_map(
+      comm->getRank() == comm->getSize() - 1 ? std::vector<GlobalIndex>{0, 1, 2} : std::vector<GlobalIndex>{}, comm);
   Filler fill(map, map);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) fill.add(i, j, i == j ? 4 : i + 0.5 * j);

@@ -1,14 +1,13 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <limits>
+
 #include "base/parameters.hpp"
 #include "dense.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/thyra_model.hpp"
 #include "solve/time_stepping.hpp"
-
-#include <gtest/gtest.h>
-
-#include <Tpetra_Core.hpp>
-
-#include <limits>
 
 namespace sprekk::test {
 namespace {
