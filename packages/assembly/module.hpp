@@ -43,11 +43,21 @@ struct History {
   int n_components;
 };
 
+/// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
+/// coordinates unless the name says "local".
+struct OutputField {
+  std::string name, unit;
+  fields::Entity entity;
+  int n_components;
+  std::vector<Real> values = {};
+};
+
 /// All that the framework needs to know to derive sparsity, ghost exchange, storage and output.
 struct Declaration {
   std::vector<Unknown> unknowns;
   std::vector<Coupling> couplings;
   std::vector<History> history;
+  std::vector<OutputField> outputs;  ///< without values
   bool linear = false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
 };
 
@@ -77,15 +87,6 @@ struct State {
 
 /// Owned rows, [field](row).
 using Rows = std::vector<View<Real*>>;
-
-/// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
-/// coordinates unless the name says "local".
-struct OutputField {
-  std::string name, unit;
-  fields::Entity entity;
-  int n_components;
-  std::vector<Real> values;
-};
 
 /// Sizes that solvers and tests of convergence are relative to: they grow with the loads met so far and never shrink.
 struct Scales {
@@ -121,8 +122,8 @@ class Module {
   virtual std::size_t state_hash(const State& state) const { return 0; }
   /// After elimination of the local groups, the Jacobian at `state` is symmetric as far as this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }
-  /// What the module can show of a committed state. Local.
-  virtual std::vector<OutputField> outputs(const State& state) const { return {}; }
+  /// Fills the values of the declared outputs, in their order, from a committed state. Local.
+  virtual void output(const State& state, std::vector<OutputField>& fields) const {}
 };
 
 }  // namespace sprekk::assembly

@@ -218,8 +218,11 @@ std::size_t System::state_hash(const BlockVector& x) {
 std::vector<OutputField> System::outputs(const BlockVector& x) {
   refresh_ghosts(x, true);
   std::vector<OutputField> outputs;
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    for (auto& output : modules_[m]->outputs(state(static_cast<int>(m)))) outputs.push_back(std::move(output));
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    auto fields = declarations_[m].outputs;
+    modules_[m]->output(state(static_cast<int>(m)), fields);
+    for (auto& field : fields) outputs.push_back(std::move(field));
+  }
   return outputs;
 }
 

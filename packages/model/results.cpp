@@ -151,7 +151,8 @@ Results::Results(Model& model, std::string directory) : model_(model), directory
                    {"nodes", mesh.n_global_nodes},
                    {"cells", mesh.n_global_cells},
                    {"fracture_faces", mesh.n_global_fracture_faces}};
-  json_["solver"] = model_.newton().linear().solver().reason;
+  const auto& solver = model_.newton().linear().solver();
+  json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
   json_["steps"] = json::array();
   write_json();
@@ -168,7 +169,10 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
   step["reactions"] = json::object();
-  for (const auto& [name, force] : model_.system().reactions(model_.state())) step["reactions"][name] = force;
+  for (const auto& [name, force] : model_.system().reactions(model_.state())) {
+    auto& sum = step["reactions"][model_.scene().boundary_conditions.at(name).boundary];
+    for (std::size_t i = 0; i < force.size(); ++i) sum[i] = force[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
+  }
   json_["steps"].push_back(step);
   ++n_steps_;
   if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);

@@ -94,6 +94,7 @@ class BulkMomentum final : public assembly::Module {
     u.rigid_body_modes = true;
     d.unknowns = {u};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
+    d.outputs = {{"displacement", "m", fields::Entity::node, dim}, {"stress", "Pa", fields::Entity::cell, 6}};
     d.linear = true;
     return d;
   }
@@ -169,13 +170,10 @@ class BulkMomentum final : public assembly::Module {
     return std::max(largest, mesh_->n_nodes() > 0 ? force * size : 0);
   }
 
-  std::vector<assembly::OutputField> outputs(const assembly::State& state) const override {
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    assembly::OutputField displacement{"displacement", "m", fields::Entity::node, dim, {}};
-    displacement.values.assign(u.data(), u.data() + mesh_->n_nodes() * dim);
-    assembly::OutputField stress{"stress", "Pa", fields::Entity::cell, 6, {}};
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, stress.values);
-    return {displacement, stress};
+    fields[0].values.assign(u.data(), u.data() + mesh_->n_nodes() * dim);
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, fields[1].values);
   }
 
  private:

@@ -126,7 +126,12 @@ class ElasticPlasticJump final : public assembly::Module {
     traction.local_group = "fracture face";
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
-    d.history = {{"plastic jump", fields::Entity::fracture_face, dim - 1}};
+    const auto face = fields::Entity::fracture_face;
+    d.history = {{"plastic jump", face, dim - 1}};
+    for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
+      for (const char* frame : {" local", ""}) d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
+    for (const char* name : {"opening", "slip", "aperture"}) d.outputs.push_back({name, "m", face, 1});
+    for (const char* name : {"state", "slip tendency"}) d.outputs.push_back({name, "-", face, 1});
     return d;
   }
 
@@ -144,7 +149,7 @@ class ElasticPlasticJump final : public assembly::Module {
   }
   std::size_t state_hash(const assembly::State& state) const override;
   bool symmetric(const assembly::State& state) const override;
-  std::vector<assembly::OutputField> outputs(const assembly::State& state) const override;
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override;
 
  private:
   /// The operator with the history of `state`.
@@ -300,14 +305,7 @@ bool ElasticPlasticJump<shape>::symmetric(const assembly::State& state) const {
 }
 
 template <Shape shape>
-std::vector<assembly::OutputField> ElasticPlasticJump<shape>::outputs(const assembly::State& state) const {
-  const auto face = fields::Entity::fracture_face;
-  const std::vector<std::string> names = {"jump", "elastic jump", "plastic jump", "traction"};
-  std::vector<assembly::OutputField> out;
-  for (const auto& name : names)
-    for (const char* system : {" local", ""}) out.push_back({name + system, name == "traction" ? "Pa" : "m", face, dim, {}});
-  for (const char* name : {"opening", "slip", "aperture"}) out.push_back({name, "m", face, 1, {}});
-  for (const char* name : {"state", "slip tendency"}) out.push_back({name, "-", face, 1, {}});
+void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const {
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& geometry = mesh_->fracture_faces[f];
     const auto& joint = parameters_.joints[geometry.fracture];
@@ -316,23 +314,22 @@ std::vector<assembly::OutputField> ElasticPlasticJump<shape>::outputs(const asse
     const Real* vectors[] = {point.w, elastic, plastic, point.traction};
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < dim; ++i) {
-        out[2 * k].values.push_back(vectors[k][i]);
+        fields[2 * k].values.push_back(vectors[k][i]);
         Real global = 0;
         for (int l = 0; l < dim; ++l) global += geometry.frame[l][i] * vectors[k][l];
-        out[2 * k + 1].values.push_back(global);
+        fields[2 * k + 1].values.push_back(global);
       }
     for (int i = 0; i < dim - 1; ++i) {
       tangential[i] = plastic[i + 1];
       shear[i] = point.traction[i + 1];
     }
     const Real bound = joint.law.friction.bound(point.traction[0]), size = laws::norm(shear);
-    out[8].values.push_back(point.w[0]);
-    out[9].values.push_back(laws::norm(tangential));
-    out[10].values.push_back(joint.initial_aperture + point.w[0]);
-    out[11].values.push_back(static_cast<Real>(point.state));
-    out[12].values.push_back(point.state == ContactState::open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
+    fields[8].values.push_back(point.w[0]);
+    fields[9].values.push_back(laws::norm(tangential));
+    fields[10].values.push_back(joint.initial_aperture + point.w[0]);
+    fields[11].values.push_back(static_cast<Real>(point.state));
+    fields[12].values.push_back(point.state == ContactState::open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
   });
-  return out;
 }
 
 }  // namespace

@@ -3,9 +3,8 @@
 #include <mpi.h>
 
 #include <Tpetra_Details_extractMpiCommFromTeuchos.hpp>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "base/check.hpp"
 #include "solve/linear_solver.hpp"
@@ -39,6 +38,7 @@ class DirectSolver : public LinearSolver {
     parameters_.set("ICNTL(7)", 7, "ordering: automatic");
     parameters_.set("ICNTL(14)", 40, "extra work space, percent");
     parameters_.setParameters(overrides);
+    read_controls();
   }
 
   ~DirectSolver() override { release(); }
@@ -122,7 +122,8 @@ class DirectSolver : public LinearSolver {
     run(initialise);
     for (int quiet : {1, 2, 3, 4}) mumps_.icntl[quiet - 1] = quiet < 4 ? -1 : 0;
     mumps_.icntl[17] = 3;  // distributed matrix
-    override_controls();
+    for (const auto& [i, value] : icntl_) mumps_.icntl[i] = value;
+    for (const auto& [i, value] : cntl_) mumps_.cntl[i] = value;
 
     const auto graph = matrix.getLocalMatrixHost().graph;
     const auto& columns = *matrix.getColMap();
@@ -155,17 +156,17 @@ class DirectSolver : public LinearSolver {
     analysed_ = false;
   }
 
-  void override_controls() {
+  void read_controls() {
     for (const auto& parameter : parameters_) {
       const std::string& name = parameter.first;
       const Teuchos::ParameterEntry& entry = parameter.second;
       int i = 0;
-      if (std::sscanf(name.c_str(), "ICNTL(%d)", &i) == 1 && i >= 1 && i <= 60)
-        mumps_.icntl[i - 1] = Teuchos::getValue<int>(entry);
-      else if (std::sscanf(name.c_str(), "CNTL(%d)", &i) == 1 && i >= 1 && i <= 15)
-        mumps_.cntl[i - 1] = Teuchos::getValue<double>(entry);
+      if (std::sscanf(name.c_str(), "ICNTL(%d)", &i) == 1 && i >= 1 && i <= 60 && entry.isType<int>())
+        icntl_[i - 1] = Teuchos::getValue<int>(entry);
+      else if (std::sscanf(name.c_str(), "CNTL(%d)", &i) == 1 && i >= 1 && i <= 15 && entry.isType<double>())
+        cntl_[i - 1] = Teuchos::getValue<double>(entry);
       else
-        throw Error(fmt::format("MUMPS: unknown parameter '{}'; allowed are ICNTL(1..60) and CNTL(1..15)", name));
+        throw Error(fmt::format("MUMPS: parameter '{}'; allowed are ICNTL(1..60), int, and CNTL(1..15), double", name));
     }
   }
 
@@ -194,6 +195,8 @@ class DirectSolver : public LinearSolver {
   }
 
   Teuchos::ParameterList parameters_;
+  std::map<int, int> icntl_;    // from 0
+  std::map<int, double> cntl_;  // from 0
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false;

@@ -28,8 +28,8 @@ struct LinearSolverOptions {
   void describe(base::Section& section);
 };
 
-/// How a solve went. Converged means that the true relative residual is at most 1e-8 whatever was asked for: what is
-/// missing of the tolerance then is for the next Newton iteration.
+/// How a solve went. Converged means that the true relative residual is at most acceptable_linear_residual, or ten
+/// times the tolerance if that is more: what is then missing of the tolerance is for the next Newton iteration.
 struct LinearReport {
   bool converged = false;
   int iterations = 0;

@@ -94,7 +94,7 @@ void NewtonOptions::describe(base::Section& section) {
   section.entry(tolerance, "tolerance", "-", base::positive(), "largest measure of convergence, relative to the loads");
   section.entry(max_iterations, "maximum iterations", "-", base::at_least(1), "Newton steps before a solve has failed");
   section.entry(print, "print", "-", "print every Newton step");
-  section.section(linear_solver, "Linear Solver", "solver of the linear systems");
+  section.section(linear_solver, "Linear solver", "solver of the linear systems");
   section.passthrough(nox, "NOX", "parameters of NOX");
 }
 
