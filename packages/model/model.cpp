@@ -67,7 +67,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm) : scene_(scene), timers_(
                                                reference(scene_), timers_);
   x_ = system_->initial();
   const auto scope = timers_->scope("set-up of the solver");
-  newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver);
+  newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);
   stepper_ = std::make_unique<solve::TimeStepper>(*system_, *newton_, scene_.time.stepping);
 }
 

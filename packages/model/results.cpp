@@ -208,9 +208,9 @@ void Results::write_json() {
   std::vector<Real> here = {static_cast<Real>(base::peak_memory_bytes())};
   json_["memory"] = {{"peak_bytes_largest_rank", reduce(comm, Teuchos::REDUCE_MAX, here)[0]},
                      {"peak_bytes_all_ranks", reduce(comm, Teuchos::REDUCE_SUM, here)[0]}};
-  json_["timing"] = json::array();
+  json_["timing"] = json::object();
   for (const auto& phase : model_.timers().phases())
-    json_["timing"].push_back({{"phase", phase.name}, {"seconds", phase.seconds}, {"count", phase.count}});
+    json_["timing"][with_underscores(phase.name)] = {{"seconds", phase.seconds}, {"count", phase.count}};
   io::write_json(comm, directory_ + "/results.json", json_);
   last_write_ = std::chrono::steady_clock::now();
 }

@@ -133,8 +133,6 @@ class InterfaceTractionBalance final : public assembly::Module {
   }
 
  private:
-  using Host = Kokkos::HostSpace;
-
   void build_operator() {
     const auto sides = assembly::fracture_sides(*mesh_);
     op_ = std::make_unique<Op>(sides.size());

@@ -1,6 +1,7 @@
 // Solves with the whole Jacobian: local elimination, a linear solver for what remains, and back-substitution.
 #pragma once
 
+#include "base/timer.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/local_elimination.hpp"
 
@@ -10,7 +11,8 @@ namespace sprekk::solve {
 /// are collective unless they return stored data. Exactly one block must remain after elimination.
 class CondensedSolve {
  public:
-  CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options);
+  CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options,
+                 RCP<base::Timers> timers = rcp(new base::Timers));
 
   /// Makes ready to solve with the present problem.matrix(). What fails is reported by the next solve.
   void update();
@@ -26,6 +28,7 @@ class CondensedSolve {
   const Block& remaining() const { return problem_.blocks()[elimination_.remaining().front()]; }
 
   BlockProblem& problem_;
+  RCP<base::Timers> timers_;
   LocalElimination elimination_;
   ChosenSolver chosen_;
   Real tolerance_;

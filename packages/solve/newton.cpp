@@ -98,10 +98,10 @@ void NewtonOptions::describe(base::Section& section) {
   section.passthrough(nox, "NOX", "parameters of NOX");
 }
 
-Newton::Newton(BlockProblem& problem, const NewtonOptions& options)
+Newton::Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Timers> timers)
     : problem_(problem),
       options_(options),
-      linear_(std::make_unique<CondensedSolve>(problem, options.linear_solver)),
+      linear_(std::make_unique<CondensedSolve>(problem, options.linear_solver, timers)),
       model_(std::make_unique<ThyraModel>(problem, *linear_)) {}
 
 Newton::~Newton() = default;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
@@ -38,7 +39,7 @@ struct NewtonReport {
 /// Keeps factors or the hierarchy from one solve to the next. Refers to the problem.
 class Newton {
  public:
-  Newton(BlockProblem& problem, const NewtonOptions& options);
+  Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Timers> timers = rcp(new base::Timers));
   ~Newton();
 
   /// Solves f(x) = 0 from x: full first step; after that backtracking that lets the merit rise above the last but not
