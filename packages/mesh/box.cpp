@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parameters.hpp"
+#include "mesh/raise_order.hpp"
 #include "mesh/renumber.hpp"
 #include "mesh/split.hpp"
 
@@ -65,6 +66,7 @@ class BoxBuilder {
       mesh_.fracture_names.push_back(name);
       orientations.push_back(orientation(name, fracture));
     }
+    if (box_.order == 2) mesh_ = raise_order(std::move(mesh_));
     return split(std::move(mesh_), marked, orientations);
   }
 
@@ -242,6 +244,7 @@ void BoxMesh::describe(base::Section& s) {
   s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
   s.required(cells, "cells", "-", base::at_least(1),
              "number of squares or cubes in each direction; a square makes 2 triangles, a cube 6 tetrahedra");
+  s.entry(order, "order", "-", base::between(1, 2), "of the displacement in each cell: 1 (linear) or 2 (quadratic)");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
   s.entry(rotation, "rotation", "degree", base::any(),
           "angle, counter-clockwise about the origin, by which the box turns");

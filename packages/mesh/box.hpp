@@ -27,6 +27,7 @@ struct BoxMesh {
   std::string cell = "quadrilateral";
   std::vector<Real> lower_corner{0, 0}, upper_corner{1, 1};  ///< metre, before the rotation
   std::vector<int> cells{1, 1};                              ///< squares or cubes in each direction
+  int order = 1;                                             ///< of the cells: 1 or 2
   std::map<std::string, Fracture> fractures;
   Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
   std::vector<Real> rotation_axis{0, 0, 1};  ///< 3D; through the origin

@@ -153,19 +153,19 @@ class Distributor {
     const auto nodes = coinciding_nodes(id);
     for (int side : {minus, plus}) {
       face.cell[side] = cells_.local_of[global.cell[side]];
-      for (int k = 0; k < 4; ++k)
+      for (int k = 0; k < max_face_nodes; ++k)
         face.nodes[side][k] = face.cell[side] < 0 || nodes[side][k] < 0 ? -1 : nodes_.local_of[nodes[side][k]];
     }
     return face;
   }
 
   /// Global nodes of both sides of a fracture face, in the order of the minus cell's face.
-  std::array<std::array<GlobalIndex, 4>, 2> coinciding_nodes(GlobalIndex id) const {
+  std::array<std::array<GlobalIndex, max_face_nodes>, 2> coinciding_nodes(GlobalIndex id) const {
     const auto& face = global_.fracture_faces[id];
     const int n = n_face_nodes(global_.shape);
     const auto first = nodes_of_face(global_, face.cell[minus], face.local_face[minus]);
     const auto other = nodes_of_face(global_, face.cell[plus], face.local_face[plus]);
-    std::array<std::array<GlobalIndex, 4>, 2> result{first, first};
+    std::array<std::array<GlobalIndex, max_face_nodes>, 2> result{first, first};
     const Real size = norm(point(global_, first[1]) - point(global_, first[0]));
     for (int k = 0; k < n; ++k) {
       const auto distance = [&](GlobalIndex b) { return norm(point(global_, b) - point(global_, first[k])); };

@@ -13,17 +13,17 @@ Vector point(const GlobalMesh& mesh, GlobalIndex node) {
   return x;
 }
 
-std::array<GlobalIndex, 4> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
-  std::array<GlobalIndex, 4> nodes;
+std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  std::array<GlobalIndex, max_face_nodes> nodes;
   const auto local = face_nodes(mesh.shape)[local_face];
-  for (int k = 0; k < 4; ++k) nodes[k] = local[k] < 0 ? -1 : mesh.cells[cell * n_nodes(mesh.shape) + local[k]];
+  for (int k = 0; k < max_face_nodes; ++k) nodes[k] = local[k] < 0 ? -1 : mesh.cells[cell * n_nodes(mesh.shape) + local[k]];
   return nodes;
 }
 
 Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
   const auto nodes = nodes_of_face(mesh, cell, local_face);
   const auto edge = [&](int from, int to) { return point(mesh, nodes[to]) - point(mesh, nodes[from]); };
-  switch (n_face_nodes(mesh.shape)) {
+  switch (n_face_corners(mesh.shape)) {
     case 2:
       return {edge(0, 1)[1], -edge(0, 1)[0], 0};
     case 3:
@@ -34,7 +34,7 @@ Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
 }
 
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
-  const int n = n_face_nodes(mesh.shape);
+  const int n = n_face_corners(mesh.shape);
   const auto nodes = nodes_of_face(mesh, cell, local_face);
   Vector sum{};
   for (int k = 0; k < n; ++k) sum = sum + point(mesh, nodes[k]);
@@ -51,19 +51,21 @@ std::array<Vector, 3> face_frame(const Vector& direction, int dim) {
 
 std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh) {
   const int faces_per_cell = n_faces(mesh.shape);
-  const auto sorted_nodes = [&](GlobalIndex face) {
-    auto nodes = nodes_of_face(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
-    std::sort(nodes.begin(), nodes.begin() + n_face_nodes(mesh.shape));
-    return nodes;
+  const auto sorted_corners = [&](GlobalIndex face) {
+    const auto nodes = nodes_of_face(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
+    std::array<GlobalIndex, 4> corners{-1, -1, -1, -1};
+    std::copy_n(nodes.begin(), n_face_corners(mesh.shape), corners.begin());
+    std::sort(corners.begin(), corners.begin() + n_face_corners(mesh.shape));
+    return corners;
   };
-  // Faces hashed by their lowest node: a chain per node, first[node] -> next[face] -> ... -> -1.
+  // Faces hashed by their lowest corner: a chain per node, first[node] -> next[face] -> ... -> -1.
   std::vector<GlobalIndex> first(mesh.n_nodes(), -1), next(mesh.n_cells() * faces_per_cell, -1), neighbour(next);
   for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(next.size()); ++face) {
-    const auto nodes = sorted_nodes(face);
-    GlobalIndex other = first[nodes[0]];
-    while (other >= 0 && sorted_nodes(other) != nodes) other = next[other];
+    const auto corners = sorted_corners(face);
+    GlobalIndex other = first[corners[0]];
+    while (other >= 0 && sorted_corners(other) != corners) other = next[other];
     if (other < 0) {
-      next[face] = std::exchange(first[nodes[0]], face);
+      next[face] = std::exchange(first[corners[0]], face);
       continue;
     }
     SPREKK_CHECK(neighbour[other] < 0, "mesh: cells {}, {} and {} share one face; at most two may",

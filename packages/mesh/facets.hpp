@@ -23,12 +23,12 @@ inline Vector cross(const Vector& a, const Vector& b) {
 Vector point(const GlobalMesh& mesh, GlobalIndex node);
 
 /// Nodes of a cell's face in the order of face_nodes(shape); unused entries are -1.
-std::array<GlobalIndex, 4> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
+std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
 /// Area times outward unit normal of a cell's face; in 2D length times normal. Exact for plane faces.
 Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
-/// Mean of the nodes of a cell's face.
+/// Mean of the corners of a cell's face.
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
 /// Rows n, t1, t2 of the frame whose normal n points along `direction`. 2D: t1 = (n_y, -n_x), t2 = 0.
@@ -36,7 +36,7 @@ Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 std::array<Vector, 3> face_frame(const Vector& direction, int dim);
 
 /// For each cell face [cell * n_faces(shape) + local face] the index of the same face in the cell across it, -1 where
-/// there is none. Faces are the same if they have the same nodes, so both sides of a split fracture count as free.
+/// there is none. Faces are the same if they have the same corners, so both sides of a split fracture count as free.
 /// Throws an Error if more than two cells share a face. Linear in the number of cells.
 std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh);
 

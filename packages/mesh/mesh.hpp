@@ -50,7 +50,7 @@ struct Mesh {
     int fracture;                          ///< index into fracture_names
     std::array<LocalIndex, 2> cell;        ///< local cell on side minus, plus; -1 where that cell is not on this rank
     std::array<int, 2> local_face;         ///< number of the face in that cell
-    std::array<std::array<LocalIndex, 4>, 2> nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
+    std::array<std::array<LocalIndex, max_face_nodes>, 2> nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
     Real area;                             ///< length in 2D; metre, metre^2
     std::array<Real, 3> centre;
     std::array<std::array<Real, 3>, 3> frame;  ///< rows n, t1[, t2]; 2D t = (n_y, -n_x); 3D t1 = a x n/|a x n|, t2 = n x t1

@@ -22,7 +22,7 @@ std::vector<std::vector<Neighbour>> neighbours(const GlobalMesh& mesh, const Fra
     bool forward;  ///< the face's node order runs through the ridge in ascending order; 2D: starts there
   };
   std::vector<Ridge> ridges;
-  const int n = n_face_nodes(mesh.shape);
+  const int n = n_face_corners(mesh.shape);
   for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
     const auto nodes = nodes_of_face(mesh, faces[f].cell[minus], faces[f].local_face[minus]);
     for (int k = 0; k < n; ++k) {

@@ -5,26 +5,62 @@
 
 namespace sprekk::mesh {
 
-enum class Shape { triangle, quadrilateral, tetrahedron, hexahedron };
+/// Cells of order 1, and of order 2 with nodes on edges (and on faces and inside of quadrilaterals and hexahedra).
+enum class Shape {
+  triangle,
+  quadrilateral,
+  tetrahedron,
+  hexahedron,
+  triangle6,
+  quadrilateral9,
+  tetrahedron10,
+  hexahedron27
+};
 
-constexpr int dimension(Shape s) { return s == Shape::triangle || s == Shape::quadrilateral ? 2 : 3; }
-constexpr int n_nodes(Shape s) {
-  return s == Shape::triangle ? 3 : s == Shape::hexahedron ? 8 : 4;
+constexpr int order(Shape s) { return s < Shape::triangle6 ? 1 : 2; }
+/// The cell of order 1 with the same corners, and that of order 2.
+constexpr Shape linear(Shape s) { return order(s) == 1 ? s : static_cast<Shape>(static_cast<int>(s) - 4); }
+constexpr Shape quadratic(Shape s) { return order(s) == 2 ? s : static_cast<Shape>(static_cast<int>(s) + 4); }
+constexpr bool is_simplex(Shape s) { return linear(s) == Shape::triangle || linear(s) == Shape::tetrahedron; }
+constexpr int dimension(Shape s) { return linear(s) == Shape::triangle || linear(s) == Shape::quadrilateral ? 2 : 3; }
+constexpr int n_corners(Shape s) {
+  return linear(s) == Shape::triangle ? 3 : linear(s) == Shape::hexahedron ? 8 : 4;
 }
-constexpr int n_faces(Shape s) { return s == Shape::triangle ? 3 : s == Shape::hexahedron ? 6 : 4; }
-constexpr int n_face_nodes(Shape s) { return s == Shape::tetrahedron ? 3 : s == Shape::hexahedron ? 4 : 2; }
+constexpr int n_nodes(Shape s) {
+  constexpr int n[] = {3, 4, 4, 8, 6, 9, 10, 27};
+  return n[static_cast<int>(s)];
+}
+constexpr int n_faces(Shape s) { return linear(s) == Shape::triangle ? 3 : linear(s) == Shape::hexahedron ? 6 : 4; }
+constexpr int n_face_corners(Shape s) { return linear(s) == Shape::tetrahedron ? 3 : linear(s) == Shape::hexahedron ? 4 : 2; }
+constexpr int n_face_nodes(Shape s) {
+  constexpr int n[] = {2, 2, 3, 4, 3, 3, 6, 9};
+  return n[static_cast<int>(s)];
+}
+constexpr int max_face_nodes = 9;
 
-/// Local nodes of each face, in order around the face, seen from outside counter-clockwise in 3D; unused entries are -1.
-/// Simplex face i is the face opposite to node (i + n_nodes - 1) % n_nodes in 2D (edge i, i+1) and opposite to node i in
-/// 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
-constexpr std::array<std::array<int, 4>, 6> face_nodes(Shape s) {
-  switch (s) {
-    case Shape::triangle: return {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}};
-    case Shape::quadrilateral: return {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}}};
-    case Shape::tetrahedron: return {{{1, 2, 3, -1}, {0, 3, 2, -1}, {0, 1, 3, -1}, {0, 2, 1, -1}}};
-    default:
-      return {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
-  }
+/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes on
+/// its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to node
+/// (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
+constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
+  using Faces = std::array<std::array<int, max_face_nodes>, 6>;
+  Faces faces{};
+  for (auto& face : faces)
+    for (int& node : face) node = -1;
+  const int n = n_face_nodes(s);
+  constexpr int triangle[][3] = {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
+  constexpr int quadrilateral[][3] = {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}};
+  constexpr int tetrahedron[][6] = {{1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}};
+  constexpr int hexahedron[][9] = {{0, 4, 7, 3, 16, 15, 19, 11, 20}, {1, 2, 6, 5, 9, 18, 13, 17, 21},
+                                   {0, 1, 5, 4, 8, 17, 12, 16, 22},  {3, 7, 6, 2, 19, 14, 18, 10, 23},
+                                   {0, 3, 2, 1, 11, 10, 9, 8, 24},   {4, 5, 6, 7, 12, 13, 14, 15, 25}};
+  for (int f = 0; f < n_faces(s); ++f)
+    for (int k = 0; k < n; ++k) switch (linear(s)) {
+        case Shape::triangle: faces[f][k] = triangle[f][k]; break;
+        case Shape::quadrilateral: faces[f][k] = quadrilateral[f][k]; break;
+        case Shape::tetrahedron: faces[f][k] = tetrahedron[f][k]; break;
+        default: faces[f][k] = hexahedron[f][k];
+      }
+  return faces;
 }
 
 }  // namespace sprekk::mesh
