@@ -1,5 +1,6 @@
 // The program: starts MPI and Kokkos, reads the command line, runs.
 #include "base/check.hpp"
+#include "model/point.hpp"
 #include "model/run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -27,7 +28,8 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
   auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
-  for (auto* command : {run, check}) {
+  auto* point = app.add_subcommand("point", "drive one point of a joint along a path, print CSV");
+  for (auto* command : {run, check, point}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
         ->allow_extra_args(false);
@@ -43,6 +45,11 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   try {
     if (reference->parsed()) {
       if (speaks) std::cout << model::reference();
+      return 0;
+    }
+    if (point->parsed()) {
+      const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
+      if (speaks) model::write_csv(std::cout, states);
       return 0;
     }
     if (check->parsed()) {

@@ -52,6 +52,9 @@ void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& v
   }
 }
 
+/// Values at the nodes of a face, in the order of face_nodes(shape).
+using FaceValues = std::array<Real, mesh::max_face_nodes>;
+
 /// Calls visit(N, area, x) at quadrature points of a face of a cell (exact for degree 4 on affine faces): values of the
 /// face's node functions, area that the point stands for, place.
 template <Shape shape, class Visit>
@@ -59,14 +62,14 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
   constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
   Real X[mesh::n_nodes(shape)][dim];
   gather_host<shape>(mesh, cell, X);
-  const auto corners = mesh::face_nodes(shape)[local_face];
-  const auto finish = [&](const std::array<Real, 4>& N, const std::array<std::array<Real, 2>, 4>& dN, Real weight) {
+  const auto nodes = mesh::face_nodes(shape)[local_face];
+  const auto finish = [&](const FaceValues& N, const std::array<FaceValues, 2>& dN, Real weight) {
     std::array<Real, 3> x{}, s{}, t{};
     for (int k = 0; k < n; ++k)
       for (int i = 0; i < dim; ++i) {
-        x[i] += N[k] * X[corners[k]][i];
-        s[i] += dN[k][0] * X[corners[k]][i];
-        t[i] += dN[k][1] * X[corners[k]][i];
+        x[i] += N[k] * X[nodes[k]][i];
+        s[i] += dN[0][k] * X[nodes[k]][i];
+        t[i] += dN[1][k] * X[nodes[k]][i];
       }
     const Real cx = s[1] * t[2] - s[2] * t[1], cy = s[2] * t[0] - s[0] * t[2], cz = s[0] * t[1] - s[1] * t[0];
     const Real stretch = dim == 2 ? std::hypot(s[0], s[1]) : std::sqrt(cx * cx + cy * cy + cz * cz);
@@ -74,22 +77,27 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
   };
   if constexpr (dim == 2) {
     for (int q = 0; q < 3; ++q) {
-      const Real s = Gauss<3>::point(q);
-      finish({(1 - s) / 2, (1 + s) / 2, 0, 0}, {{{-0.5, 0}, {0.5, 0}, {0, 0}, {0, 0}}}, Gauss<3>::weight(q));
+      const Real s = Gauss<3>::point(q), weight = Gauss<3>::weight(q);
+      if (n == 2)
+        finish({(1 - s) / 2, (1 + s) / 2}, {{{-0.5, 0.5}, {}}}, weight);
+      else
+        finish({s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s}, {{{s - 0.5, s + 0.5, -2 * s}, {}}}, weight);
     }
   } else {
-    constexpr Shape face = shape == Shape::tetrahedron ? Shape::triangle : Shape::quadrilateral;
+    constexpr Shape corners = mesh::linear(shape) == Shape::tetrahedron ? Shape::triangle : Shape::quadrilateral;
+    constexpr Shape face = mesh::order(shape) == 1 ? corners : mesh::quadratic(corners);
     using Face = ReferenceCell<face>;
-    Real xi[2], N[Face::n_nodes], dN[Face::n_nodes][2];
+    Real xi[2], N[n], dN[n][2];
     for (int q = 0; q < BubbleQuadrature<face>::n; ++q) {
       const Real weight = BubbleQuadrature<face>::at(q, xi);
       Face::shape_functions(xi, N);
       Face::gradients(xi, dN);
-      std::array<Real, 4> values{};
-      std::array<std::array<Real, 2>, 4> gradients{};
+      FaceValues values{};
+      std::array<FaceValues, 2> gradients{};
       for (int k = 0; k < n; ++k) {
         values[k] = N[k];
-        gradients[k] = {dN[k][0], dN[k][1]};
+        gradients[0][k] = dN[k][0];
+        gradients[1][k] = dN[k][1];
       }
       finish(values, gradients, weight);
     }
@@ -98,12 +106,12 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
 
 /// Share of each node in the mean over a face: mean(v) = sum_k share_k v_k.
 template <Shape shape>
-std::array<Real, 4> mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
-  std::array<Real, 4> shares{};
+FaceValues mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
+  FaceValues shares{};
   Real total = 0;
   for_each_face_point<shape>(mesh, cell, local_face, [&](const auto& N, Real area, const auto&) {
     total += area;
-    for (int k = 0; k < 4; ++k) shares[k] += area * N[k];
+    for (std::size_t k = 0; k < N.size(); ++k) shares[k] += area * N[k];
   });
   for (auto& share : shares) share /= total;
   return shares;

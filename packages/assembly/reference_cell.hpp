@@ -1,4 +1,4 @@
-// Shape functions, face bubbles and quadrature of the order-1 cells; device-callable.
+// Shape functions, face bubbles and quadrature of the cells; device-callable.
 //
 // Simplices live on {xi >= 0, sum xi <= 1}, quadrilaterals and hexahedra on [-1, 1]^dim; nodes and faces as in shape.hpp.
 #pragma once
@@ -12,7 +12,7 @@ namespace sprekk::assembly {
 
 using mesh::Shape;
 
-constexpr bool is_simplex(Shape s) { return s == Shape::triangle || s == Shape::tetrahedron; }
+using mesh::is_simplex;
 
 /// Gauss rule with n points on [-1, 1], exact for degree 2n - 1.
 template <int n>
@@ -73,106 +73,159 @@ struct CentroidRule {
   }
 };
 
-/// Exact for the stiffness of affine cells: constant on simplices, bilinear squared otherwise.
+/// Exact for the stiffness of affine cells: degree 2 (order - 1) on simplices, 2 order in each direction otherwise.
 template <Shape shape>
-using StiffnessQuadrature = std::conditional_t<is_simplex(shape), CentroidRule<shape>, Quadrature<shape, 2>>;
+using StiffnessQuadrature =
+    std::conditional_t<is_simplex(shape) && mesh::order(shape) == 1, CentroidRule<shape>,
+                       Quadrature<shape, is_simplex(shape) ? mesh::dimension(shape) : mesh::order(shape) + 1>>;
 
 /// Exact for products of bubble gradients, and for loads of degree 2 against bubbles, on affine cells.
 template <Shape shape>
-using BubbleQuadrature = Quadrature<shape, shape == Shape::tetrahedron ? 4 : 3>;
+using BubbleQuadrature =
+    Quadrature<shape, mesh::linear(shape) == Shape::tetrahedron || (!is_simplex(shape) && mesh::order(shape) == 2) ? 4 : 3>;
 
+/// Lagrange functions of order 1 or 2 and face bubbles. Simplices: in barycentric coordinates l, corners l (order 1) or
+/// l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with nodes -1[, 0], 1.
 template <Shape shape>
 struct ReferenceCell {
   static constexpr int dim = mesh::dimension(shape);
+  static constexpr int order = mesh::order(shape);
   static constexpr int n_nodes = mesh::n_nodes(shape);
+  static constexpr int n_corners = mesh::n_corners(shape);
   static constexpr int n_face_nodes = mesh::n_face_nodes(shape);
 
-  /// Corner a of the square or cube, component i: -1 or 1.
-  KOKKOS_INLINE_FUNCTION static Real corner(int a, int i) {
-    const int layer = a % 4;
-    if (i == 0) return layer == 1 || layer == 2 ? 1 : -1;
-    if (i == 1) return layer >= 2 ? 1 : -1;
-    return a >= 4 ? 1 : -1;
-  }
-
   KOKKOS_INLINE_FUNCTION static void shape_functions(const Real (&xi)[dim], Real (&N)[n_nodes]) {
-    if (is_simplex(shape)) {
-      N[0] = 1;
-      for (int i = 0; i < dim; ++i) {
-        N[i + 1] = xi[i];
-        N[0] -= xi[i];
-      }
+    if constexpr (is_simplex(shape)) {
+      Real l[dim + 1];
+      barycentric(xi, l);
+      for (int a = 0; a <= dim; ++a) N[a] = order == 1 ? l[a] : l[a] * (2 * l[a] - 1);
+      for (int e = 0; e < n_nodes - n_corners; ++e) N[n_corners + e] = 4 * l[edge(e, 0)] * l[edge(e, 1)];
     } else {
       for (int a = 0; a < n_nodes; ++a) {
         N[a] = 1;
-        for (int i = 0; i < dim; ++i) N[a] *= (1 + corner(a, i) * xi[i]) / 2;
+        for (int i = 0; i < dim; ++i) N[a] *= lagrange(node_place(a, i), xi[i]);
       }
     }
   }
 
   KOKKOS_INLINE_FUNCTION static void gradients(const Real (&xi)[dim], Real (&dN)[n_nodes][dim]) {
-    if (is_simplex(shape)) {
+    if constexpr (is_simplex(shape)) {
+      Real l[dim + 1];
+      barycentric(xi, l);
       for (int i = 0; i < dim; ++i) {
-        dN[0][i] = -1;
-        for (int a = 1; a < n_nodes; ++a) dN[a][i] = a == i + 1 ? 1 : 0;
+        for (int a = 0; a <= dim; ++a) dN[a][i] = dl(a, i) * (order == 1 ? 1 : 4 * l[a] - 1);
+        for (int e = 0; e < n_nodes - n_corners; ++e) {
+          const int a = edge(e, 0), b = edge(e, 1);
+          dN[n_corners + e][i] = 4 * (dl(a, i) * l[b] + l[a] * dl(b, i));
+        }
       }
     } else {
       for (int a = 0; a < n_nodes; ++a)
         for (int j = 0; j < dim; ++j) {
-          dN[a][j] = corner(a, j) / 2;
+          dN[a][j] = lagrange_derivative(node_place(a, j), xi[j]);
           for (int i = 0; i < dim; ++i)
-            if (i != j) dN[a][j] *= (1 + corner(a, i) * xi[i]) / 2;
+            if (i != j) dN[a][j] *= lagrange(node_place(a, i), xi[i]);
         }
     }
   }
 
-  /// Face function b of a face and its reference gradient: 4 l1 l2 (triangle), 27 l1 l2 l3 (tetrahedron), the product
-  /// of 1 - xi^2 over the face's directions times the linear function that is 1 on the face and 0 on the opposite one
-  /// (quadrilateral, hexahedron). b vanishes on all other faces and lies outside the displacement space.
+  /// Face function b of a face and its reference gradient. It is 4 l1 l2 (2D) or 27 l1 l2 l3 (3D) on a simplex' face and
+  /// the product of 1 - xi^2 on a quadrilateral's or hexahedron's, vanishes on all other faces, and lies outside the
+  /// displacement space:
+  ///   triangle 4 l1 l2, of order 2: 4 l1 l2 (1 - l3);  tetrahedron 27 l1 l2 l3;
+  ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), s falling from 1 on the face to 0.
   KOKKOS_INLINE_FUNCTION static Real bubble(int face, const Real (&xi)[dim], Real (&db)[dim]) {
-    if (is_simplex(shape)) {
-      Real l[n_nodes], dl[n_nodes][dim];
-      shape_functions(xi, l);
-      gradients(xi, dl);
-      const int opposite = dim == 2 ? (face + 2) % 3 : face;
-      const Real scale = dim == 2 ? 4 : 27;
-      Real b = scale;
-      for (int i = 0; i < dim; ++i) db[i] = 0;
-      for (int a = 0; a < n_nodes; ++a) {
-        if (a == opposite) continue;
-        b *= l[a];
-        Real others = scale;
-        for (int c = 0; c < n_nodes; ++c)
-          if (c != a && c != opposite) others *= l[c];
-        for (int i = 0; i < dim; ++i) db[i] += others * dl[a][i];
-      }
-      return b;
-    }
-    int axis;
-    Real sign;
-    face_axis(face, axis, sign);
-    Real b = 1;
-    for (int i = 0; i < dim; ++i) b *= i == axis ? (1 + sign * xi[i]) / 2 : 1 - xi[i] * xi[i];
-    for (int j = 0; j < dim; ++j) {
-      db[j] = j == axis ? sign / 2 : -2 * xi[j];
-      for (int i = 0; i < dim; ++i)
-        if (i != j) db[j] *= i == axis ? (1 + sign * xi[i]) / 2 : 1 - xi[i] * xi[i];
-    }
-    return b;
+    if constexpr (is_simplex(shape))
+      return simplex_bubble(face, xi, db);
+    else
+      return product_bubble(face, xi, db);
   }
 
   /// Mean of b over its (affine) face: 2/3 on edges, 9/20 on triangles, 4/9 on quadrilaterals.
-  static constexpr Real bubble_mean = dim == 2 ? 2.0 / 3.0 : shape == Shape::tetrahedron ? 0.45 : 4.0 / 9.0;
+  static constexpr Real bubble_mean =
+      dim == 2 ? 2.0 / 3.0 : mesh::linear(shape) == Shape::tetrahedron ? 0.45 : 4.0 / 9.0;
 
-  /// The coordinate direction that is constant on a face of the square or cube, and its sign there.
-  KOKKOS_INLINE_FUNCTION static void face_axis(int face, int& axis, Real& sign) {
-    if (dim == 3) {
-      axis = face / 2;
-      sign = face % 2 == 0 ? -1 : 1;
-    } else {  // y-, x+, y+, x-
-      axis = face % 2 == 0 ? 1 : 0;
-      sign = face == 1 || face == 2 ? 1 : -1;
+  /// The centre of the reference cell.
+  KOKKOS_INLINE_FUNCTION static void centre(Real (&xi)[dim]) {
+    for (int i = 0; i < dim; ++i) xi[i] = is_simplex(shape) ? 1.0 / (dim + 1) : 0;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static void barycentric(const Real (&xi)[dim], Real (&l)[dim + 1]) {
+    l[0] = 1;
+    for (int i = 0; i < dim; ++i) {
+      l[i + 1] = xi[i];
+      l[0] -= xi[i];
     }
+  }
+  /// d l_a / d xi_i
+  KOKKOS_INLINE_FUNCTION static Real dl(int a, int i) { return a == 0 ? -1 : a == i + 1 ? 1 : 0; }
+
+  /// Corner `end` (0, 1) of a simplex' edge.
+  KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
+    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
+    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
+  }
+
+  /// Component i of a node of the square or cube: -1, 0 or 1.
+  KOKKOS_INLINE_FUNCTION static int node_place(int a, int i) {
+    constexpr int square[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+    constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
+                               {-1, 1, 1},   {0, -1, -1}, {1, 0, -1}, {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
+                               {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0}, {1, 1, 0},   {-1, 1, 0}, {-1, 0, 0},
+                               {1, 0, 0},    {0, -1, 0},  {0, 1, 0},  {0, 0, -1},  {0, 0, 1},   {0, 0, 0}};
+    return dim == 2 ? square[a][i] : cube[a][i];
+  }
+
+  /// The function on [-1, 1] that is 1 at `place` and 0 at the other nodes.
+  KOKKOS_INLINE_FUNCTION static Real lagrange(int place, Real x) {
+    if (order == 1) return (1 + place * x) / 2;
+    return place == 0 ? 1 - x * x : x * (x + place) / 2;
+  }
+  KOKKOS_INLINE_FUNCTION static Real lagrange_derivative(int place, Real x) {
+    if (order == 1) return place / 2.0;
+    return place == 0 ? -2 * x : x + place / 2.0;
+  }
+
+  KOKKOS_INLINE_FUNCTION static Real simplex_bubble(int face, const Real (&xi)[dim], Real (&db)[dim]) {
+    Real l[dim + 1];
+    barycentric(xi, l);
+    const int opposite = dim == 2 ? (face + 2) % 3 : face;
+    Real b = dim == 2 ? 4 : 27;  // product of the face's l
+    for (int i = 0; i < dim; ++i) db[i] = 0;
+    for (int a = 0; a <= dim; ++a) {
+      if (a == opposite) continue;
+      Real others = dim == 2 ? 4 : 27;
+      for (int c = 0; c <= dim; ++c)
+        if (c != a && c != opposite) others *= l[c];
+      b *= l[a];
+      for (int i = 0; i < dim; ++i) db[i] += others * dl(a, i);
+    }
+    if (order == 1 || dim == 3) return b;
+    const Real s = 1 - l[opposite];
+    for (int i = 0; i < dim; ++i) db[i] = db[i] * s - b * dl(opposite, i);
+    return b * s;
+  }
+
+  KOKKOS_INLINE_FUNCTION static Real product_bubble(int face, const Real (&xi)[dim], Real (&db)[dim]) {
+    const int axis = dim == 3 ? face / 2 : face % 2 == 0 ? 1 : 0;  // 2D: y-, x+, y+, x-
+    const Real sign = dim == 3 ? (face % 2 == 0 ? -1 : 1) : (face == 1 || face == 2 ? 1 : -1);
+    const Real s = (1 + sign * xi[axis]) / 2;
+    Real factor[dim], slope[dim], b = 1;
+    for (int i = 0; i < dim; ++i) {
+      factor[i] = 1 - xi[i] * xi[i];
+      slope[i] = -2 * xi[i];
+    }
+    factor[axis] = order == 1 ? s : s * s * s;
+    slope[axis] = sign / 2 * (order == 1 ? 1 : 3 * s * s);
+    for (int i = 0; i < dim; ++i) b *= factor[i];
+    for (int j = 0; j < dim; ++j) {
+      db[j] = slope[j];
+      for (int i = 0; i < dim; ++i)
+        if (i != j) db[j] *= factor[i];
+    }
+    return b;
   }
 };
 

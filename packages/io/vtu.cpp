@@ -22,21 +22,17 @@ namespace sprekk::io {
 namespace {
 
 int cell_type(mesh::Shape shape) {
-  switch (shape) {
-    case mesh::Shape::triangle:
-      return VTK_TRIANGLE;
-    case mesh::Shape::quadrilateral:
-      return VTK_QUAD;
-    case mesh::Shape::tetrahedron:
-      return VTK_TETRA;
-    default:
-      return VTK_HEXAHEDRON;
-  }
+  constexpr int types[] = {VTK_TRIANGLE,           VTK_QUAD,           VTK_TETRA,
+                           VTK_HEXAHEDRON,         VTK_QUADRATIC_TRIANGLE, VTK_BIQUADRATIC_QUAD,
+                           VTK_QUADRATIC_TETRA,    VTK_TRIQUADRATIC_HEXAHEDRON};
+  return types[static_cast<int>(shape)];
 }
 
 int face_type(mesh::Shape shape) {
-  if (mesh::dimension(shape) == 2) return VTK_LINE;
-  return shape == mesh::Shape::tetrahedron ? VTK_TRIANGLE : VTK_QUAD;
+  const bool linear = mesh::order(shape) == 1;
+  if (mesh::dimension(shape) == 2) return linear ? VTK_LINE : VTK_QUADRATIC_EDGE;
+  if (mesh::linear(shape) == mesh::Shape::tetrahedron) return linear ? VTK_TRIANGLE : VTK_QUADRATIC_TRIANGLE;
+  return linear ? VTK_QUAD : VTK_BIQUADRATIC_QUAD;
 }
 
 /// Adds nodes as corners of cells to a piece; a node becomes a point when it is first met.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 namespace sprekk::mesh {
 
@@ -61,6 +62,21 @@ constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
         default: faces[f][k] = hexahedron[f][k];
       }
   return faces;
+}
+
+/// f(std::integral_constant<Shape, s>) for a shape that is known at run time only.
+template <class F>
+auto for_shape(Shape s, const F& f) {
+  switch (s) {
+    case Shape::triangle: return f(std::integral_constant<Shape, Shape::triangle>());
+    case Shape::quadrilateral: return f(std::integral_constant<Shape, Shape::quadrilateral>());
+    case Shape::tetrahedron: return f(std::integral_constant<Shape, Shape::tetrahedron>());
+    case Shape::hexahedron: return f(std::integral_constant<Shape, Shape::hexahedron>());
+    case Shape::triangle6: return f(std::integral_constant<Shape, Shape::triangle6>());
+    case Shape::quadrilateral9: return f(std::integral_constant<Shape, Shape::quadrilateral9>());
+    case Shape::tetrahedron10: return f(std::integral_constant<Shape, Shape::tetrahedron10>());
+    default: return f(std::integral_constant<Shape, Shape::hexahedron27>());
+  }
 }
 
 }  // namespace sprekk::mesh

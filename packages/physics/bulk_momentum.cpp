@@ -218,7 +218,7 @@ class BulkMomentum final : public assembly::Module {
   void add_stress(LocalIndex c, const Host& u, std::vector<Real>& values) const {
     Real X[n][dim], xi[dim], dN[n][dim], H[dim][dim] = {}, sigma[dim][dim];
     assembly::gather_host<shape>(*mesh_, c, X);
-    for (int i = 0; i < dim; ++i) xi[i] = assembly::is_simplex(shape) ? 1.0 / (dim + 1) : 0;
+    Op::Cell::centre(xi);
     Op::Cell::gradients(xi, dN);
     const assembly::CellPoint<shape> point(X, dN);
     Real trace = 0;
@@ -249,12 +249,9 @@ class BulkMomentum final : public assembly::Module {
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_bulk_momentum(Shape shape, BulkMomentumParameters parameters) {
-  switch (shape) {
-    case Shape::triangle: return std::make_unique<BulkMomentum<Shape::triangle>>(std::move(parameters));
-    case Shape::quadrilateral: return std::make_unique<BulkMomentum<Shape::quadrilateral>>(std::move(parameters));
-    case Shape::tetrahedron: return std::make_unique<BulkMomentum<Shape::tetrahedron>>(std::move(parameters));
-    default: return std::make_unique<BulkMomentum<Shape::hexahedron>>(std::move(parameters));
-  }
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<BulkMomentum<s()>>(std::move(parameters));
+  });
 }
 
 }  // namespace sprekk::physics

@@ -335,12 +335,9 @@ void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(Shape shape, ElasticPlasticJumpParameters parameters) {
-  switch (shape) {
-    case Shape::triangle: return std::make_unique<ElasticPlasticJump<Shape::triangle>>(std::move(parameters));
-    case Shape::quadrilateral: return std::make_unique<ElasticPlasticJump<Shape::quadrilateral>>(std::move(parameters));
-    case Shape::tetrahedron: return std::make_unique<ElasticPlasticJump<Shape::tetrahedron>>(std::move(parameters));
-    default: return std::make_unique<ElasticPlasticJump<Shape::hexahedron>>(std::move(parameters));
-  }
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<ElasticPlasticJump<s()>>(std::move(parameters));
+  });
 }
 
 }  // namespace sprekk::physics

@@ -199,12 +199,9 @@ class InterfaceTractionBalance final : public assembly::Module {
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_interface_traction_balance(Shape shape, InterfaceTractionBalanceParameters parameters) {
-  switch (shape) {
-    case Shape::triangle: return std::make_unique<InterfaceTractionBalance<Shape::triangle>>(std::move(parameters));
-    case Shape::quadrilateral: return std::make_unique<InterfaceTractionBalance<Shape::quadrilateral>>(std::move(parameters));
-    case Shape::tetrahedron: return std::make_unique<InterfaceTractionBalance<Shape::tetrahedron>>(std::move(parameters));
-    default: return std::make_unique<InterfaceTractionBalance<Shape::hexahedron>>(std::move(parameters));
-  }
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<InterfaceTractionBalance<s()>>(std::move(parameters));
+  });
 }
 
 }  // namespace sprekk::physics
