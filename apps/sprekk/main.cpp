@@ -67,6 +67,7 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Tpetra::ScopeGuard guard(&argc, &argv);
+  int n_libraries_may_read = 1;  // Kokkos would answer --help, too
+  Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
   return run_command(argc, argv, Tpetra::getDefaultComm());
 }

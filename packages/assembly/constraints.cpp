@@ -25,7 +25,8 @@ Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, s
   };
   for (int k = 0; k < static_cast<int>(conditions_.size()); ++k)
     for (const auto& face : mesh.boundary_faces) {
-      if (face.boundary != conditions_[k].boundary) continue;
+      const int region = conditions_[k].region;
+      if (face.boundary != conditions_[k].boundary || (region >= 0 && mesh.cell_region[face.cell] != region)) continue;
       for (int a = 0; a < mesh::n_face_nodes(mesh.shape); ++a) {
         const int corner = mesh::face_nodes(mesh.shape)[face.local_face][a];
         const LocalIndex node = mesh.cells[face.cell * mesh.nodes_per_cell() + corner];

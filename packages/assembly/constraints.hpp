@@ -18,6 +18,7 @@ struct DirichletCondition {
   std::string field;
   int boundary;       ///< number of the mesh's boundary
   std::vector<std::optional<base::Expression>> values;
+  int region = -1;    ///< only on faces of cells of this region; -1: all
 };
 
 /// All conditions on one node field: which owned unknowns they hold and to what value.

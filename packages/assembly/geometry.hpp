@@ -104,6 +104,20 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
   }
 }
 
+/// The face function of ReferenceCell::bubble on its face, from the values of the face's node functions.
+template <Shape shape>
+Real face_bubble(const FaceValues& N) {
+  constexpr bool linear = mesh::order(shape) == 1;
+  if (mesh::dimension(shape) == 2) return linear ? 4 * N[0] * N[1] : N[2];
+  if (mesh::linear(shape) == Shape::tetrahedron) {
+    if (linear) return 27 * N[0] * N[1] * N[2];
+    return 27 * (N[0] + (N[3] + N[5]) / 2) * (N[1] + (N[3] + N[4]) / 2) * (N[2] + (N[4] + N[5]) / 2);
+  }
+  if (!linear) return N[8];
+  const Real xi = N[1] + N[2] - N[0] - N[3], eta = N[2] + N[3] - N[0] - N[1];
+  return (1 - xi * xi) * (1 - eta * eta);
+}
+
 /// Share of each node in the mean over a face: mean(v) = sum_k share_k v_k.
 template <Shape shape>
 FaceValues mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::assembly {
 
@@ -167,12 +168,13 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
+    const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
           const Real size = (row(i) < 0 ? -row(i) : row(i)) / (mask(i) ? held_scale : free_scale);
-          if (!(size <= maximum)) maximum = size;
+          if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
         Kokkos::Max<Real>(largest));
     measures.push_back({blocks_[b].name, largest});
@@ -254,7 +256,7 @@ void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
   refresh_ghosts(x, true);
   for (int i = 0; i < J.n_blocks(); ++i)
     for (int j = 0; j < J.n_blocks(); ++j)
-      if (!J(i, j).is_null()) J(i, j)->setAllToScalar(0);
+      if (!J(i, j).is_null()) Kokkos::deep_copy(J(i, j)->getLocalMatrixDevice().values, 0.0);
   modules_[module]->jacobian(state(module), J);
 }
 

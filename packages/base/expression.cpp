@@ -93,7 +93,7 @@ void check_single_value(const std::string& text) {
 }  // namespace
 
 Expression::Expression(Real constant) : constant_(constant) {
-  SPREKK_CHECK(std::isfinite(constant), "an expression must be finite, is {}", number_text(constant));
+  SPREKK_CHECK(!std::isnan(constant), "an expression must be a number");
 }
 
 Expression::Expression(std::string text, std::string place) : text_(std::move(text)), place_(std::move(place)) {

@@ -15,7 +15,7 @@ namespace sprekk::base {
 /// compiled.
 class Expression {
  public:
-  /// Throws an Error if `constant` is not finite.
+  /// Throws an Error if `constant` is not a number; infinity is one.
   Expression(Real constant = 0);
 
   /// `place` opens the messages of errors, e.g. `scene.xml: Sprekk > Loads > "force"[1]`. Text that is a number is a

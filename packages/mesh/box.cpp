@@ -53,11 +53,14 @@ class BoxBuilder {
   }
 
   GlobalMesh build() {
-    add_nodes();
+    add_nodes(false);
     for (int k = 0; k < std::max(n_blocks_[2], 1); ++k)
       for (int j = 0; j < n_blocks_[1]; ++j)
         for (int i = 0; i < n_blocks_[0]; ++i) add_cells({i, j, k});
     mesh_.cell_region.assign(mesh_.cells.size() / n_nodes(shape_), 0);
+    for (const auto& [name, region] : box_.regions) add_region(name, region);
+    mesh_.coordinates.clear();
+    add_nodes(true);
     add_boundaries();
     std::vector<MarkedFace> marked;
     std::vector<Orientation> orientations;
@@ -123,13 +126,13 @@ class BoxBuilder {
     return c * v + s * cross(axis_, v) + ((1 - c) * dot(axis_, v)) * axis_;
   }
 
-  void add_nodes() {
+  void add_nodes(bool turned) {
     const GlobalIndex n = node(n_blocks_) + 1;
     for (GlobalIndex id = 0; id < n; ++id) {
       const auto p = lattice(id);
       Vector x{};
       for (int i = 0; i < dim_; ++i) x[i] = plane(i, p[i]);
-      x = rotated(x);
+      if (turned) x = rotated(x);
       mesh_.coordinates.insert(mesh_.coordinates.end(), x.begin(), x.begin() + dim_);
     }
   }
@@ -138,6 +141,26 @@ class BoxBuilder {
     for (const auto& corners : cells_of_block(shape_, (block[0] + block[1]) % 2 == 1))
       for (int corner : corners)
         mesh_.cells.push_back(node({block[0] + (corner & 1), block[1] + (corner >> 1 & 1), block[2] + (corner >> 2)}));
+  }
+
+  /// While the box is not yet turned.
+  void add_region(const std::string& name, const BoxMesh::Region& region) {
+    check_length(fmt::format("region \"{}\": lower corner", name), region.lower_corner.size());
+    check_length(fmt::format("region \"{}\": upper corner", name), region.upper_corner.size());
+    mesh_.region_names.push_back(name);
+    const int per_cell = n_nodes(shape_);
+    bool any = false;
+    for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell) {
+      bool inside = true;
+      for (int i = 0; i < dim_; ++i) {
+        Real centre = 0;
+        for (int k = 0; k < per_cell; ++k) centre += mesh_.coordinates[mesh_.cells[cell * per_cell + k] * dim_ + i] / per_cell;
+        inside = inside && region.lower_corner[i] < centre && centre < region.upper_corner[i];
+      }
+      if (inside) mesh_.cell_region[cell] = static_cast<int>(mesh_.region_names.size()) - 1;
+      any = any || inside;
+    }
+    SPREKK_CHECK(any, "region \"{}\": has no cell between its lower and its upper corner", name);
   }
 
   /// Whether all nodes of a cell's face lie in a lattice box.
@@ -237,6 +260,11 @@ void BoxMesh::Fracture::describe(base::Section& s) {
   s.entry(swap_sides, "swap sides", "-", "exchange side - and side +");
 }
 
+void BoxMesh::Region::describe(base::Section& s) {
+  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates, before the rotation");
+  s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
+}
+
 void BoxMesh::describe(base::Section& s) {
   s.required_choice(cell, "cell", {cell_names.begin(), cell_names.end()}, "shape of the cells");
   s.required(lower_corner, "lower corner", "m", base::any(),
@@ -245,6 +273,7 @@ void BoxMesh::describe(base::Section& s) {
   s.required(cells, "cells", "-", base::at_least(1),
              "number of squares or cubes in each direction; a square makes 2 triangles, a cube 6 tetrahedra");
   s.entry(order, "order", "-", base::between(1, 2), "of the displacement in each cell: 1 (linear) or 2 (quadratic)");
+  s.named_sections(regions, "regions", "boxes of cells with a material of their own");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
   s.entry(rotation, "rotation", "degree", base::any(),
           "angle, counter-clockwise about the origin, by which the box turns");

@@ -24,10 +24,17 @@ struct BoxMesh {
     void describe(base::Section& section);
   };
 
+  /// An axis-parallel box; cells whose centre lies in it belong to the region.
+  struct Region {
+    std::vector<Real> lower_corner, upper_corner;  ///< metre, before the rotation
+    void describe(base::Section& section);
+  };
+
   std::string cell = "quadrilateral";
   std::vector<Real> lower_corner{0, 0}, upper_corner{1, 1};  ///< metre, before the rotation
   std::vector<int> cells{1, 1};                              ///< squares or cubes in each direction
   int order = 1;                                             ///< of the cells: 1 or 2
+  std::map<std::string, Region> regions;  ///< besides "bulk"; of several that hold a cell the last by name counts
   std::map<std::string, Fracture> fractures;
   Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
   std::vector<Real> rotation_axis{0, 0, 1};  ///< 3D; through the origin
@@ -37,7 +44,7 @@ struct BoxMesh {
 
 /// The mesh of a box. Squares are cut into two triangles with alternating diagonals, cubes into six Kuhn tetrahedra.
 ///
-/// Region "bulk"; boundaries "west" (x-), "east" (x+), "south" (y-), "north" (y+), "bottom" (z-), "top" (z+), named
+/// Region "bulk", then those of the parameters; boundaries "west" (x-), "east" (x+), "south" (y-), "north" (y+), "bottom" (z-), "top" (z+), named
 /// before the rotation. Fractures in the order of their names, split and oriented (see split()) after the rotation.
 /// Throws an Error if the parameters contradict each other, if a fracture leaves the mesh planes or lies on the
 /// boundary, and if two fractures overlap.

@@ -2,6 +2,10 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
 
 #include "base/check.hpp"
 #include "mesh/facets.hpp"
@@ -35,15 +39,19 @@ Numbering number(const std::vector<bool>& is_local, const std::vector<int>& owne
   return result;
 }
 
+/// Builds the part of any rank, without its communicator.
 class Distributor {
  public:
-  Distributor(const GlobalMesh& global, const std::vector<int>& part, RCP<const Comm> comm)
-      : global_(global), part_(part), rank_(comm->getRank()), nodes_per_cell_(n_nodes(global.shape)) {
-    check(comm->getSize());
-    mesh_.comm = comm;
+  /// Keeps references to the arguments.
+  Distributor(const GlobalMesh& global, const std::vector<int>& part, int n_ranks)
+      : global_(global), part_(part), nodes_per_cell_(n_nodes(global.shape)) {
+    check(n_ranks);
+    node_owner_ = node_owners(n_ranks);
   }
 
-  Mesh build() {
+  Mesh build(int rank) {
+    rank_ = rank;
+    mesh_ = Mesh();
     mesh_.shape = global_.shape;
     mesh_.region_names = global_.region_names;
     mesh_.boundary_names = global_.boundary_names;
@@ -52,7 +60,7 @@ class Distributor {
     mesh_.n_global_cells = global_.n_cells();
     mesh_.n_global_fracture_faces = static_cast<GlobalIndex>(global_.fracture_faces.size());
     cells_ = number(local_cells(), part_, rank_);
-    nodes_ = number(nodes_of([&](GlobalIndex cell) { return cells_.local_of[cell] >= 0; }), node_owners(), rank_);
+    nodes_ = number(nodes_of([&](GlobalIndex cell) { return cells_.local_of[cell] >= 0; }), node_owner_, rank_);
     fill_nodes();
     fill_cells();
     fill_fracture_faces();
@@ -63,7 +71,9 @@ class Distributor {
  private:
   const GlobalMesh& global_;
   const std::vector<int>& part_;
-  const int rank_, nodes_per_cell_;
+  const int nodes_per_cell_;
+  int rank_ = 0;
+  std::vector<int> node_owner_;
   Numbering cells_, nodes_;
   Mesh mesh_;
 
@@ -99,8 +109,7 @@ class Distributor {
   }
 
   /// For each node the lowest rank that owns a cell around it.
-  std::vector<int> node_owners() const {
-    const int n_ranks = mesh_.comm->getSize();
+  std::vector<int> node_owners(int n_ranks) const {
     std::vector<int> owner(global_.n_nodes(), n_ranks);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
       for (int k = 0; k < nodes_per_cell_; ++k) owner[node(cell, k)] = std::min(owner[node(cell, k)], part_[cell]);
@@ -186,21 +195,143 @@ class Distributor {
   }
 };
 
+/// Calls put(x) for each member of a mesh but its communicator; a new member that is not listed here does not compile.
+template <class Members, class Put>
+void for_members(Members& mesh, const Put& put) {
+  auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, node_id, cell_id, cell_owner, coordinates,
+         cells, cell_region, fracture_faces, boundary_faces, region_names, boundary_names, fracture_names,
+         n_global_nodes, n_global_cells, n_global_fracture_faces] = mesh;
+  const auto put_all = [&](auto&... members) { (put(members), ...); };
+  put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, node_id, cell_id, cell_owner, coordinates, cells,
+          cell_region, fracture_faces, boundary_faces, region_names, boundary_names, fracture_names, n_global_nodes,
+          n_global_cells, n_global_fracture_faces);
+}
+
+class Packer {
+ public:
+  std::vector<char> bytes;
+
+  template <class T>
+  void operator()(const T& value) {
+    append(&value, 1);
+  }
+  template <class T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(values.size());
+    append(values.data(), values.size());
+  }
+  void operator()(const std::vector<std::string>& names) {
+    (*this)(names.size());
+    for (const auto& name : names) (*this)(std::vector<char>(name.begin(), name.end()));
+  }
+
+ private:
+  template <class T>
+  void append(const T* values, std::size_t n) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto* first = reinterpret_cast<const char*>(values);
+    bytes.insert(bytes.end(), first, first + n * sizeof(T));
+  }
+};
+
+/// Reads in the order in which a Packer wrote.
+class Unpacker {
+ public:
+  explicit Unpacker(const std::vector<char>& bytes) : next_(bytes.data()) {}
+
+  template <class T>
+  void operator()(T& value) {
+    take(&value, 1);
+  }
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    values.resize(size());
+    take(values.data(), values.size());
+  }
+  void operator()(std::vector<std::string>& names) {
+    names.resize(size());
+    for (auto& name : names) {
+      name.resize(size());
+      take(name.data(), name.size());
+    }
+  }
+
+ private:
+  const char* next_;
+
+  std::size_t size() {
+    std::size_t n = 0;
+    take(&n, 1);
+    return n;
+  }
+  template <class T>
+  void take(T* values, std::size_t n) {
+    std::copy_n(next_, n * sizeof(T), reinterpret_cast<char*>(values));
+    next_ += n * sizeof(T);
+  }
+};
+
+/// Brings bytes from rank 0 to another rank; both call it. MPI counts in int, hence the pieces.
+void transfer(const Comm& comm, int to, std::vector<char>& bytes) {
+  constexpr long long piece = 1 << 30;
+  const bool sends = comm.getRank() == 0;
+  auto size = static_cast<long long>(bytes.size());
+  const auto move = [&](int n, auto* data) {
+    if (sends)
+      Teuchos::send(comm, n, data, to);
+    else
+      Teuchos::receive(comm, 0, n, data);
+  };
+  move(1, &size);
+  bytes.resize(size);
+  for (long long start = 0; start < size; start += piece)
+    move(static_cast<int>(std::min(piece, size - start)), bytes.data() + start);
+}
+
+/// Every rank's part of the mesh that prepare() gives on rank 0, the last rank's first. Collective.
+RCP<const Mesh> scatter(const std::function<const GlobalMesh&()>& prepare, RCP<const Comm> comm) {
+  const bool is_root = comm->getRank() == 0;
+  std::vector<int> part;
+  std::unique_ptr<Distributor> distributor;
+  base::collectively(*comm, [&] {
+    if (!is_root) return;
+    const auto& mesh = prepare();
+    part = partition(mesh, comm->getSize());
+    distributor = std::make_unique<Distributor>(mesh, part, comm->getSize());
+  });
+  const auto result = rcp(new Mesh);
+  for (int rank = comm->getSize() - 1; rank >= 0; --rank) {
+    Packer packer;
+    base::collectively(*comm, [&] {
+      if (!is_root) return;
+      *result = distributor->build(rank);
+      if (rank > 0) for_members(*result, [&](const auto& member) { packer(member); });
+    });
+    if (rank == 0 || (!is_root && comm->getRank() != rank)) continue;
+    transfer(*comm, rank, packer.bytes);
+    Unpacker unpacker(packer.bytes);
+    if (!is_root) for_members(*result, [&](auto& member) { unpacker(member); });
+  }
+  result->comm = comm;
+  return result;
+}
+
 }  // namespace
 
 RCP<const Mesh> distribute(const GlobalMesh& mesh, const std::vector<int>& part, RCP<const Comm> comm) {
-  RCP<const Mesh> result;
-  base::collectively(*comm, [&] { result = rcp(new Mesh(Distributor(mesh, part, comm).build())); });
+  const auto result = rcp(new Mesh);
+  base::collectively(*comm, [&] { *result = Distributor(mesh, part, comm->getSize()).build(comm->getRank()); });
+  result->comm = comm;
   return result;
 }
 
 RCP<const Mesh> make_distributed(const GlobalMesh& mesh, RCP<const Comm> comm) {
-  std::vector<int> part(mesh.n_cells());
-  base::collectively(*comm, [&] {
-    if (comm->getRank() == 0) part = partition(mesh, comm->getSize());
-  });
-  Teuchos::broadcast(*comm, 0, static_cast<int>(part.size()), part.data());
-  return distribute(mesh, part, comm);
+  return scatter([&]() -> const GlobalMesh& { return mesh; }, comm);
+}
+
+RCP<const Mesh> make_distributed(const std::function<GlobalMesh()>& make, RCP<const Comm> comm) {
+  GlobalMesh mesh;
+  return scatter([&]() -> const GlobalMesh& { return mesh = make(); }, comm);
 }
 
 }  // namespace sprekk::mesh

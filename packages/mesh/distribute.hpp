@@ -1,6 +1,7 @@
 // From the global mesh to each rank's part.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -14,7 +15,13 @@ namespace sprekk::mesh {
 /// to no cell, or if the two sides of a fracture face do not coincide.
 RCP<const Mesh> distribute(const GlobalMesh& mesh, const std::vector<int>& part, RCP<const Comm> comm);
 
-/// The same with the partition() of rank 0, one part per rank. Collective.
+/// Every rank's part of a mesh that only rank 0 holds, as distribute() would give it with the partition() into one part
+/// per rank. make() is called on rank 0 only, which then sends the parts one by one and lets the mesh go: no other rank
+/// ever holds more than its part, rank 0 at most the mesh, one part more than its own, and that part packed.
+/// Collective. An exception on rank 0, in make() too, becomes an Error on all ranks.
+RCP<const Mesh> make_distributed(const std::function<GlobalMesh()>& make, RCP<const Comm> comm);
+
+/// The same with the mesh of rank 0; that of other ranks is not read.
 RCP<const Mesh> make_distributed(const GlobalMesh& mesh, RCP<const Comm> comm);
 
 }  // namespace sprekk::mesh

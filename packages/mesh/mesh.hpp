@@ -29,6 +29,7 @@ struct GlobalMesh {
   std::vector<Real> coordinates;   ///< [node * dim + component], metre
   std::vector<GlobalIndex> cells;  ///< [cell * n_nodes(shape) + local node]
   std::vector<int> cell_region;    ///< [cell], index into region_names
+  std::vector<GlobalIndex> parent_node;  ///< [node] the node that split() copied, itself for all others; see split.hpp
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;

@@ -3,8 +3,12 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "base/check.hpp"
 #include "mesh/facets.hpp"
@@ -12,9 +16,12 @@
 namespace sprekk::mesh {
 namespace {
 
+constexpr idx_t fracture_edge_weight = 4, n_seeds = 10;
+
 /// The cell graph in compressed rows, without repeated edges.
 struct Graph {
-  std::vector<idx_t> offsets, neighbours;
+  std::vector<idx_t> offsets, neighbours, edge_weights;
+  std::vector<idx_t> weights;  ///< [cell * 2 + constraint]: one cell, fracture faces with this minus cell
 };
 
 Graph cell_graph(const GlobalMesh& mesh) {
@@ -23,46 +30,125 @@ Graph cell_graph(const GlobalMesh& mesh) {
   SPREKK_CHECK(across.size() <= static_cast<std::size_t>(std::numeric_limits<idx_t>::max()),
                "partition: {} cells are too many for this METIS, whose indices have {} bits", mesh.n_cells(),
                8 * sizeof(idx_t));
-  for (const auto& face : mesh.fracture_faces)
-    for (int side : {minus, plus})
-      across[face.cell[side] * faces_per_cell + face.local_face[side]] = face.cell[1 - side] * faces_per_cell;
-
-  Graph graph{{0}, {}};
+  Graph graph{{0}, {}, {}, {}};
+  for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) graph.weights.insert(graph.weights.end(), {1, 0});
+  std::vector<bool> is_fracture(across.size(), false);
+  for (const auto& face : mesh.fracture_faces) {
+    ++graph.weights[2 * face.cell[minus] + 1];
+    for (int side : {minus, plus}) {
+      const GlobalIndex index = face.cell[side] * faces_per_cell + face.local_face[side];
+      across[index] = face.cell[1 - side] * faces_per_cell;
+      is_fracture[index] = true;
+    }
+  }
   for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
-    const auto row = static_cast<std::ptrdiff_t>(graph.neighbours.size());
-    for (int f = 0; f < faces_per_cell; ++f)
-      if (const GlobalIndex other = across[cell * faces_per_cell + f]; other >= 0)
-        graph.neighbours.push_back(static_cast<idx_t>(other / faces_per_cell));
-    std::sort(graph.neighbours.begin() + row, graph.neighbours.end());
-    graph.neighbours.erase(std::unique(graph.neighbours.begin() + row, graph.neighbours.end()), graph.neighbours.end());
+    std::map<idx_t, idx_t> row;
+    for (GlobalIndex face = cell * faces_per_cell; face < (cell + 1) * faces_per_cell; ++face)
+      if (across[face] >= 0)
+        row[static_cast<idx_t>(across[face] / faces_per_cell)] += is_fracture[face] ? fracture_edge_weight : 1;
+    for (const auto& [neighbour, weight] : row) {
+      graph.neighbours.push_back(neighbour);
+      graph.edge_weights.push_back(weight);
+    }
     graph.offsets.push_back(static_cast<idx_t>(graph.neighbours.size()));
   }
   return graph;
+}
+
+struct Tolerances {
+  double cells, fracture_faces;  ///< largest part / mean
+};
+
+/// What METIS makes of the graph; without tolerances the cells alone are balanced, as well as it can.
+std::vector<int> metis_partition(Graph& graph, int n_parts, idx_t seed, const std::optional<Tolerances>& tolerances) {
+  const bool recursive = n_parts <= 8;                                    // as its manual advises
+  const double n_levels = recursive ? std::ceil(std::log2(n_parts)) : 1;  // of bisections, whose imbalances multiply
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = seed;
+  idx_t n_cells = static_cast<idx_t>(graph.offsets.size()) - 1, n_constraints = tolerances ? 2 : 1, parts = n_parts;
+  std::vector<real_t> bounds;
+  if (tolerances)
+    for (double tolerance : {tolerances->cells, tolerances->fracture_faces})
+      bounds.push_back(static_cast<real_t>(std::pow(tolerance, 1 / n_levels)));
+  std::vector<idx_t> part(n_cells);
+  idx_t cut = 0;
+  const auto method = recursive ? METIS_PartGraphRecursive : METIS_PartGraphKway;
+  const int status = method(&n_cells, &n_constraints, graph.offsets.data(), graph.neighbours.data(),
+                            tolerances ? graph.weights.data() : nullptr, nullptr, graph.edge_weights.data(), &parts,
+                            nullptr, tolerances ? bounds.data() : nullptr, options, &cut, part.data());
+  SPREKK_CHECK(status == METIS_OK, "partition: METIS failed with status {} on {} cells and {} parts", status, n_cells,
+               n_parts);
+  return {part.begin(), part.end()};
+}
+
+/// Sum of the cells' weights in each part.
+std::vector<idx_t> loads(const Graph& graph, const std::vector<int>& part, int n_parts, int constraint) {
+  std::vector<idx_t> result(n_parts, 0);
+  for (std::size_t cell = 0; cell < part.size(); ++cell) result[part[cell]] += graph.weights[2 * cell + constraint];
+  return result;
+}
+
+/// Largest load / mean load; 1 where there is none.
+double imbalance(const std::vector<idx_t>& loads) {
+  const double sum = std::accumulate(loads.begin(), loads.end(), 0.0);
+  return sum > 0 ? static_cast<double>(*std::max_element(loads.begin(), loads.end())) *
+                       static_cast<double>(loads.size()) / sum
+                 : 1;
+}
+
+/// Gives each empty part a cell of the largest one.
+void fill_empty_parts(const Graph& graph, std::vector<int>& part, int n_parts) {
+  auto n_cells = loads(graph, part, n_parts, 0);
+  for (int empty = 0; empty < n_parts; ++empty) {
+    if (n_cells[empty] > 0) continue;
+    const auto largest = std::max_element(n_cells.begin(), n_cells.end());
+    *std::find(part.begin(), part.end(), static_cast<int>(largest - n_cells.begin())) = empty;
+    --*largest;
+    n_cells[empty] = 1;
+  }
 }
 
 }  // namespace
 
 std::vector<int> partition(const GlobalMesh& mesh, int n_parts) {
   SPREKK_CHECK(n_parts > 0, "partition: {} parts; needs at least one", n_parts);
-  std::vector<int> part(mesh.n_cells(), 0);
-  if (n_parts == 1) return part;
+  std::vector<int> best(mesh.n_cells(), 0);
+  if (n_parts == 1) return best;
   if (mesh.n_cells() <= n_parts) {
-    std::iota(part.begin(), part.end(), 0);
-    return part;
+    std::iota(best.begin(), best.end(), 0);
+    return best;
   }
+  // METIS meets two tolerances at once with luck only, so it is asked again, with another seed, until it does; else the
+  // cells come first. The tolerances allow for a cell, and for the few fracture faces of a small mesh, in each part.
   Graph graph = cell_graph(mesh);
-  idx_t options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = 1;
-  idx_t n_cells = static_cast<idx_t>(mesh.n_cells()), n_constraints = 1, parts = n_parts, cut = 0;
-  std::vector<idx_t> result(mesh.n_cells());
-  const auto method = n_parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;  // as its manual advises
-  const int status = method(&n_cells, &n_constraints, graph.offsets.data(), graph.neighbours.data(), nullptr, nullptr,
-                            nullptr, &parts, nullptr, nullptr, options, &cut, result.data());
-  SPREKK_CHECK(status == METIS_OK, "partition: METIS failed with status {} on {} cells and {} parts", status,
-               mesh.n_cells(), n_parts);
-  std::copy(result.begin(), result.end(), part.begin());
-  return part;
+  const double parts = n_parts, n_cells = static_cast<double>(mesh.n_cells()),
+               n_faces = std::max(1.0, static_cast<double>(mesh.fracture_faces.size()));
+  const Tolerances allowed{1.05 + parts / n_cells, 1.2 + 4 * parts / n_faces};
+  const auto excess = [&](const std::vector<int>& part) {
+    return std::make_pair(std::max(0.0, imbalance(loads(graph, part, n_parts, 0)) - allowed.cells),
+                          std::max(0.0, imbalance(loads(graph, part, n_parts, 1)) - allowed.fracture_faces));
+  };
+  best = metis_partition(graph, n_parts, 1, std::nullopt);
+  auto least = excess(best);
+  for (idx_t seed = 1; seed <= n_seeds && least.first + least.second > 0; ++seed)
+    if (auto part = metis_partition(graph, n_parts, seed, allowed); excess(part) < least) {
+      best = std::move(part);
+      least = excess(best);
+    }
+  fill_empty_parts(graph, best, n_parts);
+  return best;
+}
+
+PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int n_parts) {
+  const Graph graph = cell_graph(mesh);
+  PartitionReport result{imbalance(loads(graph, part, n_parts, 0)), imbalance(loads(graph, part, n_parts, 1)), 0, 0};
+  for (std::size_t cell = 0; cell < part.size(); ++cell)
+    for (idx_t k = graph.offsets[cell]; k < graph.offsets[cell + 1]; ++k)
+      if (static_cast<idx_t>(cell) < graph.neighbours[k] && part[cell] != part[graph.neighbours[k]]) ++result.edge_cut;
+  for (const auto& face : mesh.fracture_faces)
+    if (part[face.cell[minus]] != part[face.cell[plus]]) ++result.separated_faces;
+  return result;
 }
 
 }  // namespace sprekk::mesh

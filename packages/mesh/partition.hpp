@@ -7,9 +7,21 @@
 
 namespace sprekk::mesh {
 
-/// The part [0, n_parts) of each cell, by METIS with a fixed seed. The graph has an edge between cells that share a
-/// face and across every fracture face. With fewer cells than parts some parts are empty. Throws an Error if METIS
-/// fails.
+/// The part [0, n_parts) of each cell, by METIS with fixed seeds. The graph has an edge between cells that share a
+/// face, and a heavier one across every fracture face, so that its two cells tend to stay together. Balanced are the
+/// number of cells, which comes first, and as far as that permits the number of fracture faces, each counted at its
+/// minus cell. No part is empty unless there are fewer cells than parts. Throws an Error if METIS fails.
 std::vector<int> partition(const GlobalMesh& mesh, int n_parts);
+
+/// How good a partition is.
+struct PartitionReport {
+  double cell_imbalance;           ///< most cells in a part / mean over all parts; 1 is perfect
+  double fracture_face_imbalance;  ///< the same of fracture faces, at their minus cell; 1 where there are none
+  GlobalIndex edge_cut;            ///< pairs of cells that share a face, or a fracture face, and are in different parts
+  GlobalIndex separated_faces;     ///< fracture faces whose two cells are in different parts
+};
+
+/// `part` is in [0, n_parts) for each cell.
+PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int n_parts);
 
 }  // namespace sprekk::mesh

@@ -26,6 +26,8 @@ GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed) {
   GlobalMesh result = mesh;
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node)
     std::copy_n(&mesh.coordinates[node * dim], dim, &result.coordinates[new_node[node] * dim]);
+  for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)
+    result.parent_node[new_node[node]] = new_node[mesh.parent_node[node]];
   for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
     result.cell_region[new_cell[cell]] = mesh.cell_region[cell];
     for (int k = 0; k < nodes_per_cell; ++k)

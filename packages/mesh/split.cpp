@@ -86,6 +86,7 @@ void split_nodes(GlobalMesh& mesh, const FractureFaces& faces, const std::vector
       mesh.cells[corner] = mesh.cells[representative];
     } else if (on_fracture[node] && is_taken[node]) {
       mesh.cells[corner] = mesh.n_nodes();
+      mesh.parent_node.push_back(node);
       for (int i = 0; i < dim; ++i) mesh.coordinates.push_back(mesh.coordinates[node * dim + i]);
     } else {
       is_taken[node] = true;
@@ -100,6 +101,8 @@ GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked, const s
   SPREKK_CHECK(orientations.empty() || orientations.size() == mesh.fracture_names.size(),
                "split: {} orientations for {} fractures; needs one each", orientations.size(),
                mesh.fracture_names.size());
+  mesh.parent_node.resize(mesh.n_nodes());
+  std::iota(mesh.parent_node.begin(), mesh.parent_node.end(), GlobalIndex{0});
   if (mesh.fracture_names.empty()) return mesh;
   const auto neighbour = face_neighbours(mesh);
   auto faces = two_sided(mesh, marked, neighbour);

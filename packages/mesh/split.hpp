@@ -25,7 +25,7 @@ struct Orientation {
 ///
 /// Around each node the cells are connected through unmarked faces. Each connected set of cells has its own copy of the
 /// node: the set of the lowest cell keeps the old number, copies are appended. So tips stay whole, a crossing of two
-/// fractures has four copies, a T three.
+/// fractures has four copies, a T three. parent_node keeps the old number of each node.
 ///
 /// `mesh` has conforming cells of positive volume, fracture_names, and no fracture faces. fracture_faces come in the
 /// order of `marked`, without repetitions, oriented by orient(). `orientations` is empty or has one entry per fracture.

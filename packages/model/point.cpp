@@ -19,7 +19,7 @@ namespace {
 template <int dim>
 class PointDriver {
  public:
-  explicit PointDriver(const PointScene& scene) : point_(scene.point), law_(scene.materials.at(scene.point.material).joint().law) {
+  explicit PointDriver(const PointScene& scene) : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
     c_ = laws::augmentation(law_, typical_stiffness());
@@ -164,6 +164,7 @@ PointScene read_point_scene(const Comm& comm, const std::string& path, const std
   for (const auto& text : overrides) base::apply_override(list, text);
   auto scene = base::read<PointScene>(list, path, "Sprekk");
   const auto tables = std::make_shared<const base::Tables>(scene.tables);
+  for (auto& [name, material] : scene.materials) material.compile(tables);
   for (auto& expression : scene.point.path) expression.compile(tables);
   return scene;
 }

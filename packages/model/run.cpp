@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 
 namespace sprekk::model {
 
@@ -31,12 +32,25 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
+template <class Work>
+auto naming_file(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.compare(0, file.size() + 1, file + ":") == 0) throw;
+    throw Error(file + ": " + message);
+  }
+}
+
 }  // namespace
 
 bool run(const RunOptions& options, RCP<const Comm> comm) {
   base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
   const Scene scene = read_scene(*comm, options.scene, options.overrides);
-  Model model(scene, comm);
+  const auto made = naming_file(options.scene, [&] { return std::make_unique<Model>(scene, comm); });
+  Model& model = *made;
   log.info("{}: {} cells, {} nodes, {} fracture faces, {} ranks", options.scene, model.mesh().n_global_cells,
            model.mesh().n_global_nodes, model.mesh().n_global_fracture_faces, comm->getSize());
   log.info("linear solver: {}", model.newton().linear().solver().describe());
@@ -47,7 +61,14 @@ bool run(const RunOptions& options, RCP<const Comm> comm) {
   Progress progress(log, times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Real begin = model.time();
-    const auto report = model.step_to(times[k]);
+    const auto report = [&] {
+      try {
+        return model.step_to(times[k]);
+      } catch (const Error& error) {  // of an expression; the same on every rank
+        results.finish("failed", error.what());
+        throw;
+      }
+    }();
     const auto faces = results.add_step(report, k + 1 == times.size() || !report.converged);
     progress.add(report, times[k] - begin, faces);
     if (report.converged) continue;
@@ -62,8 +83,10 @@ bool run(const RunOptions& options, RCP<const Comm> comm) {
 
 void check(const RunOptions& options, RCP<const Comm> comm) {
   const Scene scene = read_scene(*comm, options.scene, options.overrides);
-  Model model(scene, comm);
-  model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
+  naming_file(options.scene, [&] {
+    Model model(scene, comm);
+    model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
+  });
 }
 
 std::string reference() { return base::reference<Scene>("Sprekk"); }

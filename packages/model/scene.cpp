@@ -24,18 +24,14 @@ std::vector<std::string> names_of(const std::map<std::string, T>& map) {
 void Material::describe(base::Section& s) {
   s.required_choice(type, "type", {"elastic", "joint"}, "elastic: rock; joint: the surface of a fracture");
   if (type != "joint") {
-    s.entry(elastic.E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
-    s.entry(elastic.nu, "Poisson's ratio", "-", base::greater_than(-1).below(0.5), "nu");
-    s.entry(elastic.G, "shear modulus", "Pa", base::positive(), "G");
-    s.entry(elastic.lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
-    s.entry(elastic.K, "bulk modulus", "Pa", base::positive(), "K");
-    if (type == "elastic" && s.complete()) {
-      try {
-        laws::lame_constants(elastic);
-      } catch (const Error& error) {
-        s.fail(error.what());
-      }
-    }
+    s.entry(E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
+    s.entry(nu, "Poisson's ratio", "-", base::greater_than(-1).below(0.5), "nu");
+    s.entry(G, "shear modulus", "Pa", base::positive(), "G");
+    s.entry(lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
+    s.entry(K, "bulk modulus", "Pa", base::positive(), "K");
+    s.entry(density, "density", "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
+    const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
+    if (type == "elastic" && s.complete() && n != 2) s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
   }
   if (type != "elastic") {
     s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
@@ -50,32 +46,104 @@ void Material::describe(base::Section& s) {
     if (type == "joint" && s.complete()) {
       if (friction_coefficient.has_value() == friction_angle.has_value())
         s.fail("give either \"friction coefficient\" or \"friction angle\"");
-      if (maximum_closure > 0 && !normal_stiffness)
+      const bool closes = !maximum_closure.is_constant() || maximum_closure({0, 0, 0}, 0) > 0;
+      if (closes && !normal_stiffness)
         s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
     }
   }
 }
 
-physics::JointParameters Material::joint() const {
+template <class Visit>
+void Material::for_each(const Visit& visit) const {
+  const Real none = -std::numeric_limits<Real>::infinity(), infinite = -none;
+  const auto optional = [&](const char* name, const std::optional<Value>& value, Real least, bool itself, Real limit) {
+    if (value) visit(name, *value, least, itself, limit);
+  };
+  if (type == "elastic") {
+    optional("Young's modulus", E, 0, false, infinite);
+    optional("Poisson's ratio", nu, -1, false, 0.5);
+    optional("shear modulus", G, 0, false, infinite);
+    optional("Lame's first parameter", lambda, none, false, infinite);
+    optional("bulk modulus", K, 0, false, infinite);
+    visit("density", density, 0, true, infinite);
+  } else {
+    visit("tangential stiffness", tangential_stiffness, 0, false, 2 * infinite);
+    optional("friction coefficient", friction_coefficient, 0, true, infinite);
+    optional("friction angle", friction_angle, 0, true, 90);
+    visit("dilation angle", dilation_angle, 0, true, 90);
+    visit("initial gap", initial_gap, none, false, infinite);
+    visit("maximum closure", maximum_closure, 0, true, infinite);
+    visit("initial aperture", initial_aperture, 0, true, infinite);
+    optional("normal stiffness", normal_stiffness, 0, false, infinite);
+  }
+}
+
+void Material::compile(const std::shared_ptr<const base::Tables>& tables) {
+  for_each([&](const char* name, const Value& value, Real, bool, Real) {
+    auto& mutable_value = const_cast<Value&>(value);  // for_each serves const members as well
+    mutable_value.compile(tables);
+    SPREKK_CHECK(value.constant_in_time(), "material: \"{}\" is \"{}\"; a material may depend on x, y, z, not on t", name, value.text());
+  });
+}
+
+bool Material::is_uniform() const {
+  bool uniform = true;
+  for_each([&](const char*, const Value& value, Real, bool, Real) { uniform = uniform && value.is_constant(); });
+  return uniform;
+}
+
+void Material::check(const Point& x) const {
+  for_each([&](const char* name, const Value& value, Real least, bool itself, Real limit) {
+    if (value.is_constant()) return;  // checked when it was read
+    const Real v = value(x, 0);
+    SPREKK_CHECK((itself ? v >= least : v > least) && v < limit, "material: \"{}\" = {} is {} at ({}, {}, {}), must be {} {}{}", name,
+                 value.text(), v, x[0], x[1], x[2], itself ? "at least" : "above", least,
+                 std::isfinite(limit) ? fmt::format(" and below {}", limit) : "");
+  });
+}
+
+laws::Elasticity Material::elasticity(const Point& x) const {
+  check(x);
+  const auto at = [&](const std::optional<Value>& value) { return value ? std::make_optional((*value)(x, 0)) : std::nullopt; };
+  return laws::lame_constants({at(E), at(nu), at(G), at(lambda), at(K)});
+}
+
+physics::JointParameters Material::joint(const Point& x) const {
+  check(x);
   physics::JointParameters joint;
-  joint.law.elastic.compliance = 1 / tangential_stiffness;
-  joint.law.friction.coefficient = friction_coefficient ? *friction_coefficient : std::tan(*friction_angle * degree);
-  joint.law.gap.initial = initial_gap;
-  joint.law.gap.dilation.tangent = std::tan(dilation_angle * degree);
-  joint.law.gap.closure = {maximum_closure, normal_stiffness.value_or(1)};
-  joint.initial_aperture = initial_aperture;
+  joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
+  joint.law.friction.coefficient = friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
+  joint.law.gap.initial = initial_gap(x, 0);
+  joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
+  joint.law.gap.closure = {maximum_closure(x, 0), normal_stiffness ? (*normal_stiffness)(x, 0) : 1};
+  joint.initial_aperture = initial_aperture(x, 0);
   return joint;
 }
 
 void Bulk::describe(base::Section& s) {
   s.required(material, "material", "-", "name of an elastic material");
   s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
+  s.entry(gravity, "gravity", "m/s^2", base::any(), "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
+  s.entry(initial_stress, "initial stress", "Pa",
+          "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of x, y, z");
+  s.section(lithostatic_stress, "lithostatic stress", "initial stress of rock at rest under gravity along the last coordinate");
+  if (s.complete() && lithostatic_stress && !initial_stress.empty())
+    s.fail("give either \"initial stress\" or \"lithostatic stress\"");
+  if (s.complete() && lithostatic_stress && gravity.empty()) s.fail("gravity", "missing; \"lithostatic stress\" needs it");
 }
+
+void Lithostatic::describe(base::Section& s) {
+  s.required(surface, "surface", "m", "coordinate where the vertical stress is zero");
+  s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "horizontal over vertical stress");
+}
+
+void Region::describe(base::Section& s) { s.required(material, "material", "-", "name of an elastic material"); }
 
 void Fracture::describe(base::Section& s) { s.required(material, "material", "-", "name of a joint material"); }
 
 void BoundaryCondition::describe(base::Section& s) {
   s.required(boundary, "boundary", "-", "name of a boundary of the mesh: west, east, south, north, bottom, top");
+  s.entry(region, "region", "-", "name of a region: the condition holds only on faces of its cells");
   s.entry(displacement, "displacement", "m", "per direction a value, an expression of x, y, z, t, or free");
   s.entry(traction, "traction", "Pa", "force per area on the body, per direction a value or an expression of x, y, z, t");
   if (s.complete() && displacement.empty() == traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
@@ -115,6 +183,7 @@ void Scene::describe(base::Section& s) {
   s.section(mesh, "Mesh", "a box with plane fractures");
   s.named_sections(materials, "Materials", "rock and joints, by names of your choice");
   s.section(bulk, "Bulk", "the rock");
+  s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
   s.named_sections(boundary_conditions, "Boundary conditions", "by names of your choice; boundaries without one are free of traction");
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
@@ -144,6 +213,20 @@ void Scene::check_names(base::Section& s) const {
   };
   is_material("Bulk", bulk.material, "elastic");
   has_length("Bulk > \"body force\"", bulk.body_force.size());
+  has_length("Bulk > \"gravity\"", bulk.gravity.size());
+  const std::size_t n_stresses = dim() == 2 ? 4 : 6;
+  if (!bulk.initial_stress.empty() && bulk.initial_stress.size() != n_stresses)
+    s.fail(fmt::format("Bulk > \"initial stress\": has {} values, must have {}", bulk.initial_stress.size(), n_stresses));
+  if (bulk.lithostatic_stress && bulk.gravity.size() == static_cast<std::size_t>(dim())) {
+    if (!material_of("bulk").density.is_constant())
+      s.fail("Bulk > lithostatic stress: needs a density that is a number; give an \"initial stress\" instead");
+    for (int i = 0; i < dim() - 1; ++i)
+      if (bulk.gravity[i] != 0) s.fail("Bulk > lithostatic stress: needs gravity along the last coordinate only");
+  }
+  auto region_names = names_of(mesh.regions);
+  region_names.push_back("bulk");
+  for (const auto& [name, region] : regions)
+    if (known(fmt::format("Regions > \"{}\"", name), name, region_names)) is_material("Regions > " + name, region.material, "elastic");
   for (const auto& [name, fracture] : fractures) {
     if (known(fmt::format("Fractures > \"{}\"", name), name, names_of(mesh.fractures)))
       is_material("Fractures > " + name, fracture.material, "joint");
@@ -156,11 +239,28 @@ void Scene::check_names(base::Section& s) const {
   for (const auto& [name, condition] : boundary_conditions) {
     const std::string place = "Boundary conditions > " + name;
     known(place + " > \"boundary\"", condition.boundary, boundaries);
+    if (condition.region) known(place + " > \"region\"", *condition.region, region_names);
     has_length(place + " > \"displacement\"", condition.displacement.size());
     has_length(place + " > \"traction\"", condition.traction.size());
     for (const auto& value : condition.displacement) held = held || value.text() != "free";
   }
   if (!held) s.fail("Boundary conditions: none prescribes a displacement; nothing holds the rock in place");
+}
+
+std::vector<base::Expression> Scene::lithostatic() const {
+  const int up = dim() - 1;
+  const Real weight = -material_of("bulk").density({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
+  std::vector<base::Expression> stress(dim() == 2 ? 4 : 6, base::Expression(0));
+  for (int i = 0; i < 3; ++i) {
+    const Real factor = weight * (i == up ? 1 : bulk.lithostatic_stress->horizontal_ratio);
+    stress[i] = base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
+  }
+  return stress;
+}
+
+const Material& Scene::material_of(const std::string& region) const {
+  const auto found = regions.find(region);
+  return materials.at(found == regions.end() ? bulk.material : found->second.material);
 }
 
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
@@ -172,7 +272,13 @@ Scene read_scene(const Comm& comm, const std::string& path, const std::vector<st
     for (auto& value : values)
       if (value.text() != "free") value.compile(tables);
   };
+  if (scene.bulk.lithostatic_stress) scene.bulk.initial_stress = scene.lithostatic();
   compile(scene.bulk.body_force);
+  compile(scene.bulk.initial_stress);
+  for (const auto& component : scene.bulk.initial_stress)
+    SPREKK_CHECK(component.constant_in_time(), "{}: Sprekk > Bulk > \"initial stress\": is \"{}\"; it may depend on x, y, z, not on t", path,
+                 component.text());
+  for (auto& [name, material] : scene.materials) material.compile(tables);
   for (auto& [name, condition] : scene.boundary_conditions) {
     compile(condition.displacement);
     compile(condition.traction);

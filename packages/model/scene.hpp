@@ -10,31 +10,62 @@
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
 
+#include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace sprekk::model {
 
-/// Rock, or the surface of a fracture.
+/// Rock, or the surface of a fracture. Every number may be an expression of x, y, z.
 struct Material {
+  using Value = base::Expression;
+  using Point = std::array<Real, 3>;
+
   std::string type;  ///< "elastic" or "joint"
 
-  laws::ElasticPair elastic;
+  std::optional<Value> E, nu, G, lambda, K;  ///< exactly two for rock
+  Value density = 0;
 
-  Real tangential_stiffness = std::numeric_limits<Real>::infinity();
-  std::optional<Real> friction_coefficient, friction_angle;  ///< exactly one for a joint
-  Real dilation_angle = 0, initial_gap = 0, maximum_closure = 0, initial_aperture = 0;
-  std::optional<Real> normal_stiffness;  ///< needed where there is closure
+  Value tangential_stiffness = std::numeric_limits<Real>::infinity();
+  std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint
+  Value dilation_angle = 0, initial_gap = 0, maximum_closure = 0, initial_aperture = 0;
+  std::optional<Value> normal_stiffness;  ///< needed where there is closure
 
   void describe(base::Section& section);
-  physics::JointParameters joint() const;
+  void compile(const std::shared_ptr<const base::Tables>& tables);
+  bool is_uniform() const;  ///< no value depends on the place
+  /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
+  laws::Elasticity elasticity(const Point& x) const;
+  physics::JointParameters joint(const Point& x) const;
+
+ private:
+  /// Calls visit(name, value, least, least itself is allowed, upper limit) for each of the values that are given.
+  template <class Visit>
+  void for_each(const Visit& visit) const;
+  void check(const Point& x) const;
+};
+
+/// Initial stress of rock at rest under gravity along the last coordinate.
+struct Lithostatic {
+  Real surface = 0;           ///< coordinate where the vertical stress is zero, m
+  Real horizontal_ratio = 1;  ///< horizontal over vertical stress
+  void describe(base::Section& section);
 };
 
 struct Bulk {
-  std::string material;
+  std::string material;  ///< of all regions that have none of their own
   std::vector<base::Expression> body_force;
+  std::vector<Real> gravity;                      ///< m/s^2; its force is the density times this
+  std::vector<base::Expression> initial_stress;   ///< XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D
+  std::optional<Lithostatic> lithostatic_stress;  ///< or this
+  void describe(base::Section& section);
+};
+
+struct Region {
+  std::string material;
   void describe(base::Section& section);
 };
 
@@ -45,6 +76,7 @@ struct Fracture {
 
 struct BoundaryCondition {
   std::string boundary;
+  std::optional<std::string> region;  ///< only where the boundary touches this region
   std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
   std::vector<base::Expression> traction;
   void describe(base::Section& section);
@@ -69,6 +101,7 @@ struct Scene {
   mesh::BoxMesh mesh;
   std::map<std::string, Material> materials;
   Bulk bulk;
+  std::map<std::string, Region> regions;
   std::map<std::string, Fracture> fractures;
   std::map<std::string, BoundaryCondition> boundary_conditions;
   base::Tables tables;
@@ -78,6 +111,8 @@ struct Scene {
 
   void describe(base::Section& section);
   int dim() const { return static_cast<int>(mesh.lower_corner.size()); }
+  const Material& material_of(const std::string& region) const;
+  std::vector<base::Expression> lithostatic() const;  ///< components of the lithostatic stress
 
  private:
   void check_names(base::Section& section) const;

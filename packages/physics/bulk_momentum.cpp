@@ -18,7 +18,8 @@ namespace {
 /// | x        | [node, dim]      | m    | displacement of the cell's nodes  |
 /// | r        | [node, dim]      | N    | forces                            |
 /// | geometry | see Geometry     | m    |                                   |
-/// | material | [region]         | Pa   | Lame's constants                  |
+/// | law      | [cell]           | -    | number of the cell's material     |
+/// | material | [number]         | Pa   | Lame's constants                  |
 template <Shape shape>
 struct ElasticCell {
   using Cell = assembly::ReferenceCell<shape>;
@@ -29,6 +30,7 @@ struct ElasticCell {
 
   assembly::Geometry geometry;
   ConstView<laws::Elasticity*> material;
+  ConstView<int*> law;
 
   /// Gradients in space of the shape functions at point q; returns the volume that the point stands for.
   KOKKOS_INLINE_FUNCTION Real gradients(const Real (&X)[n][dim], int q, Real (&g)[n][dim]) const {
@@ -40,13 +42,13 @@ struct ElasticCell {
     return weight * point.volume;
   }
 
-  KOKKOS_INLINE_FUNCTION void stress(const Real (&g)[n][dim], const Real (&x)[n * dim], int region,
+  KOKKOS_INLINE_FUNCTION void stress(const Real (&g)[n][dim], const Real (&x)[n * dim], int number,
                                      Real (&sigma)[dim][dim]) const {
     Real H[dim][dim] = {};
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) H[i][j] += x[a * dim + i] * g[a][j];
-    material(region).stress(H, sigma);
+    material(number).stress(H, sigma);
   }
 
   KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[n * dim], Real (&r)[n * dim]) const {
@@ -55,7 +57,7 @@ struct ElasticCell {
     for (Real& value : r) value = 0;
     for (int q = 0; q < Rule::n; ++q) {
       const Real volume = gradients(X, q, g);
-      stress(g, x, geometry.region(cell), sigma);
+      stress(g, x, law(cell), sigma);
       for (int a = 0; a < n; ++a)
         for (int i = 0; i < dim; ++i)
           for (int j = 0; j < dim; ++j) r[a * dim + i] += volume * sigma[i][j] * g[a][j];
@@ -65,7 +67,7 @@ struct ElasticCell {
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
     Real X[n][dim], g[n][dim];
     geometry.gather(cell, X);
-    const laws::Elasticity law = material(geometry.region(cell));
+    const laws::Elasticity elasticity = material(law(cell));
     for (auto& row : K)
       for (Real& value : row) value = 0;
     for (int q = 0; q < Rule::n; ++q) {
@@ -73,7 +75,7 @@ struct ElasticCell {
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b)
           for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += volume * law.stiffness(g[a], g[b], i, j);
+            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += volume * elasticity.stiffness(g[a], g[b], i, j);
     }
   }
 };
@@ -105,7 +107,7 @@ class BulkMomentum final : public assembly::Module {
     const auto host = Kokkos::create_mirror_view(material);
     std::copy(parameters_.elasticity.begin(), parameters_.elasticity.end(), host.data());
     Kokkos::deep_copy(material, host);
-    op_ = std::make_unique<Op>(Op{context.geometry(), material});
+    op_ = std::make_unique<Op>(Op{context.geometry(), material, law_numbers(context)});
     displacement_ = context.field("displacement");
     using Assembler = assembly::Assembler<Op>;
     cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
@@ -126,7 +128,7 @@ class BulkMomentum final : public assembly::Module {
 
   bool constant_load() const override {
     const auto constant = [](const base::Expression& e) { return e.constant_in_time(); };
-    bool all = std::all_of(parameters_.body_force.begin(), parameters_.body_force.end(), constant);
+    bool all = parameters_.body_force.constant_in_time();
     for (const auto& traction : parameters_.tractions)
       all = all && std::all_of(traction.value.begin(), traction.value.end(), constant);
     return all;
@@ -137,6 +139,7 @@ class BulkMomentum final : public assembly::Module {
     const auto host = Kokkos::create_mirror_view(load_);
     Kokkos::deep_copy(host, 0.0);
     add_body_force(t, host);
+    add_initial_stress(host);
     for (const auto& traction : parameters_.tractions) add_traction(traction, t, host);
     Kokkos::deep_copy(load_, host);
     loaded_ = true;
@@ -147,11 +150,11 @@ class BulkMomentum final : public assembly::Module {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
-        if (face.boundary == traction.boundary)
+        if (holds(traction, face))
           assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto&, Real, const auto& x) {
             for (const auto& e : traction.value) largest = std::max(largest, std::abs(e(x, t)));
           });
-    if (parameters_.body_force.empty()) return largest;
+    if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return largest;
     Real low[dim], high[dim], size = 0, force = 0;
     for (int i = 0; i < dim; ++i) {
       low[i] = std::numeric_limits<Real>::max();
@@ -164,10 +167,15 @@ class BulkMomentum final : public assembly::Module {
         low[i] = std::min(low[i], x[i]);
         high[i] = std::max(high[i], x[i]);
       }
-      for (const auto& e : parameters_.body_force) force = std::max(force, std::abs(e(x, t)));
+    }
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+      std::array<Real, 3> x{};
+      std::copy_n(mesh_->coordinates.begin() + mesh_->cells[c * n] * dim, dim, x.begin());
+      for (int i = 0; i < dim; ++i) force = std::max(force, std::abs(parameters_.body_force(i, c, x, t)));
+      largest = std::max(largest, largest_initial_stress(x));
     }
     for (int i = 0; i < dim; ++i) size = std::max(size, high[i] - low[i]);
-    return std::max(largest, mesh_->n_nodes() > 0 ? force * size : 0);
+    return std::max(largest, mesh_->n_nodes() > 0 && !parameters_.body_force.empty() ? force * size : 0);
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
@@ -177,7 +185,30 @@ class BulkMomentum final : public assembly::Module {
   }
 
  private:
-  bool has_load() const { return !parameters_.body_force.empty() || !parameters_.tractions.empty(); }
+  bool has_load() const {
+    return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
+  }
+  bool holds(const BoundaryTraction& traction, const mesh::Mesh::BoundaryFace& face) const {
+    return face.boundary == traction.boundary && (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
+  }
+  int law_of(LocalIndex cell) const {
+    return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
+  }
+
+  ConstView<int*> law_numbers(const assembly::Context& context) const {
+    if (parameters_.elasticity_of_cell.empty()) return context.geometry().region;
+    View<int*> numbers("law", mesh_->n_cells());
+    const auto host = Kokkos::create_mirror_view(numbers);
+    std::copy(parameters_.elasticity_of_cell.begin(), parameters_.elasticity_of_cell.end(), host.data());
+    Kokkos::deep_copy(numbers, host);
+    return numbers;
+  }
+
+  Real largest_initial_stress(const std::array<Real, 3>& x) const {
+    Real largest = 0;
+    for (const auto& component : parameters_.initial_stress.value) largest = std::max(largest, std::abs(component(x, 0)));
+    return largest;
+  }
 
   template <class Host>
   void add_body_force(Real t, const Host& load) const {
@@ -187,16 +218,35 @@ class BulkMomentum final : public assembly::Module {
       assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
         Op::Cell::shape_functions(xi, N);
         for (int i = 0; i < dim; ++i) {
-          const Real force = volume * parameters_.body_force[i](x, t);
+          const Real force = volume * parameters_.body_force(i, c, x, t);
           for (int a = 0; a < n; ++a) add(load, mesh_->cells[c * n + a] * dim + i, N[a] * force);
         }
       });
   }
 
   template <class Host>
+  void add_initial_stress(const Host& load) const {
+    if (parameters_.initial_stress.empty()) return;
+    Real X[n][dim], dN[n][dim], g[dim], sigma[dim][dim];
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+      assembly::gather_host<shape>(*mesh_, c, X);
+      assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
+        parameters_.initial_stress.at(x, sigma);
+        Op::Cell::gradients(xi, dN);
+        const assembly::CellPoint<shape> point(X, dN);
+        for (int a = 0; a < n; ++a) {
+          point.gradient(dN[a], g);
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) add(load, mesh_->cells[c * n + a] * dim + i, -volume * sigma[i][j] * g[j]);
+        }
+      });
+    }
+  }
+
+  template <class Host>
   void add_traction(const BoundaryTraction& traction, Real t, const Host& load) const {
     for (const auto& face : mesh_->boundary_faces) {
-      if (face.boundary != traction.boundary) continue;
+      if (!holds(traction, face)) continue;
       const auto corners = mesh::face_nodes(shape)[face.local_face];
       assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
         for (int i = 0; i < dim; ++i) {
@@ -228,13 +278,21 @@ class BulkMomentum final : public assembly::Module {
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) H[i][j] += u(mesh_->cells[c * n + a] * dim + i) * g[j];
     }
-    const auto& law = parameters_.elasticity[mesh_->cell_region[c]];
+    const auto& law = parameters_.elasticity[law_of(c)];
     law.stress(H, sigma);
     for (int i = 0; i < dim; ++i) trace += H[i][i];
     if constexpr (dim == 2)
       values.insert(values.end(), {sigma[0][0], sigma[1][1], law.lambda * trace, sigma[0][1], 0, 0});
     else
       values.insert(values.end(), {sigma[0][0], sigma[1][1], sigma[2][2], sigma[0][1], sigma[1][2], sigma[0][2]});
+    if (parameters_.initial_stress.empty()) return;
+    std::array<Real, 3> x{};
+    Real N[n];
+    Op::Cell::shape_functions(xi, N);
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) x[i] += N[a] * X[a][i];
+    for (std::size_t k = 0; k < parameters_.initial_stress.value.size(); ++k)
+      values[values.size() - 6 + k] += parameters_.initial_stress.component(static_cast<int>(k), x);
   }
 
   BulkMomentumParameters parameters_;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "base/expression.hpp"
 #include "laws/elasticity.hpp"
+#include "physics/loads.hpp"
 
 #include <memory>
 #include <optional>
@@ -11,24 +11,24 @@
 
 namespace sprekk::physics {
 
-/// Force per volume, N/m^3, in global components; shared by all rows that test momentum. Empty: none.
-using BodyForce = std::vector<base::Expression>;
-
 /// Traction on a boundary, Pa, in global components.
 struct BoundaryTraction {
   int boundary;
   std::vector<base::Expression> value;
+  int region = -1;  ///< only on faces of cells of this region; -1: all
 };
 
 struct BulkMomentumParameters {
-  std::vector<laws::Elasticity> elasticity;  ///< [region]
+  std::vector<laws::Elasticity> elasticity;  ///< different ones
   BodyForce body_force;
   std::vector<BoundaryTraction> tractions;
+  InitialStress initial_stress = {};
+  std::vector<int> elasticity_of_cell = {};  ///< [local cell] which of them; empty: the number of the cell's region
 };
 
 /// Declares the unknown "displacement" (nodes, m) and adds to its rows, with test function v,
-///   integral sigma(u) : grad v - F . v  -  boundary integral t . v                                 Wollmann (2024), (4), (5)
-/// Outputs: displacement (nodes), stress of the nodal displacement at cell centres (XX, YY, ZZ, XY, YZ, XZ; Pa).
+///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v                     Wollmann (2024), (4), (5)
+/// Outputs: displacement (nodes), stress of the nodal displacement, with sigma_0, at cell centres (XX, YY, ZZ, XY, YZ, XZ; Pa).
 std::unique_ptr<assembly::Module> make_bulk_momentum(mesh::Shape shape, BulkMomentumParameters parameters);
 
 }  // namespace sprekk::physics

@@ -23,8 +23,9 @@ namespace {
 /// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
 /// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
 /// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
-/// | law          | [fracture]                                               |      | joint laws                   |
-/// | fracture     | [face]                                                   |      | number of the face's fracture |
+/// | law          | [number]                                                 |      | joint laws                   |
+/// | number       | [face]                                                   |      | number of the face's law     |
+/// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 template <Shape shape>
@@ -39,7 +40,8 @@ struct JointFace {
   ConstView<Real***> frame;
   ConstView<Real**> share;
   ConstView<laws::Joint*> law;
-  ConstView<int*> fracture;
+  ConstView<int*> number;
+  ConstView<Real**> rest;
   ConstView<laws::Augmentation*> augmentation;
   View<Real**> p_old;
 
@@ -51,7 +53,7 @@ struct JointFace {
       for (int a = 0; a < n; ++a) global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
     }
     for (int k = 0; k < dim; ++k) {
-      w[k] = 0;
+      w[k] = rest.extent(0) > 0 ? rest(f, k) : 0;
       for (int i = 0; i < dim; ++i) w[k] += frame(f, k, i) * global[i];
     }
   }
@@ -60,7 +62,7 @@ struct JointFace {
   KOKKOS_INLINE_FUNCTION ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim], T (&R)[dim]) const {
     Real old[dim - 1];
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-    return laws::contact_residual<dim>(law(fracture(f)), augmentation(f), w, traction, old, R);
+    return laws::contact_residual<dim>(law(number(f)), augmentation(f), w, traction, old, R);
   }
 
   /// Jump, traction, residual and state of a face.
@@ -127,7 +129,7 @@ class ElasticPlasticJump final : public assembly::Module {
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
     const auto face = fields::Entity::fracture_face;
-    d.history = {{"plastic jump", face, dim - 1}};
+    d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
       for (const char* frame : {" local", ""}) d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
     for (const char* name : {"opening", "slip", "aperture"}) d.outputs.push_back({name, "m", face, 1});
@@ -169,7 +171,14 @@ class ElasticPlasticJump final : public assembly::Module {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
 
-  std::vector<Real> fracture_lengths() const;
+  int joint_of(LocalIndex face) const {
+    return parameters_.joint_of_face.empty() ? mesh_->fracture_faces[face].fracture : parameters_.joint_of_face[face];
+  }
+  int elasticity_of(LocalIndex cell) const {
+    return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
+  }
+  std::vector<Real> fracture_lengths() const;  ///< [fracture], diagonal of the box around it
+  ConstView<Real**> initial_jump() const;      ///< w_0 [face, dim]
 
   ElasticPlasticJumpParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
@@ -205,6 +214,25 @@ std::vector<Real> ElasticPlasticJump<shape>::fracture_lengths() const {
 }
 
 template <Shape shape>
+ConstView<Real**> ElasticPlasticJump<shape>::initial_jump() const {
+  if (parameters_.initial_stress.empty()) return {};
+  View<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
+  const auto host = Kokkos::create_mirror_view(rest);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto& face = mesh_->fracture_faces[f];
+    const auto& law = parameters_.joints[joint_of(f)].law;
+    const auto mean = mean_initial_traction<shape>(parameters_.initial_stress, *mesh_, face, mesh::minus);
+    Real traction[dim] = {};
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) traction[k] += face.frame[k][i] * mean[i];
+    host(f, 0) = law.gap.initial + (traction[0] < 0 ? law.gap.closure(traction[0]) : 0);
+    for (int k = 1; k < dim; ++k) host(f, k) = law.elastic.compliance * traction[k];
+  }
+  Kokkos::deep_copy(rest, host);
+  return rest;
+}
+
+template <Shape shape>
 void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
@@ -215,52 +243,53 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   View<Real***> frame("frame", n_faces, dim, dim);
   View<Real**> share("share", n_faces, n);
   View<laws::Joint*> law("law", parameters_.joints.size());
-  View<int*> fracture("fracture", n_faces);
+  View<int*> number("number", n_faces);
   View<laws::Augmentation*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share);
   const auto law_h = Kokkos::create_mirror_view(law);
-  const auto fracture_h = Kokkos::create_mirror_view(fracture);
+  const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
   const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
   const auto lengths = fracture_lengths();
   for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
   for (LocalIndex f = 0; f < n_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];
-    fracture_h(f) = face.fracture;
+    number_h(f) = joint_of(f);
     const auto shares = assembly::mean_shares<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < n; ++k) share_h(f, k) = shares[k];
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
     Real modulus = 0, height = 0;  // of the softer side; of the cells
     for (int side : {mesh::minus, mesh::plus}) {
-      const Real E = parameters_.elasticity[mesh_->cell_region[face.cell[side]]].youngs_modulus();
+      const Real E = parameters_.elasticity[elasticity_of(face.cell[side])].youngs_modulus();
       modulus = side == mesh::minus ? E : std::min(modulus, E);
       assembly::for_each_cell_point<shape>(*mesh_, face.cell[side],
                                            [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
-    augmentation_h(f) = laws::augmentation(law_h(face.fracture), modulus / lengths[face.fracture]);
+    augmentation_h(f) = laws::augmentation(law_h(joint_of(f)), modulus / lengths[face.fracture]);
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
   }
   Kokkos::deep_copy(frame, frame_h);
   Kokkos::deep_copy(share, share_h);
   Kokkos::deep_copy(law, law_h);
-  Kokkos::deep_copy(fracture, fracture_h);
+  Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
-  op_ = std::make_unique<Op>(Op{frame, share, law, fracture, augmentation, {}});
+  op_ = std::make_unique<Op>(Op{frame, share, law, number, initial_jump(), augmentation, {}});
 }
 
 template <Shape shape>
 void ElasticPlasticJump<shape>::commit(assembly::State& state) const {
   const Op op = at(state);
-  const auto p = state.history[0];
+  const auto p = state.history[0], slid = state.history[1];
   faces_->for_each(op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
     const Point point = op.point(f, x);
+    slid(f, 0) = point.state == ContactState::slip;
     if (point.state == ContactState::stick) return;
     Real elastic[dim], plastic[dim];
-    laws::split_jump<dim>(op.law(op.fracture(f)), point.state, point.w, point.traction, elastic, plastic);
+    laws::split_jump<dim>(op.law(op.number(f)), point.state, point.w, point.traction, elastic, plastic);
     for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
   });
 }
@@ -306,9 +335,11 @@ bool ElasticPlasticJump<shape>::symmetric(const assembly::State& state) const {
 
 template <Shape shape>
 void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const {
+  // a face that slid lies on the friction limit of the plastic jump that it has now: its state is that of the step
+  const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& geometry = mesh_->fracture_faces[f];
-    const auto& joint = parameters_.joints[geometry.fracture];
+    const auto& joint = parameters_.joints[joint_of(f)];
     Real elastic[dim], plastic[dim], tangential[dim - 1], shear[dim - 1];
     laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, elastic, plastic);
     const Real* vectors[] = {point.w, elastic, plastic, point.traction};
@@ -327,8 +358,9 @@ void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector
     fields[8].values.push_back(point.w[0]);
     fields[9].values.push_back(laws::norm(tangential));
     fields[10].values.push_back(joint.initial_aperture + point.w[0]);
-    fields[11].values.push_back(static_cast<Real>(point.state));
-    fields[12].values.push_back(point.state == ContactState::open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
+    const bool open = point.state == ContactState::open;
+    fields[11].values.push_back(static_cast<Real>(open ? point.state : slid(f, 0) ? ContactState::slip : ContactState::stick));
+    fields[12].values.push_back(open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
   });
 }
 

@@ -4,6 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
 #include "laws/joint.hpp"
+#include "physics/loads.hpp"
 
 #include <memory>
 #include <vector>
@@ -17,13 +18,18 @@ struct JointParameters {
 };
 
 struct ElasticPlasticJumpParameters {
-  std::vector<JointParameters> joints;       ///< [fracture]
-  std::vector<laws::Elasticity> elasticity;  ///< [region], for the size of the augmentation only
+  std::vector<JointParameters> joints;       ///< different ones
+  std::vector<laws::Elasticity> elasticity;  ///< of the rock, for the size of the augmentation only
+  InitialStress initial_stress = {};
+  std::vector<int> elasticity_of_cell = {};  ///< [local cell] which elasticity; empty: the number of the cell's region
+  std::vector<int> joint_of_face = {};       ///< [owned fracture face] which joint; empty: the number of the face's fracture
 };
 
 /// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its rows
 /// the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
-///   w = mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
+///   w = w_0 + mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
+/// w_0 is the jump that the joint has under the initial stress, (g0 + B(lambda_n), lambda_t/K_t) with lambda = mean(sigma_0 n),
+/// so that the initial state is one of rest; zero without initial stress.
 /// History: the plastic tangential jump p_old [face, dim - 1]; committed to w_t where the face is open, kept where it
 /// sticks, w_t - lambda_t/K_t where it slips.
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture (15),

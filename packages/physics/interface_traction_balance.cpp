@@ -24,7 +24,8 @@ namespace {
 /// | push      | [side, node]     | m^2  | s |f| times the node's share in the mean over the face     |
 /// | bubble    | [side]           | m^2  | s |f| mean(b)                                              |
 /// | frame     | [side, dim, dim] | -    | rows n, t1[, t2]                                           |
-/// | force     | [side, dim]      | N    | integral F_i b                                             |
+/// | force     | [side, dim]      | N    | load on the bubble: integral F_i b, initial stress         |
+/// | nodal     | [side, node dim] | N    | load on the nodes: initial stress; empty without           |
 template <Shape shape>
 struct BalancedSide {
   using Cell = assembly::ReferenceCell<shape>;
@@ -35,7 +36,7 @@ struct BalancedSide {
 
   View<Real***> coupling, frame;
   View<Real*> stiffness, bubble;
-  View<Real**> push, force;
+  View<Real**> push, force, nodal;
 
   explicit BalancedSide(std::size_t n_sides)
       : coupling("coupling", n_sides, dim, n * dim),
@@ -51,7 +52,7 @@ struct BalancedSide {
       for (int k = 0; k < dim; ++k) traction[i] += frame(side, k, i) * x[lambda + k];
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i) {
-        r[a * dim + i] = push(side, a) * traction[i];
+        r[a * dim + i] = push(side, a) * traction[i] - (nodal.extent(0) > 0 ? nodal(side, a * dim + i) : 0);
         for (int k = 0; k < dim; ++k) r[a * dim + i] += coupling(side, k, a * dim + i) * x[beta + k];
       }
     for (int k = 0; k < dim; ++k) {
@@ -109,14 +110,13 @@ class InterfaceTractionBalance final : public assembly::Module {
   void residual(const assembly::State& state, const assembly::Rows& r) const override { sides_->add_residual(*op_, state, r); }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { sides_->add_jacobian(*op_, state, J); }
 
-  bool constant_load() const override {
-    return std::all_of(parameters_.body_force.begin(), parameters_.body_force.end(),
-                       [](const base::Expression& e) { return e.constant_in_time(); });
-  }
+  bool constant_load() const override { return parameters_.body_force.constant_in_time(); }
 
   void set_time(Real t, const assembly::Scales&) override {
-    if (parameters_.body_force.empty() || (loaded_ && constant_load())) return;
-    const auto force = Kokkos::create_mirror_view(op_->force);
+    const bool stressed = !parameters_.initial_stress.empty();
+    if ((parameters_.body_force.empty() && !stressed) || (loaded_ && constant_load())) return;
+    if (stressed) op_->nodal = View<Real**>("nodal", op_->force.extent(0), n * dim);
+    const auto force = Kokkos::create_mirror_view(op_->force), nodal = Kokkos::create_mirror_view(op_->nodal);
     Kokkos::deep_copy(force, 0.0);
     const auto sides = assembly::fracture_sides(*mesh_);
     Real db[dim];
@@ -125,14 +125,47 @@ class InterfaceTractionBalance final : public assembly::Module {
       const int local_face = face.local_face[sides[s][1]];
       assembly::for_each_cell_point<shape>(*mesh_, face.cell[sides[s][1]], [&](const Real(&xi)[dim], Real volume, const auto& x) {
         const Real b = Op::Cell::bubble(local_face, xi, db);
-        for (int i = 0; i < dim; ++i) force(s, i) += volume * b * parameters_.body_force[i](x, t);
+        for (int i = 0; i < dim; ++i)
+          force(s, i) += volume * b * parameters_.body_force(i, face.cell[sides[s][1]], x, t);
       });
+      if (stressed)
+        add_initial_stress(face, sides[s][1], Kokkos::subview(force, s, Kokkos::ALL), Kokkos::subview(nodal, s, Kokkos::ALL));
     }
     Kokkos::deep_copy(op_->force, force);
+    Kokkos::deep_copy(op_->nodal, nodal);
     loaded_ = true;
   }
 
  private:
+  /// Loads of the initial stress on the bubble and on the nodes of one side.
+  template <class Host>
+  void add_initial_stress(const mesh::Mesh::FractureFace& face, int side, const Host& force, const Host& nodal) const {
+    const LocalIndex cell = face.cell[side];
+    const int local_face = face.local_face[side];
+    const Real sign = side == mesh::plus ? 1 : -1;
+    const auto& stress = parameters_.initial_stress;
+    Real X[n][dim], dN[n][dim], db[dim], gb[dim], sigma[dim][dim];
+    assembly::gather_host<shape>(*mesh_, cell, X);
+    assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto& x) {
+      stress.at(x, sigma);
+      Op::Cell::gradients(xi, dN);
+      Op::Cell::bubble(local_face, xi, db);
+      assembly::CellPoint<shape>(X, dN).gradient(db, gb);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) force(i) -= volume * sigma[i][j] * gb[j];
+    });
+    const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
+    const auto nodes = mesh::face_nodes(shape)[local_face];
+    assembly::for_each_face_point<shape>(*mesh_, cell, local_face, [&](const auto& N, Real area, const auto& x) {
+      const auto traction = stress.template traction<dim>(x, face.frame[0]);
+      for (int i = 0; i < dim; ++i) {
+        const Real deviation = sign * area * (traction[i] - mean[i]);
+        force(i) -= assembly::face_bubble<shape>(N) * deviation;
+        for (int k = 0; k < mesh::n_face_nodes(shape); ++k) nodal(nodes[k] * dim + i) -= N[k] * deviation;
+      }
+    });
+  }
+
   void build_operator() {
     const auto sides = assembly::fracture_sides(*mesh_);
     op_ = std::make_unique<Op>(sides.size());
@@ -165,7 +198,8 @@ class InterfaceTractionBalance final : public assembly::Module {
   /// eigenvalue of the bubble's own stiffness B.
   template <class Coupling>
   Real integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
-    const auto& law = parameters_.elasticity[mesh_->cell_region[cell]];
+    const auto& law = parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
+                                                                                    : parameters_.elasticity_of_cell[cell]];
     Real X[n][dim], dN[n][dim], db[dim], B[dim * dim] = {};
     assembly::gather_host<shape>(*mesh_, cell, X);
     assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto&) {

@@ -1,0 +1,339 @@
+#include "mesh/msh_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <unordered_map>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "mesh/cell_geometry.hpp"
+#include "mesh/msh_file.hpp"
+
+namespace sprekk::mesh {
+namespace {
+
+using Element = MshFile::Element;
+using Key = std::array<GlobalIndex, 4>;
+
+struct Hash {
+  std::size_t operator()(const Key& key) const {
+    std::size_t h = 0;
+    for (GlobalIndex part : key) h = (h ^ static_cast<std::size_t>(part)) * 0x9e3779b97f4a7c15ULL;
+    return h ^ (h >> 29);
+  }
+};
+
+std::string text(const Vector& x) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", x[0], x[1], x[2]); }
+
+class Builder {
+ public:
+  Builder(const MshFile& msh, const std::string& file, const MshOptions& options)
+      : msh_(msh), file_(file), options_(options) {}
+
+  GlobalMesh build() {
+    choose_shape();
+    add_cells();
+    add_nodes();
+    check_cells();
+    neighbour_ = neighbours();
+    check_faces();
+    name_fractures();
+    add_faces();
+    std::vector<Orientation> orientations;
+    for (const auto& [name, orientation] : options_.fractures) orientations.push_back(orientation);
+    try {
+      return split(std::move(mesh_), marked_, orientations);
+    } catch (const Error& error) {
+      fail("{}", error.what());
+    }
+  }
+
+ private:
+  const MshFile& msh_;
+  const std::string& file_;
+  const MshOptions& options_;
+  GlobalMesh mesh_;
+  Real size_ = 0;                                     ///< diagonal of the box around the mesh
+  std::vector<const Element*> cell_;                  ///< [cell]
+  std::vector<GlobalIndex> node_of_point_;            ///< [point of the file], -1 if dropped
+  std::vector<GlobalIndex> neighbour_;                ///< see face_neighbours()
+  std::vector<MarkedFace> marked_;                    ///< of the fractures
+  std::unordered_map<GlobalIndex, int> fracture_at_;  ///< [cell face]
+
+  template <class... Arguments>
+  [[noreturn]] void fail(fmt::format_string<Arguments...> message, Arguments&&... arguments) const {
+    throw Error(file_ + ": " + fmt::format(message, std::forward<Arguments>(arguments)...));
+  }
+
+  GlobalIndex node(const Element& element, int k) const { return msh_.element_nodes[element.first_node + k]; }
+
+  void choose_shape() {
+    const auto highest = std::max_element(msh_.elements.begin(), msh_.elements.end(),
+                                          [](const auto& a, const auto& b) { return a.type->dim < b.type->dim; });
+    const auto* type = highest->type;
+    if (!type->shape)
+      fail("has elements of dimension {} at most; needs triangles, quadrilaterals, tetrahedra or hexahedra", type->dim);
+    mesh_.shape = *type->shape;
+    for (const auto& element : msh_.elements) {
+      if (element.type->dim != type->dim) continue;
+      if (element.type != type)
+        fail("element {} is a {} and element {} a {}; all cells must have one shape", highest->tag, type->name,
+             element.tag, element.type->name);
+      cell_.push_back(&element);
+    }
+  }
+
+  void add_cells() {
+    const int dim = mesh_.dim();
+    const auto order = nodes_in_msh(mesh_.shape);
+    const auto has_region = [&](const Element* cell) { return !msh_.group_sets[cell->groups].empty(); };
+    const bool has_regions = std::any_of(cell_.begin(), cell_.end(), has_region);
+    if (!has_regions) mesh_.region_names = {"bulk"};
+    for (const auto* cell : cell_) {
+      const auto& groups = msh_.group_sets[cell->groups];
+      if (has_regions && groups.empty())
+        fail("element {} is in no physical group although others are; each cell needs a region", cell->tag);
+      if (groups.size() > 1)
+        fail("element {} is in the physical groups \"{}\" and \"{}\"; a cell has one region", cell->tag,
+             msh_.group_name(dim, groups[0]), msh_.group_name(dim, groups[1]));
+      mesh_.cell_region.push_back(groups.empty() ? 0 : index_of(msh_.group_name(dim, groups[0]), mesh_.region_names));
+      for (int k : order) mesh_.cells.push_back(node(*cell, k));
+      auto nodes = std::vector<GlobalIndex>(mesh_.cells.end() - order.size(), mesh_.cells.end());
+      std::sort(nodes.begin(), nodes.end());
+      const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
+      if (twice != nodes.end()) fail("element {} has node {} twice", cell->tag, msh_.node_tags[*twice]);
+    }
+  }
+
+  /// The index of a name, which is appended if it is new.
+  static int index_of(const std::string& name, std::vector<std::string>& names) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    const auto index = static_cast<int>(found - names.begin());
+    if (found == names.end()) names.push_back(name);
+    return index;
+  }
+
+  /// Takes the points of the cells over; until here mesh_.cells holds their place in the file.
+  void add_nodes() {
+    const int dim = mesh_.dim();
+    std::vector<GlobalIndex> index(msh_.points.size(), -1);
+    for (GlobalIndex node : mesh_.cells) index[node] = 0;
+    Vector lower = msh_.points[mesh_.cells[0]], upper = lower;
+    for (std::size_t k = 0; k < index.size(); ++k) {
+      if (index[k] < 0) continue;
+      const Vector& x = msh_.points[k];
+      index[k] = mesh_.n_nodes();
+      mesh_.coordinates.insert(mesh_.coordinates.end(), x.begin(), x.begin() + dim);
+      for (int i = 0; i < 3; ++i) lower[i] = std::min(lower[i], x[i]), upper[i] = std::max(upper[i], x[i]);
+    }
+    for (GlobalIndex& node : mesh_.cells) node = index[node];
+    size_ = norm(upper - lower);
+    if (dim == 2 && upper[2] - lower[2] > 1e-9 * size_)
+      fail("is a surface with z from {} to {}; a mesh of dimension 2 must lie in a plane of constant z", lower[2],
+           upper[2]);
+    node_of_point_ = std::move(index);
+  }
+
+  void check_cells() {
+    const CellGeometry geometry(mesh_.shape);
+    const auto mirrored = mirrored_nodes(mesh_.shape);
+    const int n = n_nodes(mesh_.shape);
+    for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell) {
+      const auto [least, largest] = geometry.scaled_jacobian(mesh_, cell);
+      const auto where = [&] { return text(point(mesh_, mesh_.cells[cell * n])); };
+      constexpr Real flat = 1e-10;
+      if (std::max(std::abs(least), std::abs(largest)) <= flat)
+        fail("element {} at {} has no volume", cell_[cell]->tag, where());
+      if (least <= flat && largest >= -flat)
+        fail(
+            "element {} at {} is twisted or not convex: its scaled Jacobian is {:.3g} at one corner and {:.3g} at "
+            "another",
+            cell_[cell]->tag, where(), least, largest);
+      if (largest > 0) continue;
+      const std::vector<GlobalIndex> nodes(&mesh_.cells[cell * n], &mesh_.cells[cell * n] + n);
+      for (int k = 0; k < n; ++k) mesh_.cells[cell * n + k] = nodes[mirrored[k]];
+    }
+  }
+
+  Key corners_of_face(GlobalIndex face) const {
+    const int n = n_faces(mesh_.shape);
+    const auto nodes = nodes_of_face(mesh_, face / n, static_cast<int>(face % n));
+    Key key{-1, -1, -1, -1};
+    std::copy_n(nodes.begin(), n_face_corners(mesh_.shape), key.begin());
+    std::sort(key.begin(), key.end());
+    return key;
+  }
+
+  Vector centre(GlobalIndex face) const {
+    return face_centre(mesh_, face / n_faces(mesh_.shape), static_cast<int>(face % n_faces(mesh_.shape)));
+  }
+  const Element& cell_at(GlobalIndex face) const { return *cell_[face / n_faces(mesh_.shape)]; }
+
+  std::vector<GlobalIndex> neighbours() const {
+    try {
+      return face_neighbours(mesh_);
+    } catch (const Error&) {
+      std::map<Key, std::vector<GlobalIndex>> faces;
+      for (GlobalIndex face = 0; face < mesh_.n_cells() * n_faces(mesh_.shape); ++face) {
+        auto& same = faces[corners_of_face(face)];
+        same.push_back(face);
+        if (same.size() == 3)
+          fail("elements {}, {} and {} share the face at {}; at most two may", cell_at(same[0]).tag,
+               cell_at(same[1]).tag, cell_at(same[2]).tag, text(centre(face)));
+      }
+      throw;
+    }
+  }
+
+  /// Neighbours lie on opposite sides of the face that they share and have the same nodes there; free faces coincide
+  /// with no other.
+  void check_faces() const {
+    const int n = n_faces(mesh_.shape);
+    const auto local = [&](GlobalIndex face) { return static_cast<int>(face % n); };
+    std::unordered_map<Key, GlobalIndex, Hash> free_faces;
+    for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour_.size()); ++face) {
+      const GlobalIndex other = neighbour_[face];
+      if (other < 0) {
+        check_free(face, free_faces);
+        continue;
+      }
+      if (other < face) continue;
+      if (dot(area_vector(mesh_, face / n, local(face)), area_vector(mesh_, other / n, local(other))) >= 0)
+        fail("elements {} and {} lie on the same side of the face that they share at {}; cells must not overlap",
+             cell_at(face).tag, cell_at(other).tag, text(centre(face)));
+      auto nodes = nodes_of_face(mesh_, face / n, local(face)), others = nodes_of_face(mesh_, other / n, local(other));
+      std::sort(nodes.begin(), nodes.end());
+      std::sort(others.begin(), others.end());
+      if (nodes != others)
+        fail("elements {} and {} have the same corners but not the same nodes on their common face at {}",
+             cell_at(face).tag, cell_at(other).tag, text(centre(face)));
+    }
+  }
+
+  void check_free(GlobalIndex face, std::unordered_map<Key, GlobalIndex, Hash>& free_faces) const {
+    const Vector x = centre(face);
+    const Vector offset = x - point(mesh_, 0);
+    Key key{};
+    for (int i = 0; i < 3; ++i) key[i] = std::llround(offset[i] / (1e-8 * size_));
+    const auto [known, is_new] = free_faces.emplace(key, face);
+    if (is_new) return;
+    fail(
+        "elements {} and {} touch at {} without sharing nodes; join them (gmsh: Coherence, BooleanFragments), also "
+        "where a "
+        "fracture is to be, as Sprekk opens it",
+        cell_at(known->second).tag, cell_at(face).tag, text(x));
+  }
+
+  /// Takes the fractures' names over, each of which must be a group of faces.
+  void name_fractures() {
+    const int dim = mesh_.dim() - 1;
+    std::vector<std::string> names;
+    for (const auto& element : msh_.elements)
+      if (element.type->dim == dim)
+        for (int group : msh_.group_sets[element.groups]) index_of(msh_.group_name(dim, group), names);
+    for (const auto& [name, orientation] : options_.fractures) {
+      mesh_.fracture_names.push_back(name);
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      for (const auto& [key, known] : msh_.group_names)
+        if (known == name)
+          fail("fracture \"{}\": the physical group has dimension {}{}", name, key.first,
+               key.first == dim ? " and no elements" : fmt::format("; a fracture in this mesh has dimension {}", dim));
+      fail("fracture \"{}\": unknown; the physical groups of dimension {} are {}.{}", name, dim,
+           names.empty() ? "none" : base::quoted_list(names), base::did_you_mean(name, names));
+    }
+  }
+
+  std::optional<Key> corners(const Element& element) const {
+    Key key{-1, -1, -1, -1};
+    for (int k = 0; k < element.type->n_corners; ++k) {
+      key[k] = node_of_point_[node(element, k)];
+      if (key[k] < 0) return std::nullopt;
+    }
+    std::sort(key.begin(), key.end());
+    return key;
+  }
+
+  /// Finds the cell face of every element in a group of dimension d - 1.
+  void add_faces() {
+    std::unordered_map<Key, GlobalIndex, Hash> face_at;
+    for (const auto& element : msh_.elements)
+      if (is_grouped_face(element))
+        if (const auto key = corners(element)) face_at.emplace(*key, -1);
+    for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour_.size()) && !face_at.empty(); ++face) {
+      const auto found = face_at.find(corners_of_face(face));
+      if (found != face_at.end() && found->second < 0) found->second = face;
+    }
+    std::set<std::pair<GlobalIndex, std::string>> known;
+    for (const auto& element : msh_.elements) {
+      if (!is_grouped_face(element)) continue;
+      const auto key = corners(element);
+      const GlobalIndex face = key ? face_at.at(*key) : -1;
+      for (int number : msh_.group_sets[element.groups]) {
+        const auto name = msh_.group_name(mesh_.dim() - 1, number);
+        if (face < 0)
+          fail(
+              "element {} at {} of the physical group \"{}\" is no face of a cell; the mesh must conform to it (gmsh: "
+              "Curve or Surface {{...}} In, BooleanFragments)",
+              element.tag, text(msh_.points[node(element, 0)]), name);
+        if (known.emplace(face, name).second) add_face(element, face, name);
+      }
+    }
+  }
+
+  bool is_grouped_face(const Element& element) const {
+    return element.type->dim == mesh_.dim() - 1 && !msh_.group_sets[element.groups].empty();
+  }
+
+  void add_face(const Element& element, GlobalIndex face, const std::string& name) {
+    const GlobalIndex cell = face / n_faces(mesh_.shape);
+    const int local_face = static_cast<int>(face % n_faces(mesh_.shape));
+    const auto& fractures = mesh_.fracture_names;
+    const auto fracture = std::find(fractures.begin(), fractures.end(), name);
+    const auto where = [&] { return text(centre(face)); };
+    if (fracture == fractures.end()) {
+      if (neighbour_[face] >= 0)
+        fail(
+            "element {} at {} of the physical group \"{}\" lies inside of the mesh, where a boundary cannot be; if it "
+            "is a "
+            "fracture, list \"{}\" among the fractures",
+            element.tag, where(), name, name);
+      mesh_.boundary_faces.push_back({index_of(name, mesh_.boundary_names), cell, local_face});
+      return;
+    }
+    if (neighbour_[face] < 0)
+      fail(
+          "element {} at {} of the fracture \"{}\" lies on the boundary of the mesh; a fracture needs cells on both "
+          "sides",
+          element.tag, where(), name);
+    const auto index = static_cast<int>(fracture - fractures.begin());
+    const auto [known, is_new] = fracture_at_.emplace(face, index);
+    if (!is_new)
+      fail("element {} at {} is in the fractures \"{}\" and \"{}\"; a face belongs to one fracture", element.tag,
+           where(), fractures[known->second], name);
+    marked_.push_back({index, cell, local_face});
+  }
+};
+
+}  // namespace
+
+GlobalMesh parse_msh(std::string_view text, const std::string& file, const MshOptions& options) {
+  return Builder(parse_msh_file(text, file), file, options).build();
+}
+
+GlobalMesh read_msh(const std::string& path, const MshOptions& options) {
+  SPREKK_CHECK(std::filesystem::exists(path), "{}: there is no such file", path);
+  SPREKK_CHECK(!std::filesystem::is_directory(path), "{}: is a folder, expected a gmsh mesh", path);
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+  SPREKK_CHECK(file && text, "{}: cannot be read", path);
+  return parse_msh(text.str(), path, options);
+}
+
+}  // namespace sprekk::mesh

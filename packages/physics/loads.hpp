@@ -1,0 +1,75 @@
+// Loads on the rock that all momentum rows test alike: displacements and side bubbles.
+#pragma once
+
+#include "assembly/geometry.hpp"
+#include "base/expression.hpp"
+#include "base/types.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// Force per volume, N/m^3, in global components. Empty: none.
+struct BodyForce {
+  std::vector<base::Expression> value = {};  ///< per component
+  std::vector<Real> gravity = {};            ///< per component, m/s^2
+  std::vector<Real> density_of_cell = {};    ///< [local cell], kg/m^3; needed with gravity
+
+  bool empty() const { return value.empty() && gravity.empty(); }
+  bool constant_in_time() const {
+    return std::all_of(value.begin(), value.end(), [](const base::Expression& e) { return e.constant_in_time(); });
+  }
+  /// Component i at a point of a local cell.
+  Real operator()(int i, LocalIndex cell, const std::array<Real, 3>& x, Real t) const {
+    return (value.empty() ? 0 : value[i](x, t)) + (gravity.empty() ? 0 : density_of_cell[cell] * gravity[i]);
+  }
+};
+
+/// Stress sigma_0 of the rock at zero displacement, Pa, tension positive: sigma = sigma_0 + 2 G eps + lambda tr(eps) I.
+/// Components XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D. Empty: none.
+struct InitialStress {
+  std::vector<base::Expression> value = {};
+
+  bool empty() const { return value.empty(); }
+  Real component(int k, const std::array<Real, 3>& x) const { return value[k](x, 0); }
+  template <int dim>
+  void at(const std::array<Real, 3>& x, Real (&sigma)[dim][dim]) const {
+    sigma[0][0] = component(0, x);
+    sigma[1][1] = component(1, x);
+    sigma[0][1] = sigma[1][0] = component(3, x);
+    if constexpr (dim == 3) {
+      sigma[2][2] = component(2, x);
+      sigma[1][2] = sigma[2][1] = component(4, x);
+      sigma[0][2] = sigma[2][0] = component(5, x);
+    }
+  }
+  /// The traction sigma_0 n.
+  template <int dim, class Normal>
+  std::array<Real, 3> traction(const std::array<Real, 3>& x, const Normal& n) const {
+    Real sigma[dim][dim];
+    at(x, sigma);
+    std::array<Real, 3> t{};
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) t[i] += sigma[i][j] * n[j];
+    return t;
+  }
+};
+
+/// Mean of sigma_0 n over a fracture face, n from minus to plus, as the cell on `side` sees it; global components, Pa.
+template <mesh::Shape shape>
+std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mesh::Mesh& mesh,
+                                          const mesh::Mesh::FractureFace& face, int side) {
+  std::array<Real, 3> sum{};
+  Real total = 0;
+  assembly::for_each_face_point<shape>(mesh, face.cell[side], face.local_face[side], [&](const auto&, Real area, const auto& x) {
+    const auto traction = stress.template traction<mesh::dimension(shape)>(x, face.frame[0]);
+    for (int i = 0; i < 3; ++i) sum[i] += area * traction[i];
+    total += area;
+  });
+  for (auto& component : sum) component /= total;
+  return sum;
+}
+
+}  // namespace sprekk::physics
