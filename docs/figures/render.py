@@ -4,7 +4,8 @@
     xvfb-run -a python3 docs/figures/render.py RUN_DIRECTORY picture.png [--title "..."] [--fracture-array slip]
 
 Needs Debian's python3-vtk9 (libvtk9-dev brings it) and xvfb. The bulk is warped by its displacement and coloured by
-the displacement's magnitude, inside the outline of the undeformed box; in 3D the half towards the viewer is cut away.
+the displacement's magnitude, inside the outline of the undeformed box; in 3D the half towards the viewer is cut away
+unless --whole is given.
 Fractures lie in the middle of their two deformed sides, coloured by one of their cell arrays.
 """
 import argparse
@@ -27,7 +28,8 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkColorTransferFunction, vtk
 
 BULK_COLOURS = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]
 FRACTURE_COLOURS = ["#2d1160", "#721f81", "#b63679", "#f1605d", "#feae76", "#fcfdbf"]
-UNITS = {"slip": " [m]", "opening": " [m]", "state": "\n0 open, 1 stick, 2 slip", "traction": " [Pa]"}
+UNITS = {"slip": " [m]", "opening": " [m]", "jump": " [m]", "elastic jump": " [m]", "plastic jump": " [m]",
+         "state": "\n0 open, 1 stick, 2 slip", "traction": " [Pa]"}
 INK = (0.15, 0.16, 0.2)
 
 
@@ -161,7 +163,6 @@ def scene_renderer(options):
     planar = bounds[5] - bounds[4] == 0
     largest = bulk.GetPointData().GetArray("displacement").GetMaxNorm()
     scale = options.warp if options.warp is not None else 0.03 * bulk.GetLength() / largest if largest > 0 else 0
-    deformed = warped(bulk, scale)
     direction = place_camera(renderer, bulk, planar, width / height)
 
     outline = vtkActor()
@@ -171,13 +172,14 @@ def scene_renderer(options):
     outline.GetProperty().SetLineWidth(2)
     renderer.AddActor(outline)
 
-    visible = deformed
-    if not planar:
-        plane = vtkPlane()
-        plane.SetOrigin(bulk.GetCenter())
+    visible = bulk
+    if not planar and not options.whole:
+        plane, centre = vtkPlane(), bulk.GetCenter()
+        plane.SetOrigin(centre[0], centre[1] + 1e-6 * bulk.GetLength(), centre[2])  # off the faces of the mesh
         plane.SetNormal(0, -direction[1], 0)  # what is behind the plane stays
-        visible = filtered(vtkTableBasedClipDataSet, deformed, ClipFunction=plane)
-    actor, table = drawn(filtered(vtkDataSetSurfaceFilter, visible), (0, largest), BULK_COLOURS, "displacement", False)
+        visible = filtered(vtkTableBasedClipDataSet, bulk, ClipFunction=plane)
+    surface = filtered(vtkDataSetSurfaceFilter, warped(visible, scale))
+    actor, table = drawn(surface, (0, largest), BULK_COLOURS, "displacement", False)
     if bulk.GetNumberOfCells() < 20000:
         actor.GetProperty().EdgeVisibilityOn()
         actor.GetProperty().SetEdgeColor(0.62, 0.68, 0.76)
@@ -204,6 +206,7 @@ def scene_renderer(options):
         shown = (0, 2) if options.fracture_array == "state" else (min(low, 0), max(high, 0))
         actor, table = drawn(surface, shown, FRACTURE_COLOURS, options.fracture_array, True)
         actor.GetProperty().LightingOff()
+        actor.SetPosition([2e-3 * bulk.GetLength() * d for d in direction])  # in front of a side at the same place
         renderer.AddActor(actor)
         bars.append((table, options.fracture_array + UNITS.get(options.fracture_array, "")))
 
@@ -223,6 +226,7 @@ def arguments():
     parser.add_argument("--title", default="")
     parser.add_argument("--fracture-array", default="slip", help="cell array of the fractures (default: slip)")
     parser.add_argument("--warp", type=float, help="factor on the displacement (default: a visible one)")
+    parser.add_argument("--whole", action="store_true", help="cut nothing away in 3D")
     parser.add_argument("--size", type=int, nargs=2, default=(1600, 1000), metavar=("WIDTH", "HEIGHT"))
     return parser.parse_args()
 

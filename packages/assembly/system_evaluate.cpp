@@ -210,11 +210,13 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
 
 std::size_t System::state_hash(const BlockVector& x) {
   refresh_ghosts(x, false);
-  long long here = 0, total = 0;
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    here += static_cast<long long>(modules_[m]->state_hash(state(static_cast<int>(m))) >> 16);
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 1, &here, &total);
-  return static_cast<std::size_t>(total);
+  std::size_t here = 0;
+  for (std::size_t m = 0; m < modules_.size(); ++m) here += modules_[m]->state_hash(state(static_cast<int>(m)));
+  // in halves: a sum modulo 2^64 does not depend on the partition, and one of signed numbers may not overflow
+  const long long halves[] = {static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)};
+  long long sums[2];
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 2, halves, sums);
+  return static_cast<std::size_t>(sums[0]) + (static_cast<std::size_t>(sums[1]) << 32);
 }
 
 std::vector<OutputField> System::outputs(const BlockVector& x) {

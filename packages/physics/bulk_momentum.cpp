@@ -2,8 +2,11 @@
 
 #include "assembly/assembler.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::physics {
 
@@ -103,6 +106,7 @@ class BulkMomentum final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
+    size_ = domain_size();
     View<laws::Elasticity*> material("material", parameters_.elasticity.size());
     const auto host = Kokkos::create_mirror_view(material);
     std::copy(parameters_.elasticity.begin(), parameters_.elasticity.end(), host.data());
@@ -145,7 +149,7 @@ class BulkMomentum final : public assembly::Module {
     loaded_ = true;
   }
 
-  /// Largest traction, and largest body force times the size of this rank's part of the domain, at nodes and corners.
+  /// Largest traction, and largest body force at nodes times the size of the whole domain.
   Real load(Real t) const override {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
@@ -155,27 +159,14 @@ class BulkMomentum final : public assembly::Module {
             for (const auto& e : traction.value) largest = std::max(largest, std::abs(e(x, t)));
           });
     if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return largest;
-    Real low[dim], high[dim], size = 0, force = 0;
-    for (int i = 0; i < dim; ++i) {
-      low[i] = std::numeric_limits<Real>::max();
-      high[i] = -low[i];
-    }
-    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node) {
-      std::array<Real, 3> x{};
-      for (int i = 0; i < dim; ++i) {
-        x[i] = mesh_->coordinates[node * dim + i];
-        low[i] = std::min(low[i], x[i]);
-        high[i] = std::max(high[i], x[i]);
-      }
-    }
+    Real force = 0;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
       std::array<Real, 3> x{};
       std::copy_n(mesh_->coordinates.begin() + mesh_->cells[c * n] * dim, dim, x.begin());
       for (int i = 0; i < dim; ++i) force = std::max(force, std::abs(parameters_.body_force(i, c, x, t)));
       largest = std::max(largest, largest_initial_stress(x));
     }
-    for (int i = 0; i < dim; ++i) size = std::max(size, high[i] - low[i]);
-    return std::max(largest, mesh_->n_nodes() > 0 && !parameters_.body_force.empty() ? force * size : 0);
+    return std::max(largest, force * size_);
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
@@ -185,6 +176,21 @@ class BulkMomentum final : public assembly::Module {
   }
 
  private:
+  /// Largest extent of the whole domain, m. Collective.
+  Real domain_size() const {
+    Real here[2 * dim], all[2 * dim], size = 0;
+    std::fill_n(here, 2 * dim, -std::numeric_limits<Real>::max());
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
+      for (int i = 0; i < dim; ++i) {
+        const Real x = mesh_->coordinates[node * dim + i];
+        here[i] = std::max(here[i], x);
+        here[dim + i] = std::max(here[dim + i], -x);
+      }
+    Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, 2 * dim, here, all);
+    for (int i = 0; i < dim; ++i) size = std::max(size, all[i] + all[dim + i]);
+    return size;
+  }
+
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }
@@ -299,6 +305,7 @@ class BulkMomentum final : public assembly::Module {
   RCP<const mesh::Mesh> mesh_;
   int displacement_ = -1;
   bool loaded_ = false;
+  Real size_ = 0;  // largest extent of the domain, m
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;
   View<Real*> load_;  // [owned row], N

@@ -2,6 +2,7 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_MasterList.hpp>
 
 #include "base/check.hpp"
 #include "solve/linear_solver.hpp"
@@ -50,6 +51,33 @@ ParameterList krylov_defaults() {
   return list;
 }
 
+/// Throws an Error that names the entry if a list has one that the library does not know; `allowed` are its lists.
+void check_names(const ParameterList& given, const std::vector<ParameterList>& allowed) {
+  for (const auto& item : given) {
+    const std::string& name = item.first;
+    bool known = name.rfind("level ", 0) == 0 || name == "user data";  // MueLu's sections of one level
+    for (const auto& list : allowed) known = known || list.isParameter(name) || list.isSublist(name);
+    SPREKK_CHECK(known, "{} has no parameter \"{}\"; its manual lists those that it has", given.name(), name);
+  }
+}
+
+/// What the Krylov methods that are used here, or the one that is asked for, know.
+std::vector<ParameterList> belos_parameters(const ParameterList& given) {
+  std::vector<std::string> methods = {"Pseudo Block CG", "Pseudo Block GMRES"};
+  if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
+  std::vector<ParameterList> lists(1);
+  lists[0].set("Solver Type", "");
+  Belos::SolverFactory<Real, MultiVector, Operator> factory;
+  for (const auto& method : methods) {
+    try {
+      lists.push_back(*factory.create(method, Teuchos::parameterList())->getValidParameters());
+    } catch (const std::exception&) {
+      throw Error(fmt::format("Belos has no solver \"{}\"", method));
+    }
+  }
+  return lists;
+}
+
 /// The last paragraph of an exception's text: what went wrong, without the place in the library.
 std::string gist(const std::string& text) {
   const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1);
@@ -59,6 +87,8 @@ std::string gist(const std::string& text) {
 class IterativeSolver : public LinearSolver {
  public:
   IterativeSolver(const LinearSolverOptions& options, const Block& block) : parameters_("iterative") {
+    check_names(ParameterList(options.muelu).setName("MueLu"), {*MueLu::MasterList::List()});
+    check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
     parameters_.sublist("MueLu") = multigrid_defaults(block.n_components, block.map->getComm()->getSize());
     if (options.muelu.isParameter("smoother: type")) parameters_.sublist("MueLu").remove("smoother: params");
     parameters_.sublist("MueLu").setParameters(options.muelu);

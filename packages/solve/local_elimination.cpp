@@ -129,7 +129,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
   Kokkos::parallel_reduce(
       "factor entities", Policy(0, n),
       KOKKOS_LAMBDA(LocalIndex e, LocalIndex & singular) {
-        if (!lu_factor(m, &lu(e * m * m), &pivot(e * m), scale.data()) && e < singular) singular = e;
+        if (!lu_factor(m, &lu(e * m * m), &pivot(e * m), &scale(0)) && e < singular) singular = e;
       },
       Kokkos::Min<LocalIndex>(first));
   const auto none = std::numeric_limits<GlobalIndex>::max();

@@ -88,6 +88,19 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   return list;
 }
 
+/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an entry
+/// of `given` that it has not.
+void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path) {
+  for (const auto& item : given) {
+    const auto& entry = read.getEntry(item.first);
+    if (entry.isList())
+      refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first);
+    else
+      SPREKK_CHECK(entry.isUsed(), "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
+                   item.first);
+  }
+}
+
 }  // namespace
 
 void NewtonOptions::describe(base::Section& section) {
@@ -114,8 +127,10 @@ NewtonReport Newton::solve(BlockVector& x) {
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model));
   const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, report));
-  const auto solver = NOX::Solver::buildSolver(group, test, nox_parameters(options_, problem_, *model_));
+  const auto parameters = nox_parameters(options_, problem_, *model_);
+  const auto solver = NOX::Solver::buildSolver(group, test, parameters);
   report.converged = solver->solve() == NOX::StatusTest::Converged;
+  refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   const auto& linear = model_->linear_history();
   report.linear_iterations = linear.iterations;

@@ -1,0 +1,20 @@
+// A module as an example: springs under a boundary (Winkler's foundation).
+#pragma once
+
+#include "assembly/module.hpp"
+
+#include <array>
+#include <memory>
+
+namespace sprekk::examples {
+
+struct ElasticFoundationParameters {
+  int boundary;                   ///< index into the mesh's boundary_names
+  std::array<Real, 3> stiffness;  ///< k, Pa/m, per direction
+};
+
+/// Springs between a boundary and rigid ground: the traction -k_i u_i acts on the body. Adds to the displacement rows
+///   boundary integral sum_i k_i u_i v_i.
+std::unique_ptr<assembly::Module> make_elastic_foundation(mesh::Shape shape, ElasticFoundationParameters parameters);
+
+}  // namespace sprekk::examples
