@@ -29,7 +29,8 @@ std::vector<unsigned> corners_of_nodes(Shape shape) {
   std::vector<unsigned> result(n, (1u << n_corners(shape)) - 1);  // what no face names lies inside
   for (int k = 0; k < n_corners(shape); ++k) result[k] = 1u << k;
   if (order(shape) == 1) return result;
-  for (const auto& edge : CellGeometry(shape).edges()) result[edge.middle] = 1u << edge.from | 1u << edge.to;
+  const CellGeometry geometry(shape);
+  for (const auto& edge : geometry.edges()) result[edge.middle] = 1u << edge.from | 1u << edge.to;
   for (const auto& face : face_nodes(shape))
     if (n_face_nodes(shape) == 9) result[face[8]] = bits(face.data(), n_around);
   return result;

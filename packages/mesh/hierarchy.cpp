@@ -170,26 +170,27 @@ class Builder {
   }
 
   void add_intersections() {
-    const auto n_ridges = static_cast<GlobalIndex>(result_.ridges.size());
-    std::vector<std::set<int>> fractures(n_ridges);
-    std::map<GlobalIndex, std::vector<GlobalIndex>> around;  // the ridges of intersections at each of their nodes
-    for (GlobalIndex r = 0; r < n_ridges; ++r) {
-      if (fractures[r] = fractures_at(r); fractures[r].size() < 2) continue;
-      for (GlobalIndex node : result_.ridges[r].nodes)
-        if (node >= 0) around[node].push_back(r);
-    }
-    line_of_.assign(n_ridges, -1);
-    for (GlobalIndex seed = 0; seed < n_ridges; ++seed) {
-      if (fractures[seed].size() < 2 || line_of_[seed] >= 0) continue;
-      const int line = line_of_[seed] = add_subdomain(dim_ - 2, fractures[seed]);
-      std::vector<GlobalIndex> piece{seed};
-      for (std::size_t next = 0; next < piece.size(); ++next)
-        for (GlobalIndex node : result_.ridges[piece[next]].nodes)
-          for (GlobalIndex other : node < 0 ? std::vector<GlobalIndex>{} : around[node])
-            if (line_of_[other] < 0 && fractures[other] == fractures[seed])
-              line_of_[other] = line, piece.push_back(other);
-      std::sort(piece.begin(), piece.end());
-      fill_intersection(line, std::move(piece));
+    std::map<std::set<int>, std::vector<GlobalIndex>> ridges_of;  // for each set of fractures that meet
+    for (std::size_t r = 0; r < result_.ridges.size(); ++r)
+      if (const auto fractures = fractures_at(r); fractures.size() > 1)
+        ridges_of[fractures].push_back(static_cast<GlobalIndex>(r));
+    line_of_.assign(result_.ridges.size(), -1);
+    for (const auto& [fractures, ridges] : ridges_of) {
+      std::map<GlobalIndex, std::vector<GlobalIndex>> around;  // the ridges at each of their nodes
+      for (GlobalIndex r : ridges)
+        for (GlobalIndex node : result_.ridges[r].nodes)
+          if (node >= 0) around[node].push_back(r);
+      for (GlobalIndex seed : ridges) {
+        if (line_of_[seed] >= 0) continue;
+        const int line = line_of_[seed] = add_subdomain(dim_ - 2, fractures);
+        std::vector<GlobalIndex> piece{seed};
+        for (std::size_t next = 0; next < piece.size(); ++next)
+          for (GlobalIndex node : result_.ridges[piece[next]].nodes)
+            for (GlobalIndex other : around[node])
+              if (line_of_[other] < 0) line_of_[other] = line, piece.push_back(other);
+        std::sort(piece.begin(), piece.end());
+        fill_intersection(line, std::move(piece));
+      }
     }
   }
 
@@ -213,32 +214,42 @@ class Builder {
       int line, local;
       GlobalIndex cell;
     };
-    std::map<GlobalIndex, std::vector<End>> ends;
-    std::vector<GlobalIndex> nodes;  // in the order in which the ridges meet them
+    struct Node {
+      GlobalIndex id;
+      std::vector<End> ends;  ///< of edges of lines
+    };
+    std::vector<Node> nodes;  // in the order in which the ridges meet them
+    std::map<GlobalIndex, std::size_t> known;
     std::vector<GlobalIndex> n_in_line(n_subdomains(), 0);
     for (std::size_t r = 0; r < result_.ridges.size(); ++r) {
       if (line_of_[r] < 0) continue;
       const GlobalIndex cell = n_in_line[line_of_[r]]++;
       for (int local : {0, 1}) {
-        auto& here = ends[result_.ridges[r].nodes[local]];
-        if (here.empty()) nodes.push_back(result_.ridges[r].nodes[local]);
-        here.push_back({line_of_[r], local, cell});
+        const auto [found, is_new] = known.emplace(result_.ridges[r].nodes[local], nodes.size());
+        if (is_new) nodes.push_back({found->first, {}});
+        nodes[found->second].ends.push_back({line_of_[r], local, cell});
       }
     }
-    for (GlobalIndex node : nodes) {
-      std::map<int, int> interface_to;
-      std::set<int> fractures;
-      for (const auto& end : ends[node]) {
-        interface_to[end.line];
-        fractures.insert(result_.subdomains[end.line].fractures.begin(), result_.subdomains[end.line].fractures.end());
+    std::map<std::set<int>, std::vector<const Node*>> points_of;  // for each set of fractures that meet
+    for (const auto& node : nodes) {
+      std::set<int> lines, fractures;
+      for (const auto& end : node.ends) {
+        const auto& meeting = result_.subdomains[end.line].fractures;
+        lines.insert(end.line);
+        fractures.insert(meeting.begin(), meeting.end());
       }
-      if (interface_to.size() < 2) continue;
-      const int index = add_subdomain(0, fractures);
-      result_.subdomains[index].cells = {node};
-      result_.subdomains[index].measures = {1};
-      for (auto& [line, interface] : interface_to) interface = add_interface(line, index, std::nullopt);
-      for (const auto& end : ends[node]) add_facet(interface_to[end.line], {end.cell, end.local}, 0, 1);
+      if (lines.size() > 1) points_of[fractures].push_back(&node);
     }
+    for (const auto& [fractures, points] : points_of)
+      for (const auto* node : points) {
+        const int index = add_subdomain(0, fractures);
+        result_.subdomains[index].cells = {node->id};
+        result_.subdomains[index].measures = {1};
+        std::map<int, int> interface_to;
+        for (const auto& end : node->ends) interface_to[end.line];
+        for (auto& [line, interface] : interface_to) interface = add_interface(line, index, std::nullopt);
+        for (const auto& end : node->ends) add_facet(interface_to[end.line], {end.cell, end.local}, 0, 1);
+      }
   }
 };
 

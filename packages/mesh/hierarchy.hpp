@@ -72,11 +72,11 @@ struct Interface {
 };
 
 struct Hierarchy {
-  std::vector<Subdomain> subdomains;  ///< by descending dimension: the bulk, the fractures in their order, the others
-  std::vector<Interface> interfaces;  ///< by ascending lower-dimensional subdomain, then higher-dimensional, then side
+  /// By descending dimension: the bulk, the fractures in their order, the others by the fractures that meet there.
+  std::vector<Subdomain> subdomains;
+  std::vector<Interface> interfaces;  ///< by lower-dimensional subdomain, then by higher-dimensional one, then by side
   std::vector<Ridge> ridges;          ///< of all fracture faces
-  std::vector<std::vector<GlobalIndex>>
-      tips;  ///< [fracture] ridges of one face only that are not on the domain's boundary
+  std::vector<std::vector<GlobalIndex>> tips;  ///< [fracture] ridges with one face only, not on the domain's boundary
 
   /// Number of subdomains of a dimension.
   int count(int dimension) const;

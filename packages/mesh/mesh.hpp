@@ -30,10 +30,14 @@ struct GlobalMesh {
   std::vector<GlobalIndex> cells;  ///< [cell * n_nodes(shape) + local node]
   std::vector<int> cell_region;    ///< [cell], index into region_names
   std::vector<GlobalIndex> parent_node;  ///< [node] the node that split() copied, itself for all others; see split.hpp
+  std::vector<GlobalIndex> tied_to;      ///< the node that each of the last nodes shares its unknowns with; see periodic.hpp
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
 
+  /// Nodes with unknowns of their own come first.
+  GlobalIndex n_free_nodes() const { return n_nodes() - static_cast<GlobalIndex>(tied_to.size()); }
+  GlobalIndex free_node(GlobalIndex node) const { return node < n_free_nodes() ? node : tied_to[node - n_free_nodes()]; }
   int dim() const { return dimension(shape); }
   GlobalIndex n_cells() const { return static_cast<GlobalIndex>(cell_region.size()); }
   GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(coordinates.size()) / dim(); }
@@ -66,6 +70,8 @@ struct Mesh {
   RCP<const Comm> comm;
   Shape shape;
   LocalIndex n_owned_nodes = 0, n_owned_cells = 0, n_owned_fracture_faces = 0;
+  LocalIndex n_free_nodes = 0;         ///< nodes with unknowns of their own, owned and ghosts; tied ones follow
+  std::vector<LocalIndex> tied_to;     ///< [tied node] the local node that it shares its unknowns with
   std::vector<GlobalIndex> node_id, cell_id;
   std::vector<int> cell_owner;             ///< [cell] rank
   std::vector<Real> coordinates;           ///< [node * dim + component], metre
@@ -79,6 +85,7 @@ struct Mesh {
   int dim() const { return dimension(shape); }
   int nodes_per_cell() const { return mesh::n_nodes(shape); }
   LocalIndex n_nodes() const { return static_cast<LocalIndex>(node_id.size()); }
+  LocalIndex free_node(LocalIndex node) const { return node < n_free_nodes ? node : tied_to[node - n_free_nodes]; }
   LocalIndex n_cells() const { return static_cast<LocalIndex>(cell_id.size()); }
   LocalIndex n_fracture_faces() const { return static_cast<LocalIndex>(fracture_faces.size()); }
 };

@@ -138,7 +138,7 @@ class Parser {
   }
 
   void read_nodes_2() {
-    for (auto n = in_.count("nodes", words(7, 4)); n > 0; --n) {
+    for (auto n = in_.text_count("nodes", words(7, 4)); n > 0; --n) {
       mesh_.node_tags.push_back(in_.tag("the number of a node"));
       mesh_.points.push_back(read_point(mesh_.node_tags.back()));
     }
@@ -194,7 +194,7 @@ class Parser {
   }
 
   void read_elements_2() {
-    const auto n = in_.count("elements", 4);
+    const auto n = in_.text_count("elements", words(2, 4));
     for (GlobalIndex i = 0; i < n;) {
       GlobalIndex tag = in_.is_binary() ? 0 : in_.tag("the number of an element");
       const int number = in_.integer("the type of an element");

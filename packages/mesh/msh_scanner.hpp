@@ -103,12 +103,14 @@ class MshScanner {
 
   /// How many things of at least so many numbers each follow: no more than the rest of the file can hold.
   GlobalIndex count(const char* what, GlobalIndex n_numbers = 1) {
-    const auto value = long_integer(what);
-    const auto rest = static_cast<GlobalIndex>(text_.size() - at_);
-    const auto largest = is_binary_ ? rest / (4 * n_numbers) : (rest + 1) / (2 * n_numbers);
-    if (value < 0 || value > largest)
-      fail(fmt::format("the number of {} is {}, which the rest of the file, {} bytes, cannot hold", what, value, rest));
-    return value;
+    return checked_count(what, long_integer(what), n_numbers);
+  }
+
+  /// The same where the count is text in a line of its own also if what follows is binary.
+  GlobalIndex text_count(const char* what, GlobalIndex n_numbers) {
+    const auto value = text_integer(what);
+    if (is_binary_ && !line().empty()) fail(fmt::format("the line with the number of {} goes on", what));
+    return checked_count(what, value, n_numbers);
   }
 
   Real number(const char* what) {
@@ -142,6 +144,14 @@ class MshScanner {
   GlobalIndex tag_ = 0;
   std::size_t at_ = 0, start_ = 0;  ///< of the next and of the last thing read
   bool is_binary_ = false, has_wide_tags_ = false;
+
+  GlobalIndex checked_count(const char* what, GlobalIndex value, GlobalIndex n_numbers) const {
+    const auto rest = static_cast<GlobalIndex>(text_.size() - at_);
+    const auto largest = is_binary_ ? rest / (4 * n_numbers) : (rest + 1) / (2 * n_numbers);
+    if (value < 0 || value > largest)
+      fail(fmt::format("the number of {} is {}, which the rest of the file, {} bytes, cannot hold", what, value, rest));
+    return value;
+  }
 
   std::string_view word(const char* what) {
     at_end();

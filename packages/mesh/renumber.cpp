@@ -18,10 +18,7 @@ std::vector<GlobalIndex> random_permutation(GlobalIndex n, std::mt19937_64& rand
 
 }  // namespace
 
-GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed) {
-  std::mt19937_64 random(seed);
-  const auto new_node = random_permutation(mesh.n_nodes(), random);
-  const auto new_cell = random_permutation(mesh.n_cells(), random);
+GlobalMesh permuted(const GlobalMesh& mesh, const std::vector<GlobalIndex>& new_node, const std::vector<GlobalIndex>& new_cell) {
   const int dim = mesh.dim(), nodes_per_cell = n_nodes(mesh.shape);
   GlobalMesh result = mesh;
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node)
@@ -37,6 +34,12 @@ GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed) {
     for (auto& cell : face.cell) cell = new_cell[cell];
   for (auto& face : result.boundary_faces) face.cell = new_cell[face.cell];
   return result;
+}
+
+GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto new_node = random_permutation(mesh.n_nodes(), random);
+  return permuted(mesh, new_node, random_permutation(mesh.n_cells(), random));
 }
 
 }  // namespace sprekk::mesh

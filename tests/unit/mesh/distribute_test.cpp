@@ -7,6 +7,8 @@
 #include <Tpetra_Core.hpp>
 #include <algorithm>
 #include <set>
+#include <stdexcept>
+#include <tuple>
 
 #include "mesh/partition.hpp"
 #include "meshes.hpp"
@@ -15,38 +17,6 @@ namespace sprekk::mesh::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-TEST(Partition, UsesEveryPart) {
-  for (const auto& cell : all_cells) {
-    const auto mesh = make_box(crossed(cell));
-    for (int n : {1, 2, 3, 7, 12}) {
-      const auto part = partition(mesh, n);
-      ASSERT_EQ(static_cast<GlobalIndex>(part.size()), mesh.n_cells());
-      const std::set<int> used(part.begin(), part.end());
-      EXPECT_EQ(static_cast<int>(used.size()), n) << cell;
-      EXPECT_EQ(*used.begin(), 0);
-      EXPECT_EQ(*used.rbegin(), n - 1);
-      EXPECT_EQ(part, partition(mesh, n));
-    }
-  }
-}
-
-TEST(Partition, LeavesPartsEmptyWhereCellsAreFew) {
-  const auto mesh = make_box(unit_steps("quadrilateral", {2, 1}));
-  const auto part = partition(mesh, 5);
-  ASSERT_EQ(part.size(), 2u);
-  EXPECT_NE(part[0], part[1]);
-  for (int p : part) EXPECT_TRUE(0 <= p && p < 5);
-  EXPECT_THAT(error_of([&] { partition(mesh, 0); }), HasSubstr("at least one"));
-}
-
-TEST(Partition, SeesTheFracture) {
-  auto box = unit_steps("quadrilateral", {16, 2});
-  box.fractures["f"] = fracture({0, 1}, {16, 1});
-  const auto mesh = make_box(box);
-  const auto part = partition(mesh, 2);  // two edges are cut across, sixteen along the fracture
-  for (const auto& face : mesh.fracture_faces) EXPECT_EQ(part[face.cell[minus]], part[face.cell[plus]]);
-}
 
 std::vector<int> sum_over_ranks(const Comm& comm, const std::vector<int>& mine) {
   std::vector<int> sum(mine.size());
@@ -182,6 +152,45 @@ TEST(Distribute, IsAsDocumentedForScatteredAndSidedParts) {
   }
 }
 
+/// Every member, to the last bit.
+void expect_identical(const Mesh& a, const Mesh& b) {
+  EXPECT_EQ(a.comm, b.comm);
+  const auto plain = [](const Mesh& m) {
+    return std::tie(m.shape, m.n_owned_nodes, m.n_owned_cells, m.n_owned_fracture_faces, m.n_free_nodes, m.tied_to,
+                    m.node_id, m.cell_id, m.cell_owner, m.coordinates, m.cells, m.cell_region, m.region_names,
+                    m.boundary_names, m.fracture_names, m.n_global_nodes, m.n_global_cells, m.n_global_fracture_faces);
+  };
+  EXPECT_TRUE(plain(a) == plain(b));
+  ASSERT_EQ(a.fracture_faces.size(), b.fracture_faces.size());
+  const auto plain_face = [](const Mesh::FractureFace& f) {
+    return std::tie(f.id, f.fracture, f.cell, f.local_face, f.nodes, f.area, f.centre, f.frame);
+  };
+  for (std::size_t f = 0; f < a.fracture_faces.size(); ++f)
+    EXPECT_TRUE(plain_face(a.fracture_faces[f]) == plain_face(b.fracture_faces[f]));
+  ASSERT_EQ(a.boundary_faces.size(), b.boundary_faces.size());
+  for (std::size_t f = 0; f < a.boundary_faces.size(); ++f) {
+    const auto &x = a.boundary_faces[f], &y = b.boundary_faces[f];
+    EXPECT_TRUE(std::tie(x.boundary, x.cell, x.local_face, x.owned) ==
+                std::tie(y.boundary, y.cell, y.local_face, y.owned));
+  }
+}
+
+TEST(Distribute, OnlyRankZeroMakesTheMeshAndAllGetTheSameParts) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells)
+    for (int order : {1, 2}) {
+      auto box = crossed(cell);
+      box.order = order;
+      box.rotation = 12;
+      const auto global = make_box(box);
+      const auto expected = distribute(global, partition(global, comm->getSize()), comm);
+      int calls = 0;
+      expect_identical(*make_distributed([&] { return ++calls, make_box(box); }, comm), *expected);
+      EXPECT_EQ(calls, comm->getRank() == 0 ? 1 : 0);
+      expect_identical(*make_distributed(comm->getRank() == 0 ? global : GlobalMesh(), comm), *expected);
+    }
+}
+
 TEST(Distribute, RanksMayOwnNothing) {
   const auto comm = Tpetra::getDefaultComm();
   const auto single = make_box(unit_steps("hexahedron", {1, 1, 1}));
@@ -240,6 +249,14 @@ TEST(Distribute, Errors) {
   EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("do not coincide"));
   mesh.coordinates.insert(mesh.coordinates.end(), {0, 0});
   EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("belongs to no cell"));
+
+  int calls = 0;
+  const auto fail = [&]() -> GlobalMesh {
+    ++calls;
+    throw std::runtime_error("no such file");
+  };
+  EXPECT_EQ(error_of([&] { make_distributed(fail, comm); }), "no such file");
+  EXPECT_EQ(calls, comm->getRank() == 0 ? 1 : 0);
 }
 
 }  // namespace
