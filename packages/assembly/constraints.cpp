@@ -12,7 +12,7 @@ Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, s
   const int dim = mesh.dim(), n_components = layout.field().n_components;
   std::vector<int> first_entry(layout.n_owned(), -1);
   const auto add = [&](LocalIndex node, int condition, int component) {
-    const LocalIndex unknown = node * n_components + component;
+    const LocalIndex unknown = mesh.free_node(node) * n_components + component;
     if (unknown >= layout.n_owned()) return;
     Entry entry{unknown, condition, component, {0, 0, 0}};
     std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());

@@ -44,7 +44,8 @@ class TableBuilder {
 };
 
 void add_cell_nodes(const mesh::Mesh& mesh, LocalIndex cell, int width, TableBuilder& table) {
-  for (int a = 0; a < mesh.nodes_per_cell(); ++a) table.add(mesh.cells[cell * mesh.nodes_per_cell() + a] * width);
+  for (int a = 0; a < mesh.nodes_per_cell(); ++a) 
+    table.add(mesh.free_node(mesh.cells[cell * mesh.nodes_per_cell() + a]) * width);
 }
 
 Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, int width) {
@@ -64,13 +65,14 @@ Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, int width) {
     TableBuilder table(mesh.n_owned_fracture_faces, 2 * face_nodes);
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
       for (int side : {mesh::minus, mesh::plus})
-        for (int k = 0; k < face_nodes; ++k) table.add(mesh.fracture_faces[f].nodes[side][k] * width);
+        for (int k = 0; k < face_nodes; ++k) table.add(mesh.free_node(mesh.fracture_faces[f].nodes[side][k]) * width);
     return {table.finish(), width};
   }
   TableBuilder table(mesh.boundary_faces.size(), face_nodes);
   for (const auto& face : mesh.boundary_faces)
     for (int k = 0; k < face_nodes; ++k)
-      table.add(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]] * width);
+      
+        table.add(mesh.free_node(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]]) * width);
   return {table.finish(), width};
 }
 

@@ -4,7 +4,7 @@ namespace sprekk::fields {
 
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
   switch (entity) {
-    case Entity::node: return with_ghosts ? mesh.n_nodes() : mesh.n_owned_nodes;
+    case Entity::node: return with_ghosts ? mesh.n_free_nodes : mesh.n_owned_nodes;
     case Entity::cell: return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
     default: return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
   }

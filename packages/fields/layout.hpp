@@ -39,7 +39,7 @@ class Layout {
   RCP<const Import> import_;
 };
 
-/// Number of entities of a kind on this rank, owned only or with ghosts.
+/// Number of entities of a kind with unknowns of their own on this rank, owned only or with ghosts.
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts);
 
 }  // namespace sprekk::fields

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parameters.hpp"
+#include "mesh/periodic.hpp"
 #include "mesh/raise_order.hpp"
 #include "mesh/renumber.hpp"
 #include "mesh/split.hpp"
@@ -278,13 +279,22 @@ void BoxMesh::describe(base::Section& s) {
   s.entry(rotation, "rotation", "degree", base::any(),
           "angle, counter-clockwise about the origin, by which the box turns");
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
+  s.entry(periodic, "periodic", "-", "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; without it the order is regular");
 }
 
 GlobalMesh make_box(const BoxMesh& box) {
-  const auto mesh = BoxBuilder(box).build();
-  return box.renumbering_seed ? renumbered(mesh, *box.renumbering_seed) : mesh;
+  auto mesh = BoxBuilder(box).build();
+  if (box.renumbering_seed) mesh = renumbered(mesh, *box.renumbering_seed);
+  std::vector<std::pair<std::string, std::string>> sides;
+  for (const auto& direction : box.periodic) {
+    const auto axis = std::string("xyz").substr(0, mesh.dim()).find(direction);
+    SPREKK_CHECK(direction.size() == 1 && axis != std::string::npos, "box mesh: periodic: is \"{}\", must be {}", direction,
+                 mesh.dim() == 2 ? "x or y" : "x, y or z");
+    sides.emplace_back(boundary_names[2 * axis], boundary_names[2 * axis + 1]);
+  }
+  return tie_periodic(mesh, sides);
 }
 
 }  // namespace sprekk::mesh

@@ -39,6 +39,7 @@ struct BoxMesh {
   Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
   std::vector<Real> rotation_axis{0, 0, 1};  ///< 3D; through the origin
   std::optional<int> renumbering_seed;       ///< see renumbered()
+  std::vector<std::string> periodic;         ///< directions x, y, z in which opposite sides are tied, see tie_periodic()
   void describe(base::Section& section);
 };
 

@@ -87,13 +87,13 @@ class Distributor {
 
   GlobalIndex node(GlobalIndex cell, int k) const { return global_.cells[cell * nodes_per_cell_ + k]; }
 
-  /// The nodes of the cells that `selected` picks.
+  /// The nodes of the cells that `selected` picks, and those that they are tied to.
   template <class Predicate>
   std::vector<bool> nodes_of(const Predicate& selected) const {
     std::vector<bool> result(global_.n_nodes(), false);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
       if (selected(cell))
-        for (int k = 0; k < nodes_per_cell_; ++k) result[node(cell, k)] = true;
+        for (int k = 0; k < nodes_per_cell_; ++k) result[node(cell, k)] = result[global_.free_node(node(cell, k))] = true;
     return result;
   }
 
@@ -102,17 +102,21 @@ class Distributor {
     const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
     std::vector<bool> result(global_.n_cells(), false);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
-      for (int k = 0; k < nodes_per_cell_ && !result[cell]; ++k) result[cell] = is_near[node(cell, k)];
+      for (int k = 0; k < nodes_per_cell_ && !result[cell]; ++k) result[cell] = is_near[global_.free_node(node(cell, k))];
     for (const auto& face : global_.fracture_faces)
       if (part_[face.cell[minus]] == rank_) result[face.cell[plus]] = true;
     return result;
   }
 
-  /// For each node the lowest rank that owns a cell around it.
+  /// For each node the lowest rank that owns a cell around it or around a node tied to it; -1 for a tied one.
   std::vector<int> node_owners(int n_ranks) const {
     std::vector<int> owner(global_.n_nodes(), n_ranks);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
-      for (int k = 0; k < nodes_per_cell_; ++k) owner[node(cell, k)] = std::min(owner[node(cell, k)], part_[cell]);
+      for (int k = 0; k < nodes_per_cell_; ++k) {
+        int& rank = owner[global_.free_node(node(cell, k))];
+        rank = std::min(rank, part_[cell]);
+      }
+    std::fill(owner.begin() + global_.n_free_nodes(), owner.end(), -1);
     const auto orphan = std::find(owner.begin(), owner.end(), n_ranks);
     SPREKK_CHECK(orphan == owner.end(), "distribute: node {} belongs to no cell", orphan - owner.begin());
     return owner;
@@ -121,6 +125,12 @@ class Distributor {
   void fill_nodes() {
     const int dim = global_.dim();
     mesh_.n_owned_nodes = nodes_.n_owned;
+    for (GlobalIndex id : nodes_.ids) {  // tied nodes have the highest numbers, and no owner: they come last
+      if (id < global_.n_free_nodes())
+        ++mesh_.n_free_nodes;
+      else
+        mesh_.tied_to.push_back(nodes_.local_of[global_.free_node(id)]);
+    }
     mesh_.node_id = nodes_.ids;
     for (GlobalIndex id : nodes_.ids)
       mesh_.coordinates.insert(mesh_.coordinates.end(), &global_.coordinates[id * dim],

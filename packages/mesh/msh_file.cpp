@@ -107,7 +107,7 @@ class Parser {
     for (int dim = 0; dim < 4; ++dim)
       for (GlobalIndex i = 0; i < n[dim]; ++i) {
         const int number = in_.integer("the number of an entity");
-        for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) in_.number("a bound of an entity");
+        for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) in_.skip_number("a bound of an entity");
         std::vector<int> groups(in_.count("physical groups"));
         for (int& group : groups) group = std::abs(in_.integer("the number of a physical group"));
         if (dim > 0)
@@ -171,7 +171,7 @@ class Parser {
       for (GlobalIndex i = 0; i < n; ++i) mesh_.node_tags.push_back(in_.tag("the number of a node"));
       for (GlobalIndex i = 0; i < n; ++i) {
         mesh_.points.push_back(read_point(mesh_.node_tags[mesh_.points.size()]));
-        for (int k = 0; is_parametric != 0 && k < dim; ++k) in_.number("a parameter of a node");
+        for (int k = 0; is_parametric != 0 && k < dim; ++k) in_.skip_number("a parameter of a node");
       }
     }
     check_total("nodes", n_all, mesh_.points.size());

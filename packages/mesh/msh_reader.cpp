@@ -243,7 +243,8 @@ class Builder {
       for (const auto& [key, known] : msh_.group_names)
         if (known == name)
           fail("fracture \"{}\": the physical group has dimension {}{}", name, key.first,
-               key.first == dim ? " and no elements" : fmt::format("; a fracture in this mesh has dimension {}", dim));
+               key.first == dim ? " and no elements (gmsh drops groups where it saves all elements)"
+                                : fmt::format("; a fracture in this mesh has dimension {}", dim));
       fail("fracture \"{}\": unknown; the physical groups of dimension {} are {}.{}", name, dim,
            names.empty() ? "none" : base::quoted_list(names), base::did_you_mean(name, names));
     }

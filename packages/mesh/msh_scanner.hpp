@@ -127,6 +127,14 @@ class MshScanner {
     return value;
   }
 
+  /// Passes over a floating-point number that nobody needs, whatever it is.
+  void skip_number(const char* what) {
+    if (is_binary_)
+      raw<double>(what);
+    else
+      word(what);
+  }
+
   template <class T>
   T raw(const char* what) {
     start_ = at_;

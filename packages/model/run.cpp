@@ -63,7 +63,7 @@ bool run(const RunOptions& options, RCP<const Comm> comm) {
     const Real begin = model.time();
     const auto report = [&] {
       try {
-        return model.step_to(times[k]);
+        return naming_file(options.scene, [&] { return model.step_to(times[k]); });
       } catch (const Error& error) {  // of an expression; the same on every rank
         results.finish("failed", error.what());
         throw;

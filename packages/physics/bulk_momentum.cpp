@@ -171,7 +171,8 @@ class BulkMomentum final : public assembly::Module {
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    fields[0].values.assign(u.data(), u.data() + mesh_->n_nodes() * dim);
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
+      for (int i = 0; i < dim; ++i) fields[0].values.push_back(u(mesh_->free_node(node) * dim + i));
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, fields[1].values);
   }
 
@@ -225,7 +226,7 @@ class BulkMomentum final : public assembly::Module {
         Op::Cell::shape_functions(xi, N);
         for (int i = 0; i < dim; ++i) {
           const Real force = volume * parameters_.body_force(i, c, x, t);
-          for (int a = 0; a < n; ++a) add(load, mesh_->cells[c * n + a] * dim + i, N[a] * force);
+          for (int a = 0; a < n; ++a) add(load, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, N[a] * force);
         }
       });
   }
@@ -243,7 +244,7 @@ class BulkMomentum final : public assembly::Module {
         for (int a = 0; a < n; ++a) {
           point.gradient(dN[a], g);
           for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j) add(load, mesh_->cells[c * n + a] * dim + i, -volume * sigma[i][j] * g[j]);
+            for (int j = 0; j < dim; ++j) add(load, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, -volume * sigma[i][j] * g[j]);
         }
       });
     }
@@ -258,7 +259,7 @@ class BulkMomentum final : public assembly::Module {
         for (int i = 0; i < dim; ++i) {
           const Real force = area * traction.value[i](x, t);
           for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-            add(load, mesh_->cells[face.cell * n + corners[k]] * dim + i, N[k] * force);
+            add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
         }
       });
     }
@@ -282,7 +283,7 @@ class BulkMomentum final : public assembly::Module {
       Real g[dim];
       point.gradient(dN[a], g);
       for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) H[i][j] += u(mesh_->cells[c * n + a] * dim + i) * g[j];
+        for (int j = 0; j < dim; ++j) H[i][j] += u(mesh_->free_node(mesh_->cells[c * n + a]) * dim + i) * g[j];
     }
     const auto& law = parameters_.elasticity[law_of(c)];
     law.stress(H, sigma);

@@ -112,8 +112,9 @@ class IterativeSolver : public LinearSolver {
     matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(matrix);
     try {
       base::collectively(*matrix->getComm(), [&] {
+        raised_ = raised(*matrix);
         if (preconditioner_.is_null()) create(block, bulk);
-        MueLu::ReuseTpetraPreconditioner(matrix_, *preconditioner_);
+        MueLu::ReuseTpetraPreconditioner(raised_, *preconditioner_);
       });
       failure_.clear();
     } catch (const Error& error) {
@@ -150,8 +151,20 @@ class IterativeSolver : public LinearSolver {
   const ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Aggregates by the graph of the bulk, where no edge crosses an interface; the diagonal is raised a little, for
-  /// floating parts are singular there.
+  /// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would make
+  /// the coarse matrix singular, and its direct solver fail on the one rank that has it.
+  static RCP<CrsMatrix> raised(const CrsMatrix& matrix) {
+    const auto copy = rcp(new CrsMatrix(matrix, Teuchos::Copy));
+    const auto local = copy->getLocalMatrixHost();
+    const auto& columns = *copy->getColMap();
+    for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+      for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+        if (columns.getGlobalElement(local.graph.entries(k)) == copy->getRowMap()->getGlobalElement(row))
+          local.values(k) *= 1 + 1e-8;
+    return copy;
+  }
+
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface.
   void create(const Block& block, const RCP<const CrsMatrix>& bulk) {
     ParameterList list(parameters_.sublist("MueLu"));
     auto& user_data = list.sublist("user data");
@@ -159,17 +172,7 @@ class IterativeSolver : public LinearSolver {
       user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
     if (!block.coordinates.is_null())
       user_data.set("Coordinates", rcp(new MultiVector(*block.coordinates, Teuchos::Copy)));
-    RCP<Operator> from = matrix_;
-    if (!bulk.is_null()) {
-      const auto raised = rcp(new CrsMatrix(*bulk, Teuchos::Copy));
-      const auto local = raised->getLocalMatrixHost();
-      const auto& columns = *raised->getColMap();
-      for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
-        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-          if (columns.getGlobalElement(local.graph.entries(k)) == block.map->getGlobalElement(row))
-            local.values(k) *= 1 + 1e-8;
-      from = raised;
-    }
+    const RCP<Operator> from = bulk.is_null() ? raised_ : raised(*bulk);
     preconditioner_ = MueLu::CreateTpetraPreconditioner(from, list);
   }
 
@@ -193,7 +196,7 @@ class IterativeSolver : public LinearSolver {
 
   ParameterList parameters_;
   std::unique_ptr<LinearSolver> coarse_;
-  RCP<CrsMatrix> matrix_;
+  RCP<CrsMatrix> matrix_, raised_;
   RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> preconditioner_;
   bool symmetric_ = false;
   std::string failure_ = "the matrix was not set up";

@@ -20,7 +20,7 @@ using fields::Vector;
 /// What is wanted of a linear solver. The lists are handed to the libraries untouched, over the defaults.
 struct LinearSolverOptions {
   std::string type = "auto";           ///< auto | direct | iterative
-  Real tolerance = 1e-11;              ///< relative residual that is asked for
+  Real tolerance = 1e-12;              ///< relative residual that is asked for
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
   long long direct_limit_3d = 20000;   ///< auto: the same in 3D
   Teuchos::ParameterList mumps, belos, muelu;

@@ -18,7 +18,7 @@ class CondensedSolve;
 class ThyraModel;
 
 struct NewtonOptions {
-  Real tolerance = 1e-10;  ///< of every measure of the problem
+  Real tolerance = 1e-11;  ///< of every measure of the problem
   int max_iterations = 30;
   bool print = false;  ///< let NOX report every iteration
   LinearSolverOptions linear_solver;

@@ -1,0 +1,175 @@
+// The same answer on any number of ranks, value by value, as on one; and several models in one process.
+#include "verification/scenes.hpp"
+
+#include <Teuchos_DefaultMpiComm.hpp>
+
+namespace sprekk::tests {
+namespace {
+
+RCP<const Comm> alone() { return rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)); }
+
+/// Values of one output of the whole mesh, [global entity * n_components + component].
+struct GlobalField {
+  std::string name;
+  std::vector<Real> values;
+};
+
+/// Collective; the same on every rank.
+std::vector<GlobalField> gathered(model::Model& model) {
+  const auto& mesh = model.mesh();
+  std::vector<GlobalField> all;
+  for (const auto& field : model.system().outputs(model.state())) {
+    const bool nodes = field.entity == fields::Entity::node, cells = field.entity == fields::Entity::cell;
+    const GlobalIndex n = nodes ? mesh.n_global_nodes : cells ? mesh.n_global_cells : mesh.n_global_fracture_faces;
+    const LocalIndex n_owned = nodes ? mesh.n_owned_nodes : cells ? mesh.n_owned_cells : mesh.n_owned_fracture_faces;
+    std::vector<Real> here(n * field.n_components, 0), sum(here.size());
+    for (LocalIndex e = 0; e < n_owned; ++e) {
+      const GlobalIndex id = nodes ? mesh.node_id[e] : cells ? mesh.cell_id[e] : mesh.fracture_faces[e].id;
+      std::copy_n(field.values.begin() + e * field.n_components, field.n_components, here.begin() + id * field.n_components);
+    }
+    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), sum.data());
+    all.push_back({field.name, sum});
+  }
+  return all;
+}
+
+/// Lengths to 1e-10 of the prescribed displacement u, stresses to 1e-10 of the stress E u/L that it makes in a body of size
+/// L, contact states exactly. (The slip tendency follows from the traction, which it divides by a bound that may be small.)
+void expect_same(const assembly::Scales& scales, const std::vector<GlobalField>& a, const std::vector<GlobalField>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].name, b[k].name);
+    ASSERT_EQ(a[k].values.size(), b[k].values.size());
+    const std::string& name = a[k].name;
+    const bool length = name != "stress" && name.find("traction") == name.npos && name != "state" && name != "slip tendency";
+    if (name == "slip tendency") continue;
+    const Real scale = name == "state" ? 0 : length ? scales.length : scales.stress;
+    for (std::size_t i = 0; i < a[k].values.size(); ++i)
+      EXPECT_NEAR(a[k].values[i], b[k].values[i], 1e-10 * scale) << name << " " << i;
+  }
+}
+
+struct Counts {
+  int open = 0, stick = 0, slip = 0;
+};
+
+/// Runs all steps of a scene on all ranks and on each alone, and compares after each step: solved to round-off, since
+/// Newton's tolerance is a difference, too. Returns how many faces were in which state over all steps.
+Counts expect_same_answer(model::Scene scene) {
+  scene.solver.tolerance = 1e-13;
+  model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone());
+  Counts counts;
+  for (Real t : scene.time.times()) {
+    SCOPED_TRACE(t);
+    const auto report = together.step_to(t), reference = single.step_to(t);
+    EXPECT_TRUE(report.converged) << report.reason;
+    EXPECT_TRUE(reference.converged) << reference.reason;
+    EXPECT_EQ(report.cuts, reference.cuts);
+    const auto a = gathered(together), b = gathered(single);
+    expect_same(single.system().scales(), a, b);
+    for (const auto& field : b)
+      if (field.name == "state")
+        for (Real s : field.values) ++(s == 0 ? counts.open : s == 1 ? counts.stick : counts.slip);
+  }
+  return counts;
+}
+
+TEST(SameAnswer, CrossingFractures2D) {
+  for (const auto& cell : cells_of(2)) {
+    SCOPED_TRACE(cell);
+    const auto counts = expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.cell=" + cell, "Mesh.rotation=30"}));
+    EXPECT_GT(counts.open, 0);
+    EXPECT_GT(counts.stick, 0);
+    EXPECT_GT(counts.slip, 0);
+  }
+}
+
+TEST(SameAnswer, CrossingFractures3D) {
+  for (const auto& cell : cells_of(3)) {
+    SCOPED_TRACE(cell);
+    const auto counts = expect_same_answer(read_scene("verification/crossing_3d.xml", {"Mesh.cell=" + cell}));
+    EXPECT_GT(counts.open, 0);
+    EXPECT_GT(counts.stick, 0);
+    EXPECT_GT(counts.slip, 0);
+  }
+}
+
+TEST(SameAnswer, RenumberedAndSwapped) {
+  auto scene = read_scene("verification/crossing_3d.xml", {"Mesh.renumbering seed=11"});
+  scene.mesh.fractures.at("steep").swap_sides = true;
+  expect_same_answer(scene);
+}
+
+TEST(SameAnswer, TheSeedsScenes) {
+  for (const char* name : {"push_2d", "push_3d", "pull_2d", "pull_3d", "immersed_2d"}) {
+    SCOPED_TRACE(name);
+    expect_same_answer(read_scene(std::string("seed/") + name + ".xml"));
+  }
+}
+
+TEST(SameAnswer, IterativeSolver) {
+  expect_same_answer(read_scene("verification/crossing_3d.xml", {"Solver.Linear solver.type=iterative", "Time.schedule={1}"}));
+}
+
+/// A fracture in one corner: its faces have one owner.
+TEST(SameAnswer, RanksWithoutFractureFaces) {
+  const auto comm = Tpetra::getDefaultComm();
+  if (comm->getSize() == 1) GTEST_SKIP() << "needs more than one rank";
+  const auto scene = read_scene("verification/crossing_2d.xml",
+                                {"Mesh.fractures.flat.lower corner={0.875, 0.875}", "Mesh.fractures.flat.upper corner={1, 0.875}",
+                                 "Mesh.fractures.steep.lower corner={0.875, 0.75}", "Mesh.fractures.steep.upper corner={0.875, 1}"});
+  const model::Model model(scene, comm);
+  ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_fracture_faces == 0));
+  expect_same_answer(scene);
+}
+
+TEST(SameAnswer, RanksWithoutCells) {
+  const auto comm = Tpetra::getDefaultComm();
+  if (comm->getSize() < 3) GTEST_SKIP() << "needs three ranks";
+  const auto scene = read_scene("seed/push_2d.xml", {"Mesh.cell=quadrilateral", "Mesh.cells={1, 2}"});
+  const model::Model model(scene, comm);
+  ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_cells == 0));
+  for (const char* d : {"{1, -1}", "{1, 1}"})
+    expect_same_answer(read_scene("seed/push_2d.xml", {"Mesh.cells={1, 2}", std::string("Boundary conditions.moved.displacement=") + d}));
+}
+
+TEST(SameAnswer, RanksWithoutCellsAndNoFracture) {
+  expect_same_answer(read_scene("verification/uniaxial_2d.xml", {"Mesh.cell=quadrilateral", "Mesh.cells={1, 1}"}));
+  expect_same_answer(read_scene("verification/uniaxial_3d.xml", {"Mesh.cell=hexahedron", "Mesh.cells={1, 1, 1}"}));
+}
+
+/// Two models step by step in turns, on the same communicator.
+TEST(TwoModels, TakeTurns) {
+  const auto comm = Tpetra::getDefaultComm();
+  const auto scene_2d = read_scene("verification/crossing_2d.xml"), scene_3d = read_scene("verification/cyclic_3d.xml");
+  model::Model a(scene_2d, comm), b(scene_3d, comm), only_a(scene_2d, comm), only_b(scene_3d, comm);
+  for (int k = 1; k <= 4; ++k) {
+    ASSERT_TRUE(a.step_to(k).converged);
+    ASSERT_TRUE(b.step_to(k).converged);
+  }
+  for (int k = 1; k <= 4; ++k) ASSERT_TRUE(only_a.step_to(k).converged);
+  for (int k = 1; k <= 4; ++k) ASSERT_TRUE(only_b.step_to(k).converged);
+  expect_same(a.system().scales(), gathered(a), gathered(only_a));
+  expect_same(b.system().scales(), gathered(b), gathered(only_b));
+}
+
+/// One group of ranks computes one scene while the others compute another, with different numbers of solves.
+TEST(TwoModels, OnTwoCommunicators) {
+  const auto world = Tpetra::getDefaultComm();
+  if (world->getSize() == 1) GTEST_SKIP() << "needs more than one rank";
+  const bool first = world->getRank() == 0;
+  const RCP<const Comm> part = world->split(first ? 0 : 1, world->getRank());
+  const std::string tight = "Solver.tolerance=1e-13";
+  const auto scene_2d = read_scene("verification/crossing_2d.xml", {tight}), scene_3d = read_scene("verification/crossing_3d.xml", {tight});
+  const auto& scene = first ? scene_2d : scene_3d;
+  model::Model model(scene, part), single(scene, alone());
+  for (Real t : scene.time.times()) {
+    const auto report = model.step_to(t);
+    ASSERT_TRUE(report.converged) << report.reason;
+    ASSERT_TRUE(single.step_to(t).converged);
+    expect_same(single.system().scales(), gathered(model), gathered(single));
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""What the program says and returns: command_line_test.py PROGRAM ROOT MPIEXEC
+
+Every error must end the program on all ranks with status 1 and be told once, with the file, the place, the value and
+what is allowed."""
+from program import ProgramTest, main
+
+PUSH = "seed/push_2d.xml"
+MOVED = "Boundary conditions.moved.displacement"
+
+
+class Errors(ProgramTest):
+    def expect_error(self, scene, words, *overrides, command="run"):
+        """Status 1, one message, all of these words in it; on 1 rank, and a test's first error on 2 as well."""
+        first, self.seen = not getattr(self, "seen", False), True
+        sets = [word for override in overrides for word in ("--set", override)]
+        output = ["--output", "out"] if command == "run" else []
+        for ranks in (1, 2) if first else (1,):
+            with self.subTest(ranks=ranks, scene=str(scene), overrides=overrides):
+                out, err = self.call(command, scene, *output, *sets, ranks=ranks, expect=1)
+                self.assertEqual(out, "")
+                self.assertEqual(err.count("sprekk: "), 1, err)
+                lines = err.splitlines()
+                self.assertEqual(len(lines), len(set(lines)), err)
+                for word in words:
+                    self.assertIn(word, err)
+
+    def changed(self, old, new, name=PUSH):
+        """A scene file with some text replaced."""
+        text = self.scene(name).read_text()
+        self.assertIn(old, text)
+        path = self.folder / "changed.xml"
+        path.write_text(text.replace(old, new))
+        return path
+
+    def test_missing_file(self):
+        self.expect_error("absent.xml", ["absent.xml", "no such file"])
+
+    def test_folder_in_place_of_a_file(self):
+        self.expect_error(".", ["is a folder"])
+
+    def test_malformed_xml(self):
+        self.expect_error(self.changed("</ParameterList>\n</ParameterList>", "</ParameterList>"), ["changed.xml", "not well-formed"])
+        self.expect_error(self.changed('name="Mesh"', 'name="Mesh'), ["changed.xml", "not well-formed", "line"])
+
+    def test_wrong_root(self):
+        self.expect_error(self.changed('name="Sprekk"', 'name="Speck"'), ["changed.xml", '"Speck"', '"Sprekk"'])
+
+    def test_unknown_name(self):
+        self.expect_error(self.changed('"friction coefficient"', '"friction coeficient"'),
+                          ["changed.xml", "Sprekk > Materials > joint", '"friction coeficient"', "unknown",
+                           'Did you mean "friction coefficient"?'])
+
+    def test_unknown_section(self):
+        self.expect_error(self.changed('name="Bulk"', 'name="Bluk"'), ["changed.xml", '"Bluk"', 'Did you mean "Bulk"?'])
+
+    def test_name_of_an_override(self):
+        self.expect_error(self.scene(PUSH), [PUSH, '"tolerence"', 'Did you mean "tolerance"?'], "Solver.tolerence=1e-6")
+
+    def test_override_without_a_value(self):
+        self.expect_error(self.scene(PUSH), ["Solver.tolerance"], "Solver.tolerance")
+
+    def test_wrong_type(self):
+        self.expect_error(self.changed('type="double" value="1e-5"', 'type="string" value="soft"'),
+                          ["changed.xml", "Sprekk > Materials > joint", '"tangential stiffness"', '"soft"', "number"])
+        self.expect_error(self.changed('type="double" value="1e-5"', 'type="double" value="soft"'),
+                          ["changed.xml", '"tangential stiffness"', "soft"])
+
+    def test_out_of_range(self):
+        self.expect_error(self.scene(PUSH), [PUSH, "Sprekk > Materials > joint", '"friction coefficient"', "-1", "at least 0"],
+                          "Materials.joint.friction coefficient=-1")
+        self.expect_error(self.scene(PUSH), [PUSH, "Sprekk > Solver", '"maximum iterations"', "0", "at least 1"],
+                          "Solver.maximum iterations=0")
+
+    def test_missing_entry(self):
+        line = '    <Parameter name="cells" type="Array(int)" value="{2, 2}"/>\n'
+        self.expect_error(self.changed(line, ""), ["changed.xml", "Sprekk > Mesh", '"cells"', "missing"])
+
+    def test_several_errors_are_told_together(self):
+        self.expect_error(self.scene(PUSH), ['"tolerence"', '"friction coefficient"'], "Solver.tolerence=1",
+                          "Materials.joint.friction coefficient=-1")
+
+    def test_wrong_material(self):
+        self.expect_error(self.scene(PUSH), [PUSH, "Bulk", '"material"', '"rok"', '"rock"'], "Bulk.material=rok")
+        self.expect_error(self.scene(PUSH), [PUSH, "Bulk", '"material"', '"joint"', '"rock"'], "Bulk.material=joint")
+        self.expect_error(self.scene(PUSH), [PUSH, "fracture", '"material"', '"rock"', '"joint"'],
+                          "Fractures.fracture.material=rock")
+
+    def test_wrong_boundary(self):
+        self.expect_error(self.scene(PUSH), [PUSH, "moved", '"boundary"', '"top"', '"north"'],
+                          "Boundary conditions.moved.boundary=top")
+
+    def test_fracture_off_the_mesh(self):
+        self.expect_error(self.scene(PUSH), [PUSH, '"fracture"', "0.4", "0.5"],
+                          "Mesh.fractures.fracture.lower corner={0, 0.4}", "Mesh.fractures.fracture.upper corner={1, 0.4}")
+
+    def test_conflict_of_conditions(self):
+        for command in ("run", "check"):
+            self.expect_error(self.scene(PUSH), [PUSH, '"fixed"', '"third"', "0.5", "(0, 0"],
+                              "Boundary conditions.third.boundary=west", "Boundary conditions.third.displacement={0.5, 0}",
+                              command=command)
+
+    def test_unknown_function(self):
+        self.expect_error(self.scene(PUSH), [PUSH, "moved", '"displacement"', "ramp"], MOVED + "={ramp(t), 0}")
+
+    def test_directory_that_cannot_be_made(self):
+        (self.folder / "out").write_text("a file")
+        self.expect_error(self.scene(PUSH), ["out", "directory"])
+
+    def test_expression_that_fails_later(self):
+        for ranks in (1, 2):
+            _, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Time.end=4", "--set", "Time.steps=4",
+                               "--set", MOVED + "={t, -sqrt(2.5-t)}", ranks=ranks, expect=1)
+            self.assertEqual(err.count("sprekk: "), 1, err)
+            for word in (PUSH, "moved", '"displacement"[1]', "-sqrt(2.5-t)", "t = 3", "finite"):
+                self.assertIn(word, err)
+            results = self.results()
+            self.assertEqual(results["status"], "failed")
+            self.assertIn("sqrt", results["reason"])
+            self.assertEqual([step["time"] for step in results["steps"]], [1, 2])
+            pvd = (self.folder / "out" / "bulk.pvd").read_text()
+            self.assertEqual(pvd.count("<DataSet"), 2)
+
+    def test_table_that_ends_too_early(self):
+        for ranks in (1, 2):
+            _, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Time.end=4", "--set", "Time.steps=4",
+                               "--set", MOVED + "={short(t), -1}", "--set", "Tables.short.arguments={0, 1, 2.5}",
+                               "--set", "Tables.short.values={0, 1, 2}", ranks=ranks, expect=1)
+            self.assertEqual(err.count("sprekk: "), 1, err)
+            for word in (PUSH, '"displacement"[0]', "short(t)", "argument 3", "[0, 2.5]"):
+                self.assertIn(word, err)
+            self.assertEqual([step["time"] for step in self.results()["steps"]], [1, 2])
+
+
+class Commands(ProgramTest):
+    def test_version(self):
+        out, _ = self.call("--version")
+        self.assertRegex(out, r"^sprekk \d+\.\d+\.\d+\n$")
+
+    def test_help(self):
+        out, err = self.call("--help")
+        for word in ("run", "check", "reference"):
+            self.assertIn(word, out)
+        self.assertNotIn("kokkos", (out + err).lower())
+        out, err = self.call("run", "--help")
+        for word in ("--set", "--output"):
+            self.assertIn(word, out)
+        self.assertNotIn("kokkos", (out + err).lower())
+
+    def test_misuse_has_status_2(self):
+        for arguments in ([], ["walk"], ["run"], ["check"], ["run", self.scene(PUSH), "--sett", "a=1"], ["--verbos"],
+                          ["reference", "more"]):
+            with self.subTest(arguments=arguments):
+                self.call(*arguments, expect=2)
+        self.call("walk", ranks=2, expect=2)
+
+    def test_reference_lists_all_parameters(self):
+        out, _ = self.call("reference")
+        for word in ("Sprekk > Mesh", "Sprekk > Solver > Linear solver", "friction coefficient", "tangential stiffness",
+                     "Pa/m", "boundary", "maximum halvings"):
+            self.assertIn(word, out)
+        self.assertGreater(sum(line.startswith("|") for line in out.splitlines()), 40)
+
+    def test_check(self):
+        for name in (PUSH, "seed/immersed_3d.xml", "verification/crossing_3d.xml", "verification/uniaxial_2d.xml"):
+            out, err = self.call("check", self.scene(name))
+            self.assertIn(name, out)
+            self.assertEqual(err, "")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_run_is_quiet_when_no_terminal_listens(self):
+        out, err = self.call("run", self.scene(PUSH), "--output", "out")
+        self.assertEqual((out, err), ("", ""))
+
+    def test_default_output(self):
+        self.call("run", self.scene(PUSH))
+        self.assertTrue((self.folder / "output" / "push_2d" / "results.json").exists())
+
+
+if __name__ == "__main__":
+    main()

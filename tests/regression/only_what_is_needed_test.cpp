@@ -1,0 +1,136 @@
+// Nothing is allocated, assembled, exchanged or solved that the scene does not need.
+#include "model/results.hpp"
+#include "verification/scenes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+using nlohmann::json;
+
+long long count(model::Model& model, const std::string& phase) {
+  for (const auto& p : model.timers().phases())
+    if (p.name == phase) return p.count;
+  return 0;
+}
+
+std::vector<std::string> names(const json& list) {
+  std::vector<std::string> result;
+  for (const auto& entry : list) result.push_back(entry.is_string() ? entry : entry["name"]);
+  return result;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(IntactRock, IsOneFieldAssembledAndFactorisedOnce) {
+  for (const int dim : {2, 3}) {
+    const std::string load = dim == 2 ? "{0, -5e6*t}" : "{0, 0, -5e6*t}";
+    model::Model model(read_scene(fmt::format("verification/uniaxial_{}d.xml", dim),
+                                  {"Boundary conditions.load.traction=" + load, "Time.end=4", "Time.steps=4"}),
+                       Tpetra::getDefaultComm());
+    const auto blocks = model::block_summary(model.system());
+    EXPECT_EQ(names(blocks["fields"]), Names{"displacement"});
+    EXPECT_EQ(blocks["fields"][0]["halo_bytes"], 0);
+    EXPECT_EQ(blocks["matrices"].size(), 1u);
+    EXPECT_EQ(names(blocks["modules"]), Names{"bulk momentum"});
+    EXPECT_TRUE(!blocks.contains("local_groups") || blocks["local_groups"].empty());
+    for (int k = 1; k <= 4; ++k) {
+      const auto report = model.step_to(k);
+      ASSERT_TRUE(report.converged);
+      EXPECT_EQ(report.newton_iterations, 1);
+      EXPECT_EQ(report.linear_iterations, 1);
+      EXPECT_EQ(report.substeps, 1);
+    }
+    EXPECT_EQ(model.newton().linear().n_setups(), 1);
+    EXPECT_EQ(count(model, "assembly of the linear part"), 1);
+    EXPECT_EQ(count(model, "set-up of linear solver"), 1);
+    EXPECT_EQ(count(model, "linear solve"), 4);
+    EXPECT_EQ(count(model, "loads"), 4);
+  }
+}
+
+TEST(IntactRock, ConstantLoadNeedsNoSecondSolve) {
+  model::Model model(read_scene("verification/uniaxial_2d.xml", {"Time.end=3", "Time.steps=3"}), Tpetra::getDefaultComm());
+  for (int k = 1; k <= 3; ++k) {
+    const auto report = model.step_to(k);
+    ASSERT_TRUE(report.converged);
+    EXPECT_EQ(report.newton_iterations, k == 1 ? 1 : 0);
+  }
+  EXPECT_EQ(count(model, "linear solve"), 1);
+}
+
+/// Two by two squares and two faces. A square has 4 nodes, a half of the body 6: 2 (4 + 6 + 4) pairs of nodes. Every side
+/// of a face couples 4 nodes, of which 2 on the face; 2 components each.
+TEST(Fractures, BlocksCountedByHand) {
+  model::Model model(read_scene("seed/push_2d.xml"), Tpetra::getDefaultComm());
+  const auto blocks = model::block_summary(model.system());
+  EXPECT_EQ(names(blocks["fields"]), (Names{"displacement", "side bubble", "traction"}));
+  EXPECT_EQ(names(blocks["modules"]), (Names{"bulk momentum", "interface traction balance", "elastic-plastic jump"}));
+  ASSERT_EQ(blocks["local_groups"].size(), 1u);
+  EXPECT_EQ(names(blocks["local_groups"][0]["blocks"]), (Names{"side bubble", "traction"}));
+  const std::vector<long long> unknowns = {12 * 2, 2 * 2 * 2, 2 * 2};
+  for (int b = 0; b < 3; ++b) {
+    EXPECT_EQ(blocks["fields"][b]["unknowns"], unknowns[b]);
+    if (model.mesh().comm->getSize() == 1) { EXPECT_EQ(blocks["fields"][b]["halo_bytes"], 0); }
+  }
+  const long long sides = 4, faces = 2, dim = 2;
+  const std::map<std::pair<std::string, std::string>, long long> entries = {
+      {{"displacement", "displacement"}, 2 * 2 * (4 + 6 + 4) * dim * dim},
+      {{"displacement", "side bubble"}, sides * 4 * dim * dim},
+      {{"displacement", "traction"}, sides * 4 * dim * dim},
+      {{"side bubble", "displacement"}, sides * 4 * dim * dim},
+      {{"side bubble", "side bubble"}, sides * dim * dim},
+      {{"side bubble", "traction"}, sides * dim * dim},
+      {{"traction", "displacement"}, faces * 4 * dim * dim},
+      {{"traction", "side bubble"}, faces * 2 * dim * dim},
+      {{"traction", "traction"}, faces * dim * dim}};
+  ASSERT_EQ(blocks["matrices"].size(), entries.size());
+  for (const auto& matrix : blocks["matrices"]) {
+    const std::string row = matrix["row"], column = matrix["column"];
+    const long long n = entries.at({row, column}), rows = row == "displacement" ? 24 : row == "side bubble" ? 8 : 4;
+    EXPECT_EQ(matrix["entries"], n) << row << ", " << column;
+    EXPECT_EQ(matrix["bytes"], n * 12 + rows * 8) << row << ", " << column;
+  }
+}
+
+/// Only the displacement around fractures is needed by others; bubbles and tractions stay where their faces are.
+TEST(Fractures, OnlyDisplacementIsExchanged) {
+  model::Model model(read_scene("verification/crossing_2d.xml"), Tpetra::getDefaultComm());
+  const auto blocks = model::block_summary(model.system());
+  for (const auto& field : blocks["fields"])
+    if (field["name"] != "displacement") { EXPECT_EQ(field["halo_bytes"], 0) << field["name"]; }
+  if (model.mesh().comm->getSize() == 1) { EXPECT_EQ(blocks["fields"][0]["halo_bytes"], 0); }
+}
+
+TEST(Fractures, StickingSceneIsFactorisedOnce) {
+  for (const char* name : {"seed/immersed_2d.xml", "seed/immersed_3d.xml"}) {
+    auto scene = read_scene(name);
+    if (scene.dim() == 3) scene.mesh.cells = {6, 6, 6};
+    model::Model model(scene, Tpetra::getDefaultComm());
+    for (int k = 1; k <= 10; ++k) {
+      const auto report = model.step_to(k);
+      ASSERT_TRUE(report.converged);
+      EXPECT_EQ(report.newton_iterations, 1);
+      EXPECT_EQ(report.linear_iterations, 1);
+    }
+    EXPECT_EQ(model.newton().linear().n_setups(), 1) << name;
+    EXPECT_EQ(count(model, "assembly of the linear part"), 1);
+  }
+}
+
+/// Stick, slip, hold, stick: the matrix of a step that only sticks is the one before slip began.
+TEST(Fractures, SlidingSceneIsFactorisedWhenItsMatrixChanges) {
+  model::Model model(read_scene("verification/cyclic_2d.xml"), Tpetra::getDefaultComm());
+  ASSERT_TRUE(model.step_to(1).converged);
+  EXPECT_EQ(model.newton().linear().n_setups(), 1);
+  const auto slides = model.step_to(2);
+  ASSERT_TRUE(slides.converged);
+  const int n_setups = model.newton().linear().n_setups();
+  EXPECT_GT(n_setups, 1);
+  EXPECT_LE(n_setups, 1 + slides.newton_iterations);
+  ASSERT_TRUE(model.step_to(3).converged);  // held: nothing to solve
+  EXPECT_EQ(model.newton().linear().n_setups(), n_setups);
+  EXPECT_EQ(count(model, "assembly of the linear part"), 1);
+}
+
+}  // namespace
+}  // namespace sprekk::tests

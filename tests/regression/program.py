@@ -1,0 +1,46 @@
+"""Runs the program in a scratch folder, on one rank or several."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+# Given on the command line: the program, the folder that holds xml/, mpiexec.
+PROGRAM, ROOT, MPIEXEC = (Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]) if len(sys.argv) > 3 else (None, None, None)
+TIME_LIMIT = 60  # seconds; after it, the call has status 124
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+
+    def scene(self, name):
+        return ROOT / "xml" / name
+
+    def call(self, *arguments, ranks=1, expect=0):
+        """Standard output and error; a call that takes too long or ends with another status fails."""
+        command = [str(PROGRAM), *map(str, arguments)]
+        if ranks > 1:
+            command = [MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
+        done = subprocess.run(["timeout", str(TIME_LIMIT), *command], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, expect, f"{command}\n{done.stdout}{done.stderr}")
+        return done.stdout, done.stderr
+
+    def run_scene(self, name, *overrides, ranks=1, expect=0, output="out"):
+        """The results of a run."""
+        sets = [word for override in overrides for word in ("--set", override)]
+        scene = name if os.path.isabs(name) else self.scene(name)
+        self.call("run", scene, "--output", output, *sets, ranks=ranks, expect=expect)
+        return self.results(output)
+
+    def results(self, output="out"):
+        return json.loads((self.folder / output / "results.json").read_text())
+
+
+def main():
+    unittest.main(argv=sys.argv[:1])

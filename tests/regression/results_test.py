@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""What a run leaves behind: results_test.py PROGRAM ROOT MPIEXEC"""
+import re
+import xml.etree.ElementTree
+
+from program import ProgramTest, main
+
+CROSSING = "verification/crossing_2d.xml"
+QUIET = "Output.vtu=false"
+
+
+def numbers(value):
+    """All numbers in a piece of JSON, in order."""
+    if isinstance(value, dict):
+        return [x for key in sorted(value) for x in numbers(value[key])]
+    if isinstance(value, list):
+        return [x for entry in value for x in numbers(entry)]
+    return [value] if isinstance(value, (int, float)) and not isinstance(value, bool) else []
+
+
+class Results(ProgramTest):
+    def test_every_key(self):
+        for ranks in (1, 2):
+            r = self.run_scene(CROSSING, ranks=ranks)
+            self.assertEqual(r["status"], "completed")
+            self.assertNotIn("reason", r)
+            self.assertEqual(r["ranks"], ranks)
+            self.assertEqual(r["mesh"]["cells"], 128)
+            self.assertEqual(r["mesh"]["fracture_faces"], 12)
+            self.assertEqual([step["time"] for step in r["steps"]], [1, 2, 3, 4])
+            for step in r["steps"]:
+                self.expect_step(step)
+            for key in ("fields", "matrices", "modules", "local_groups"):
+                self.assertTrue(r["blocks"][key], key)
+            for phase in ("mesh", "time_steps", "output", "linear_solve"):
+                self.assertGreater(r["timing"][phase]["seconds"], 0)
+                self.assertGreater(r["timing"][phase]["count"], 0)
+            memory = r["memory"]
+            self.assertGreater(memory["peak_bytes_largest_rank"], 1e6)
+            self.assertLessEqual(memory["peak_bytes_largest_rank"], memory["peak_bytes_all_ranks"])
+            self.assertIn("direct", r["solver"]["choice"])
+
+    def expect_step(self, step):
+        for key in ("newton_iterations", "linear_iterations", "cuts", "substeps"):
+            self.assertIsInstance(step[key], int)
+        self.assertTrue(step["converged"])
+        self.assertEqual(sorted(step["fractures"]), ["flat", "steep"])
+        for f in step["fractures"].values():
+            self.assertAlmostEqual(f["area"], 0.75, places=12)
+            self.assertAlmostEqual(f["fraction_open"] + f["fraction_stick"] + f["fraction_slip"], 1, places=12)
+            for key in ("opening", "slip"):
+                self.assertLessEqual(f["mean_" + key], f["max_" + key] + 1e-15)
+            for key in ("mean_jump", "mean_elastic_jump", "mean_plastic_jump", "mean_traction"):
+                self.assertEqual(len(f[key]["global"]), 2)
+                self.assertEqual(len(f[key]["local"]), 2)
+                self.assertAlmostEqual(sum(x * x for x in f[key]["global"]), sum(x * x for x in f[key]["local"]), places=12)
+            for a, b, c in zip(f["mean_jump"]["global"], f["mean_elastic_jump"]["global"], f["mean_plastic_jump"]["global"]):
+                self.assertAlmostEqual(a, b + c, places=14)
+            self.assertAlmostEqual(f["mean_jump"]["local"][0], f["mean_opening"], places=14)
+        # the sides are free, so what pushes the top is what holds the bottom
+        top, bottom = step["reactions"]["north"], step["reactions"]["south"]
+        for a, b in zip(top, bottom):
+            self.assertAlmostEqual(a, -b, places=12)
+
+    def test_reactions_are_the_force_through_the_fracture(self):
+        r = self.run_scene("verification/cyclic_3d.xml", QUIET)
+        shear = [0.2 / 3, 0.18, 0.18, 0.14 / 3, -0.18, 0.02, 0.18, 0.18]
+        for step, l_t in zip(r["steps"], shear):
+            for i, force in enumerate((l_t, 0, -0.3)):
+                self.assertAlmostEqual(step["reactions"]["top"][i], force, places=9)
+                self.assertAlmostEqual(step["reactions"]["bottom"][i], -force, places=9)
+
+    def test_state_fractions(self):
+        r = self.run_scene("verification/cyclic_2d.xml", QUIET)
+        sliding = [0, 1, None, 0, 1, 0, 1, None]  # None: held at the limit, either word is right
+        for step, slip in zip(r["steps"], sliding):
+            f = step["fractures"]["fracture"]
+            self.assertEqual(f["fraction_open"], 0)
+            if slip is not None:
+                self.assertEqual(f["fraction_slip"], slip)
+                self.assertEqual(f["fraction_stick"], 1 - slip)
+
+    def test_ranks_do_not_change_the_summary(self):
+        one = self.run_scene(CROSSING, QUIET)
+        two = self.run_scene(CROSSING, QUIET, ranks=2)
+        for a, b in zip(one["steps"], two["steps"]):
+            for x, y in zip(numbers(a["fractures"]), numbers(b["fractures"])):
+                self.assertAlmostEqual(x, y, delta=1e-9)
+
+    def test_effective_input_runs_again(self):
+        first = self.run_scene("verification/regimes_2d.xml", "Mesh.cells={4, 4}", "Solver.tolerance=1e-11", QUIET)
+        again = self.run_scene(str(self.folder / "out" / "effective_input.xml"), output="again")
+        self.assertEqual(numbers([s["fractures"] for s in first["steps"]]), numbers([s["fractures"] for s in again["steps"]]))
+        self.assertEqual(first["mesh"], again["mesh"])
+        text = [(self.folder / name / "effective_input.xml").read_text() for name in ("out", "again")]
+        self.assertEqual(*text)
+        self.assertRegex(text[0], r'name="tolerance" type="double" value="1e-11"')
+
+    def test_collections_list_all_steps(self):
+        for ranks in (1, 2):
+            self.run_scene("seed/immersed_2d.xml", "Mesh.cells={6, 6}", ranks=ranks)
+            for name in ("bulk", "fractures"):
+                root = xml.etree.ElementTree.parse(self.folder / "out" / f"{name}.pvd").getroot()
+                sets = root.findall("./Collection/DataSet")
+                self.assertEqual([float(s.get("timestep")) for s in sets], list(range(1, 11)))
+                for s in sets:
+                    piece = self.folder / "out" / s.get("file")
+                    parts = re.findall(r'Source="([^"]+)"', piece.read_text())
+                    self.assertEqual(len(parts), ranks)
+                    for part in parts:
+                        self.assertTrue((piece.parent / part).exists(), part)
+
+    def test_every_so_many_steps(self):
+        self.run_scene("seed/immersed_2d.xml", "Mesh.cells={6, 6}", "Output.every=4")
+        text = (self.folder / "out" / "bulk.pvd").read_text()
+        self.assertEqual([float(t) for t in re.findall(r'timestep="([^"]+)"', text)], [4, 8, 10])
+
+    def test_intact_rock_writes_no_fractures(self):
+        r = self.run_scene("verification/uniaxial_3d.xml")
+        self.assertEqual(r["steps"][0]["fractures"], {})
+        self.assertFalse((self.folder / "out" / "fractures.pvd").exists())
+
+    def test_failure_keeps_what_was_computed(self):
+        for ranks in (1, 2):
+            r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=1", "Time.maximum halvings=0",
+                               ranks=ranks, expect=3)
+            self.assertEqual(r["status"], "failed")
+            self.assertIn("no convergence in 1 iterations", r["reason"])
+            self.assertTrue(r["steps"][0]["converged"])
+            self.assertFalse(r["steps"][-1]["converged"])
+            self.assertEqual(r["steps"][0]["time"], 1)
+            self.assertAlmostEqual(r["steps"][0]["fractures"]["fracture"]["mean_traction"]["local"][1], 0.2 / 3, places=9)
+            self.assertTrue((self.folder / "out" / "bulk.pvd").exists())
+
+    def test_failure_is_told(self):
+        out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", "--set",
+                             "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", ranks=2, expect=3)
+        self.assertEqual((out + err).count("failed"), 1)
+        self.assertIn("no convergence in 1 iterations", out + err)
+
+    def test_cuts_are_counted(self):
+        r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=2", QUIET)
+        self.assertEqual(r["status"], "completed")
+        self.assertEqual(len(r["steps"]), 8)
+        last = r["steps"][-1]["fractures"]["fracture"]
+        self.assertAlmostEqual(last["mean_plastic_jump"]["global"][0], 0.23, places=9)
+
+    def test_iterative_solver_on_three_ranks(self):
+        overrides = ["Mesh.cells={8, 8, 8}", "Time.schedule={1}", "Solver.Linear solver.type=iterative", QUIET]
+        one = self.run_scene("verification/crossing_3d.xml", *overrides)
+        three = self.run_scene("verification/crossing_3d.xml", *overrides, ranks=3)
+        for x, y in zip(numbers(one["steps"][0]["fractures"]), numbers(three["steps"][0]["fractures"])):
+            self.assertAlmostEqual(x, y, delta=1e-8)
+
+    def test_solver_entries_reach_the_libraries(self):
+        iterative = ["Solver.Linear solver.type=iterative", "Time.schedule={1}", QUIET]
+        usual = self.run_scene("seed/immersed_3d.xml", *iterative)
+        other = self.run_scene("seed/immersed_3d.xml", *iterative, "Solver.Linear solver.MueLu.multigrid algorithm=unsmoothed",
+                               "Solver.Linear solver.Belos.Num Blocks=7")
+        self.assertGreater(other["steps"][0]["linear_iterations"], usual["steps"][0]["linear_iterations"])
+        for word in ("unsmoothed", "Num Blocks = 7"):
+            self.assertIn(word, other["solver"]["parameters"])
+            self.assertNotIn(word, usual["solver"]["parameters"])
+
+
+if __name__ == "__main__":
+    main()

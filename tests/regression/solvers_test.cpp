@@ -1,0 +1,103 @@
+// Solvers and step cuts change how an answer is found, not the answer.
+#include "verification/scenes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+struct Run {
+  std::unique_ptr<model::Model> model;
+  solve::StepReport report;
+};
+
+Run run(const std::string& name, const std::vector<std::string>& overrides, Real t) {
+  Run run;
+  run.model = std::make_unique<model::Model>(read_scene(name, overrides), Tpetra::getDefaultComm());
+  run.report = run.model->step_to(t);
+  return run;
+}
+
+/// Largest difference of two states in a block, relative to the largest value. Collective.
+Real difference_of(const Run& a, const Run& b, int block) {
+  fields::Vector d(*a.model->state()[block], Teuchos::Copy);
+  d.update(-1, *b.model->state()[block], 1);
+  return d.normInf() / a.model->state()[block]->normInf();
+}
+
+TEST(LinearSolvers, GiveTheSameAnswer) {
+  for (const std::string name : {"verification/crossing_3d.xml", "seed/immersed_3d.xml"}) {
+    SCOPED_TRACE(name);
+    const std::string mesh = name[0] == 'v' ? "Mesh.cells={12, 12, 12}" : "Mesh.cells={9, 9, 9}";  // too large for one level
+    const auto direct = run(name, {mesh, "Solver.Linear solver.type=direct"}, 1);
+    const auto iterative = run(name, {mesh, "Solver.Linear solver.type=iterative"}, 1), automatic = run(name, {mesh}, 1);
+    for (const auto* r : {&direct, &iterative, &automatic}) ASSERT_TRUE(r->report.converged) << r->report.reason;
+    for (const int block : {0, 2}) {  // displacement, traction
+      EXPECT_LT(difference_of(direct, iterative, block), 1e-8);
+      EXPECT_LT(difference_of(direct, automatic, block), 1e-8);
+    }
+    EXPECT_EQ(direct.report.linear_iterations, direct.report.newton_iterations);
+    EXPECT_GT(iterative.report.linear_iterations, iterative.report.newton_iterations);
+  }
+}
+
+TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
+  const std::string name = "seed/immersed_3d.xml";
+  const auto few = run(name, {}, 1), many = run(name, {"Solver.Linear solver.direct limit 3D=100"}, 1);
+  EXPECT_EQ(few.model->newton().linear().solver().reason.substr(0, 6), "direct");
+  EXPECT_EQ(many.model->newton().linear().solver().reason.substr(0, 9), "iterative");
+}
+
+TEST(LinearSolvers, EntriesOfTheLibrariesTakeEffect) {
+  const std::string name = "seed/immersed_3d.xml", iterative = "Solver.Linear solver.type=iterative";
+  const auto usual = run(name, {iterative}, 1);
+  ASSERT_TRUE(usual.report.converged);
+  const auto unsmoothed = run(name, {iterative, "Solver.Linear solver.MueLu.multigrid algorithm=unsmoothed"}, 1);
+  ASSERT_TRUE(unsmoothed.report.converged);
+  EXPECT_GT(unsmoothed.report.linear_iterations, usual.report.linear_iterations);
+  const auto& muelu = unsmoothed.model->newton().linear().solver().solver->parameters();
+  EXPECT_NE(unsmoothed.model->newton().linear().solver().describe().find("unsmoothed"), std::string::npos) << muelu;
+
+  const auto impatient = run(name, {iterative, "Solver.Linear solver.Belos.Maximum Iterations=2", "Time.maximum halvings=0"}, 1);
+  EXPECT_FALSE(impatient.report.converged);
+  EXPECT_FALSE(impatient.report.reason.empty());
+  const auto cg = run(name, {iterative, "Solver.Linear solver.Belos.Solver Type=Block CG"}, 1);
+  ASSERT_TRUE(cg.report.converged) << cg.report.reason;
+  EXPECT_NE(cg.model->newton().linear().solver().describe().find("Block CG"), std::string::npos);
+  EXPECT_LT(difference_of(usual, cg, 0), 1e-8);
+}
+
+/// Newton may take three steps, which is too few for the whole load: the step is cut, and ends where it should. The sides
+/// follow the shear traction min(2/3 d_t, 0.18), so that every substep is exact.
+TEST(StepCuts, ReachTheEndOfTheStep) {
+  const std::string name = "verification/cyclic_3d.xml";
+  const std::vector<std::string> path = {"Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
+                                         "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}"};
+  auto few = path;
+  few.push_back("Solver.maximum iterations=3");
+  const auto whole = run(name, path, 1), cut = run(name, few, 1);
+  ASSERT_TRUE(whole.report.converged);
+  EXPECT_EQ(whole.report.cuts, 0);
+  ASSERT_TRUE(cut.report.converged) << cut.report.reason;
+  EXPECT_GT(cut.report.cuts, 0);
+  EXPECT_GT(cut.report.substeps, 1);
+  EXPECT_EQ(cut.report.time, 1);
+  EXPECT_EQ(cut.model->time(), 1);
+  const Outputs out(*cut.model);
+  for (LocalIndex f = 0; f < cut.model->mesh().n_owned_fracture_faces; ++f) {
+    EXPECT_NEAR(out.vector("plastic jump", f)[0], 0.23, 1e-9);
+    EXPECT_NEAR(out.vector("traction", f)[0], 0.18, 1e-9);
+  }
+}
+
+TEST(StepCuts, FailureKeepsTheLastStateThatConverged) {
+  model::Model model(read_scene("verification/crossing_2d.xml", {"Solver.maximum iterations=1", "Time.maximum halvings=2"}),
+                     Tpetra::getDefaultComm());
+  const auto report = model.step_to(4);
+  EXPECT_FALSE(report.converged);
+  EXPECT_LT(report.time, 4);
+  EXPECT_EQ(model.time(), report.time);
+  EXPECT_GE(report.cuts, 2);
+  EXPECT_NE(report.reason.find("no convergence in 1 iterations"), std::string::npos) << report.reason;
+}
+
+}  // namespace
+}  // namespace sprekk::tests

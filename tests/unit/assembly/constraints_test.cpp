@@ -1,0 +1,138 @@
+#include "assembly/constraints.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+
+#include "base/check.hpp"
+#include "mesh/distribute.hpp"
+#include "unit/assembly/dense.hpp"
+#include "unit/mesh/meshes.hpp"
+
+namespace sprekk::assembly {
+namespace {
+
+using mesh::testing::crossed;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+base::Expression text(const std::string& formula) {
+  base::Expression e(formula);
+  e.compile();
+  return e;
+}
+
+struct Problem {
+  mesh::GlobalMesh global;
+  RCP<const mesh::Mesh> mesh;
+  fields::Layout layout;
+
+  explicit Problem(const std::string& cell)
+      : global(mesh::make_box(crossed(cell))),
+        mesh(mesh::make_distributed(global, Tpetra::getDefaultComm())),
+        layout({"displacement", fields::Entity::node, mesh->dim(), "m"}, *mesh) {}
+
+  DirichletCondition on(const std::string& name, const std::string& boundary,
+                        std::vector<std::optional<base::Expression>> values) const {
+    const auto& names = mesh->boundary_names;
+    const auto number = std::find(names.begin(), names.end(), boundary) - names.begin();
+    values.resize(mesh->dim());
+    return {name, "displacement", static_cast<int>(number), std::move(values)};
+  }
+
+  Constraints constraints(const std::vector<DirichletCondition>& conditions) const {
+    return {*mesh, layout, conditions};
+  }
+
+  /// Mask and value of every unknown of the whole problem, where free the value is 0.
+  std::array<test::Dense, 2> gather(const Constraints& c) const {
+    fields::Vector mask(layout.owned()), values(layout.owned());
+    for (LocalIndex i = 0; i < layout.n_owned(); ++i) {
+      mask.replaceLocalValue(i, static_cast<Real>(c.mask()(i)));
+      values.replaceLocalValue(i, c.values()(i));
+    }
+    return {test::gather(mask), test::gather(values)};
+  }
+
+  /// The error of evaluate(), on every rank.
+  std::string error_of(Constraints constraints, Real t) const {
+    return mesh::testing::error_of([&] { base::collectively(*mesh->comm, [&] { constraints.evaluate(t); }); });
+  }
+};
+
+TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
+  for (const auto& cell : mesh::testing::all_cells) {
+    const Problem p(cell);
+    const int dim = p.mesh->dim();
+    auto constraints = p.constraints(
+        {p.on("lid", "north", {text("2*x+t"), std::nullopt}), p.on("wall", "west", {std::nullopt, text("y*y")})});
+    constraints.evaluate(0.5);
+    const auto [mask, values] = p.gather(constraints);
+    int copies = 0;  // of the node where fracture "c" ends on the north side
+    for (int node = 0; node < static_cast<int>(p.global.n_nodes()); ++node) {
+      const Real x = p.global.coordinates[node * dim], y = p.global.coordinates[node * dim + 1];
+      const bool held[] = {y == 4, x == 0, false};
+      copies += x == 4 && y == 4;
+      for (int c = 0; c < dim; ++c) {
+        EXPECT_EQ(mask(node * dim + c, 0), held[c]) << x << " " << y;
+        EXPECT_EQ(values(node * dim + c, 0), !held[c] ? 0 : c == 0 ? 2 * x + 0.5 : y * y);
+      }
+    }
+    EXPECT_EQ(copies, dim == 2 ? 2 : 6);
+    Real here = constraints.largest(), all = 0;
+    Teuchos::reduceAll(*p.mesh->comm, Teuchos::REDUCE_MAX, 1, &here, &all);
+    EXPECT_EQ(all, 16);
+    for (const auto& entry : constraints.entries()) {
+      const LocalIndex node = entry.unknown / dim;
+      EXPECT_EQ(entry.unknown % dim, entry.component);
+      for (int i = 0; i < dim; ++i) EXPECT_EQ(entry.x[i], p.mesh->coordinates[node * dim + i]);
+    }
+  }
+}
+
+TEST(Constraints, MayMeetWhereTheyAgree) {
+  const Problem p("quadrilateral");
+  auto constraints = p.constraints({p.on("lid", "north", {text("t*x")}), p.on("wall", "east", {text("6*t")})});
+  for (Real t : {0.0, 1.0, -2.5}) EXPECT_EQ(p.error_of(constraints, t), "");
+  constraints.evaluate(2);
+  const auto [mask, values] = p.gather(constraints);
+  Real n_held = 0;
+  for (Real m : mask.values) n_held += m;
+  EXPECT_EQ(n_held, 8 + 5 - 1);  // 7 nodes and a copy on the north side, 5 on the east side, one corner
+  Real n_entries = static_cast<Real>(constraints.entries().size()), all = 0;
+  Teuchos::reduceAll(*p.mesh->comm, Teuchos::REDUCE_SUM, 1, &n_entries, &all);
+  EXPECT_EQ(all, n_held);
+}
+
+TEST(Constraints, ConflictsNameBothConditionsAndThePlace) {
+  for (const std::string cell : {"triangle", "hexahedron"}) {
+    const Problem p(cell);
+    const auto constraints = p.constraints(
+        {p.on("lid", "north", {std::nullopt, text("0.25*t")}), p.on("wall", "east", {text("1"), text("0")})});
+    EXPECT_EQ(p.error_of(constraints, 0), "");  // they agree at t = 0
+    EXPECT_THAT(p.error_of(constraints, 3),
+                AllOf(HasSubstr("\"lid\""), HasSubstr("\"wall\""), HasSubstr("0.75"), HasSubstr("component y"),
+                      HasSubstr("displacement"), HasSubstr("(6, 4, "), HasSubstr("t = 3")));
+  }
+}
+
+TEST(Constraints, SameConditionMayGiveANodeItsValueFromManyFaces) {
+  const Problem p("tetrahedron");
+  EXPECT_EQ(p.error_of(p.constraints({p.on("lid", "north", {text("x*y+z"), text("1"), text("t")})}), 1), "");
+}
+
+TEST(Constraints, NoneHoldNothing) {
+  const Problem p("triangle");
+  auto constraints = p.constraints({});
+  constraints.evaluate(1);
+  EXPECT_TRUE(constraints.entries().empty());
+  EXPECT_EQ(constraints.largest(), 0);
+  const auto [mask, values] = p.gather(constraints);
+  EXPECT_EQ(test::largest(mask), 0);
+  EXPECT_EQ(test::largest(values), 0);
+}
+
+}  // namespace
+}  // namespace sprekk::assembly

@@ -1,0 +1,204 @@
+// Limits of the joint law, its derivatives, and what must not matter.
+#include <vector>
+
+#include "laws/joint.hpp"
+#include "series_block.hpp"
+
+namespace sprekk::laws::testing {
+namespace {
+
+const std::array<Real, 2> loads[] = {{-0.1, 0.05}, {-0.1, 0.5}, {-0.05, 1.0}, {0.05, 0.3}, {0.2, 0.2}, {-0.1, -0.6}};
+
+void expect_closed_form(const Joint& law) {
+  for (const auto& d : loads)
+    for (Real p_old : {0.0, 0.1}) {
+      SCOPED_TRACE(::testing::Message() << "d = (" << d[0] << ", " << d[1] << "), p_old = " << p_old);
+      SeriesBlock<2> block;
+      block.law = law;
+      block.p_old = {p_old};
+      block.step(d);
+      expect_equal(block, closed_form(law, block.k_n, block.k_s, d[1], d[0], p_old), 1e-11);
+    }
+}
+
+TEST(JointLimits, RigidInShear) {
+  Joint law = reference_joint();
+  law.elastic.compliance = 0;
+  expect_closed_form(law);
+}
+
+TEST(JointLimits, StiffInShearTendsToRigid) {
+  Joint rigid = reference_joint(), stiff = rigid;
+  rigid.elastic.compliance = 0;
+  stiff.elastic.compliance = 1e-12;
+  for (const auto& d : loads) {
+    SeriesBlock<2> a, b;
+    a.law = rigid;
+    b.law = stiff;
+    a.step(d);
+    b.step(d);
+    EXPECT_NEAR(a.lambda[1], b.lambda[1], 1e-11);
+    EXPECT_NEAR(a.plastic()[0], b.plastic()[0], 1e-11);
+  }
+}
+
+TEST(JointLimits, NoClosure) {
+  Joint law = reference_joint();
+  law.gap.closure.maximum = 0;
+  expect_closed_form(law);
+  law.elastic.compliance = 0;
+  expect_closed_form(law);
+}
+
+/// Without friction the joint slips and dilates: all of d_t is plastic.
+TEST(JointLimits, NoFriction) {
+  Joint law = reference_joint();
+  law.friction.coefficient = 0;
+  expect_closed_form(law);
+  SeriesBlock<2> block;
+  block.law = law;
+  block.step({-0.1, 0.3});
+  EXPECT_NEAR(block.plastic()[0], 0.3, 1e-14);
+  EXPECT_NEAR(block.lambda[1], 0, 1e-14);
+}
+
+/// A joint of vanishing stiffness sticks elastically instead: no plastic jump, no dilation.
+TEST(JointLimits, NoTangentialStiffness) {
+  Joint law = reference_joint();
+  law.elastic.compliance = 1e14;
+  SeriesBlock<2> block;
+  block.law = law;
+  block.step({-0.1, 0.3});
+  EXPECT_EQ(static_cast<int>(block.state), static_cast<int>(ContactState::stick));
+  EXPECT_NEAR(block.lambda[1], 0, 1e-13);
+  EXPECT_NEAR(block.plastic()[0], 0, 1e-12);
+  EXPECT_NEAR(block.w[0], closed_form(law, 3, 1, 0, -0.1, 0).opening, 1e-12);
+}
+
+TEST(JointLaw, TouchingUnloadedFaceSticks) {
+  for (Real compliance : {0.0, 0.5})
+    for (Real closure : {0.0, 0.1}) {
+      Joint law = reference_joint();
+      law.elastic.compliance = compliance;
+      law.gap.closure.maximum = closure;
+      const Real w[] = {law.gap.initial, 0, 0}, lambda[] = {0, 0, 0}, old[] = {0, 0};
+      Real R[3] = {1, 1, 1};
+      EXPECT_EQ(static_cast<int>(contact_residual<3>(law, augmentation(law, 2.0), w, lambda, old, R)),
+                static_cast<int>(ContactState::stick));
+      for (Real value : R) EXPECT_EQ(value, 0);
+      const Real apart[] = {law.gap.initial + 1e-15, 0, 0};
+      EXPECT_EQ(static_cast<int>(contact_residual<3>(law, augmentation(law, 2.0), apart, lambda, old, R)),
+                static_cast<int>(ContactState::open));
+    }
+}
+
+TEST(JointLaw, SolutionDoesNotDependOnTheAugmentation) {
+  for (const auto& d : loads) {
+    std::vector<Real> first;
+    for (Real c : {0.1, 1.0, 7.0, 50.0}) {
+      SeriesBlock<2> block;
+      block.law = reference_joint();
+      block.c = c;
+      block.step(d);
+      const std::vector<Real> result{block.w[0], block.w[1], block.lambda[0], block.lambda[1], block.plastic()[0]};
+      if (first.empty()) first = result;
+      for (std::size_t k = 0; k < result.size(); ++k) EXPECT_NEAR(result[k], first[k], 1e-12) << "c = " << c;
+    }
+  }
+}
+
+TEST(JointLaw, AugmentationIsInSeriesWithTheJoint) {
+  Joint law = reference_joint();
+  const auto c = augmentation(law, 4.0);
+  EXPECT_DOUBLE_EQ(c.normal, 1 / (1 / 4.0 + 1 / 5.0));
+  EXPECT_DOUBLE_EQ(c.tangential, 1 / (1 / 4.0 + 1 / 2.0));
+  law.elastic.compliance = 0;
+  law.gap.closure.maximum = 0;
+  EXPECT_DOUBLE_EQ(augmentation(law, 4.0).normal, 4);
+  EXPECT_DOUBLE_EQ(augmentation(law, 4.0).tangential, 4);
+}
+
+/// At a point that is no solution: the bound comes from the projected normal traction y, not from lambda_n.
+TEST(JointLaw, ResidualIsThatOfTheProjections) {
+  const Joint law = reference_joint();
+  const auto c = augmentation(law, 1.5);
+  const Real w[] = {-0.1, 0.9, -0.4}, lambda[] = {-0.3, 0.1, 0.2}, old[] = {0.02, 0.1};
+  const Real p[] = {0.9 - 0.05, -0.4 - 0.1};
+  const Real gap = 0.01 + law.gap.dilation.tangent * std::hypot(p[0], p[1]) - 0.1 * 0.3 / (0.5 + 0.3);
+  const Real y = -0.3 + c.normal * (-0.1 - gap);
+  const Real z[] = {0.1 + c.tangential * (p[0] - 0.02), 0.2 + c.tangential * (p[1] - 0.1)};
+  Real R[3];
+  EXPECT_EQ(static_cast<int>(contact_residual<3>(law, c, w, lambda, old, R)), static_cast<int>(ContactState::slip));
+  EXPECT_NEAR(R[0], -0.3 - y, 1e-14);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(R[i + 1], lambda[i + 1] + 0.6 * y * z[i] / std::hypot(z[0], z[1]), 1e-14);
+}
+
+/// Derivatives of contact_residual by Sacado against central differences.
+template <int dim>
+void expect_exact_derivative(const Joint& law, const Real (&w)[dim], const Real (&lambda)[dim],
+                             const Real (&old)[dim - 1], ContactState expected) {
+  using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+  Fad jump[dim], traction[dim], R[dim];
+  for (int i = 0; i < dim; ++i) {
+    jump[i] = Fad(2 * dim, i, w[i]);
+    traction[i] = Fad(2 * dim, dim + i, lambda[i]);
+  }
+  const auto c = augmentation(law, 1.5);
+  ASSERT_EQ(static_cast<int>(contact_residual<dim>(law, c, jump, traction, old, R)), static_cast<int>(expected));
+  const Real h = 1e-6;
+  for (int j = 0; j < 2 * dim; ++j) {
+    Real value[2][dim];
+    for (int sign : {0, 1}) {
+      Real x[dim], y[dim];
+      std::copy(w, w + dim, x);
+      std::copy(lambda, lambda + dim, y);
+      (j < dim ? x[j] : y[j - dim]) += sign ? h : -h;
+      ASSERT_EQ(static_cast<int>(contact_residual<dim>(law, c, x, y, old, value[sign])), static_cast<int>(expected));
+    }
+    for (int i = 0; i < dim; ++i)
+      EXPECT_NEAR(R[i].dx(j), (value[1][i] - value[0][i]) / (2 * h), 1e-8) << i << ", " << j;
+  }
+}
+
+TEST(JointLaw, DerivativesInEachState) {
+  Joint law = reference_joint();
+  for (Real compliance : {0.5, 0.0}) {
+    law.elastic.compliance = compliance;
+    expect_exact_derivative<2>(law, {0.4, 0.2}, {0.1, -0.1}, {0.05}, ContactState::open);
+    expect_exact_derivative<2>(law, {-0.1, 0.06}, {-0.3, 0.04}, {0.02}, ContactState::stick);
+    expect_exact_derivative<2>(law, {-0.1, -0.5}, {-0.3, 0.1}, {0.02}, ContactState::slip);
+    expect_exact_derivative<2>(law, {-0.3, 0.5}, {0.05, 0.1}, {0.02}, ContactState::slip);  // tensile iterate
+    expect_exact_derivative<3>(law, {0.4, 0.2, -0.1}, {0.1, -0.1, 0.2}, {0.05, 0}, ContactState::open);
+    expect_exact_derivative<3>(law, {-0.1, 0.06, -0.03}, {-0.3, 0.04, 0.02}, {0.02, -0.03}, ContactState::stick);
+    expect_exact_derivative<3>(law, {-0.1, -0.5, 0.3}, {-0.3, 0.1, 0.2}, {0.02, 0.1}, ContactState::slip);
+  }
+}
+
+TEST(Norm, HasZeroDerivativeAtZero) {
+  using Fad = Sacado::Fad::SFad<Real, 2>;
+  const Fad zero[] = {Fad(2, 0, 0.0), Fad(2, 1, 0.0)};
+  const Fad size = norm(zero);
+  EXPECT_EQ(size.val(), 0);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(size.dx(i), 0);
+  const Fad v[] = {Fad(2, 0, 3.0), Fad(2, 1, -4.0)};
+  EXPECT_DOUBLE_EQ(norm(v).val(), 5);
+  EXPECT_DOUBLE_EQ(norm(v).dx(0), 0.6);
+  EXPECT_DOUBLE_EQ(norm(v).dx(1), -0.8);
+}
+
+TEST(BartonBandisClosure, IsOnceContinuouslyDifferentiableAtZero) {
+  using Fad = Sacado::Fad::SFad<Real, 1>;
+  const BartonBandisClosure closure{0.1, 5};
+  for (Real traction : {-1e-14, 0.0, 1e-14}) {
+    const Fad value = closure(Fad(1, 0, traction));
+    EXPECT_NEAR(value.val(), 0, 1e-14);
+    EXPECT_NEAR(value.dx(0), 1 / 5.0, 1e-12);
+  }
+  EXPECT_NEAR(closure(-0.5), -0.05, 1e-15);  // Du K_n: half of the largest closure
+  EXPECT_NEAR(closure(-1e12), -0.1, 1e-12);
+  EXPECT_EQ((BartonBandisClosure{0, 5}(-3.0)), 0);
+  EXPECT_EQ((BartonBandisClosure{0, 5}.initial_compliance()), 0);
+}
+
+}  // namespace
+}  // namespace sprekk::laws::testing

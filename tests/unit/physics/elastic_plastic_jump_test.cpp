@@ -1,0 +1,209 @@
+// History, outputs and measures of the elastic-plastic jump, and that no partition changes an answer.
+#include "physics/elastic_plastic_jump.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/physics/rock.hpp"
+
+namespace sprekk::physics::testing {
+namespace {
+
+using laws::ContactState;
+
+JointParameters full_joint() {
+  JointParameters joint;
+  joint.law.elastic.compliance = 0.5;
+  joint.law.friction.coefficient = 0.6;
+  joint.law.gap.initial = 0.01;
+  joint.law.gap.dilation.tangent = 0.2;
+  joint.law.gap.closure = {0.1, 5};
+  joint.initial_aperture = 0.3;
+  return joint;
+}
+
+/// A cut box whose upper part is shifted against the lower one, so that every face has the same jump `w` (global).
+struct ShiftedRock {
+  Rock rock;
+  fields::BlockVector x;
+
+  explicit ShiftedRock(const std::string& cell)
+      : rock(make_rock(cut_box(cell, false), full_joint())), x(rock.system->initial()) {}
+
+  /// jump and traction in the frame of the faces.
+  void set(std::array<Real, 3> jump, std::array<Real, 3> traction) {
+    const int dim = rock.dim();
+    const auto& face = rock.global.fracture_faces[0];  // a plane has one frame
+    const auto frame =
+        mesh::face_frame(mesh::area_vector(rock.global, face.cell[mesh::minus], face.local_face[mesh::minus]), dim);
+    x = rock.system->initial();
+    for (LocalIndex c = 0; c < rock.mesh->n_cells(); ++c)
+      for (int a = 0; a < rock.mesh->nodes_per_cell(); ++a)
+        for (int i = 0; i < dim && rock.mesh->cell_region[c] == 1; ++i) {  // the stiff part lies above
+          const LocalIndex unknown = rock.mesh->cells[c * rock.mesh->nodes_per_cell() + a] * dim + i;
+          Real u = 0;
+          for (int k = 0; k < dim; ++k) u += frame[k][i] * jump[k];
+          if (unknown < rock.mesh->n_owned_nodes * dim) x[0]->replaceLocalValue(unknown, u);
+        }
+    for (LocalIndex f = 0; f < rock.mesh->n_owned_fracture_faces; ++f)
+      for (int i = 0; i < dim; ++i) x[2]->replaceLocalValue(f * dim + i, traction[i]);
+  }
+
+  /// The plastic jump that the next step starts from: R_t of a closed face vanishes there and nowhere else.
+  void expect_history(std::array<Real, 2> p_old) {
+    const int dim = rock.dim();
+    set({0, p_old[0], p_old[1]}, {-50, 0, 0});
+    auto r = fields::create_like(x);
+    rock.system->raw_residual(x, r);
+    for (LocalIndex f = 0; f < rock.mesh->n_owned_fracture_faces; ++f)
+      for (int i = 1; i < dim; ++i) EXPECT_NEAR(r[2]->getData()[f * dim + i], 0, 1e-13);
+  }
+};
+
+TEST(ElasticPlasticJump, HistoryMovesByState) {
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell);
+    const int dim = s.rock.dim();
+    const Real third = dim == 3;
+    s.expect_history({0, 0});
+    s.set({5, 0.4, -0.3 * third}, {0, 0, 0});  // open: all of w_t is plastic
+    s.rock.system->commit(s.x);
+    s.expect_history({0.4, -0.3 * third});
+    s.set({0, 0.7, 0.1 * third}, {-50, 0.3, 0});  // sticks: stays
+    s.rock.system->commit(s.x);
+    s.expect_history({0.4, -0.3 * third});
+    s.set({0, 3, 2 * third}, {-0.5, 0.2, -0.1 * third});  // slips: w_t - lambda_t/K_t
+    s.rock.system->commit(s.x);
+    for (Real state : s.rock.output(s.x, "state")) EXPECT_EQ(state, static_cast<Real>(ContactState::slip));
+    s.expect_history({3 - 0.1, (2 + 0.05) * third});
+  }
+}
+
+TEST(ElasticPlasticJump, OutputsSplitTheJump) {
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell);
+    const int dim = s.rock.dim();
+    const Real third = dim == 3;
+    s.set({-0.04, 3, 2 * third}, {-0.5, 0.2, -0.1 * third});
+    s.rock.system->commit(s.x);  // outputs show committed states
+    const Real closure = -0.1 * 0.5 / (0.5 + 0.5);
+    const std::vector<std::pair<std::string, std::array<Real, 3>>> expected = {
+        {"jump", {-0.04, 3, 2}},
+        {"elastic jump", {closure, 0.1, -0.05}},
+        {"plastic jump", {-0.04 - closure, 2.9, 2.05}},
+        {"traction", {-0.5, 0.2, -0.1}}};
+    for (const auto& [name, value] : expected) {
+      const auto local = s.rock.output(s.x, name + " local"), global = s.rock.output(s.x, name);
+      ASSERT_EQ(static_cast<LocalIndex>(local.size()), s.rock.mesh->n_owned_fracture_faces * dim);
+      ASSERT_EQ(local.size(), global.size());
+      for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
+        for (int i = 0; i < dim; ++i) {
+          EXPECT_NEAR(local[f * dim + i], value[i], 1e-13) << name;
+          Real rotated = 0;
+          for (int k = 0; k < dim; ++k) rotated += s.rock.mesh->fracture_faces[f].frame[k][i] * value[k];
+          EXPECT_NEAR(global[f * dim + i], rotated, 1e-13) << name;
+        }
+    }
+    const Real slip = dim == 2 ? 2.9 : std::hypot(2.9, 2.05), shear = dim == 2 ? 0.2 : std::hypot(0.2, 0.1);
+    const std::vector<std::pair<std::string, Real>> scalars = {
+        {"opening", -0.04}, {"slip", slip}, {"aperture", 0.26}, {"state", 2}, {"slip tendency", shear / 0.3}};
+    for (const auto& [name, value] : scalars)
+      for (Real shown : s.rock.output(s.x, name)) EXPECT_NEAR(shown, value, 1e-13) << name;
+    s.set({5, 0.4, 0}, {0, 0, 0});
+    for (Real shown : s.rock.output(s.x, "slip tendency")) EXPECT_EQ(shown, 0);
+    for (Real shown : s.rock.output(s.x, "elastic jump local")) EXPECT_EQ(shown, 0);
+  }
+}
+
+/// A rigid open body that drifts: no residual. A jump that is off by e in a closed face is off by e in the split's
+/// measure.
+TEST(ElasticPlasticJump, MeasureSeesTheSplitInLengths) {
+  ShiftedRock s("triangle");
+  auto r = fields::create_like(s.x);
+  const auto measure = [&] {
+    s.rock.system->raw_residual(s.x, r);
+    const auto measures = s.rock.system->measures(s.x, r);
+    EXPECT_EQ(measures.back().name, "split of the jump");
+    return measures.back().value * s.rock.system->scales().length;
+  };
+  const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
+  s.set({closed, 0, 0}, {-50, 0, 0});
+  EXPECT_NEAR(measure(), 0, 1e-13);
+  s.set({closed, 1e-3, 0}, {-50, 0, 0});
+  EXPECT_NEAR(measure(), 1e-3, 1e-13 + 1e-3);  // the plastic jump dilates as well
+  EXPECT_GE(measure(), 1e-3 - 1e-13);
+  s.set({closed - 2e-3, 0, 0}, {-50, 0, 0});
+  EXPECT_NEAR(measure(), 2e-3, 1e-13);
+  s.set({5, 1, 0}, {0, 0, 0});
+  EXPECT_EQ(measure(), 0);
+}
+
+TEST(ElasticPlasticJump, IsSymmetricUnlessItSlips) {
+  ShiftedRock s("tetrahedron");
+  const auto symmetric = [&](std::array<Real, 3> jump, std::array<Real, 3> traction) {
+    s.set(jump, traction);
+    s.rock.system->jacobian(s.x);
+    return s.rock.system->symmetric();
+  };
+  EXPECT_TRUE(symmetric({5, 0, 0}, {0, 0, 0}));
+  EXPECT_TRUE(symmetric({0, 0, 0}, {-50, 0, 0}));
+  EXPECT_FALSE(symmetric({0, 3, 0}, {-0.5, 0.2, 0}));
+}
+
+TEST(ElasticPlasticJump, HashTellsTheStatesOfTheFaces) {
+  ShiftedRock s("quadrilateral");
+  std::vector<std::size_t> hashes;
+  s.set({5, 0, 0}, {0, 0, 0});
+  hashes.push_back(s.rock.system->state_hash(s.x));
+  s.set({0, 0, 0}, {-50, 0, 0});
+  hashes.push_back(s.rock.system->state_hash(s.x));
+  Rock::set(s.x, 2, 0, 100);  // one face opens
+  hashes.push_back(s.rock.system->state_hash(s.x));
+  s.set({0, 0, 0}, {-50, 0, 0});
+  Rock::set(s.x, 2, 2, 100);  // the other one
+  hashes.push_back(s.rock.system->state_hash(s.x));
+  for (std::size_t i = 0; i < hashes.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(hashes[i], hashes[j]);
+}
+
+/// Residual, Jacobian, measures, merit and hash on all ranks are those of one rank that holds everything.
+TEST(FracturedRock, IsTheSameForEveryPartition) {
+  const auto world = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    const auto global = cut_box(cell, true);
+    Loads loads;
+    loads.body_force = std::vector<base::Expression>(global.dim(), text("1+x*t"));
+    const auto shared = make_rock(global, full_joint(), loads),
+               whole = make_rock(global, full_joint(), loads, world->split(world->getRank(), 0));
+    auto x = shared.system->initial(), y = whole.system->initial();
+    auto r = fields::create_like(x), q = fields::create_like(y);
+    for (int seed : {1, 2}) {
+      test::randomize(x, 0.5, seed);
+      test::randomize(y, 0.5, seed);
+      shared.system->raw_residual(x, r);
+      whole.system->raw_residual(y, q);
+      shared.system->jacobian(x);
+      whole.system->jacobian(y);
+      for (int b = 0; b < 3; ++b) {
+        EXPECT_LE(test::largest(test::gather(*r[b]) - test::gather(*q[b])), 1e-12) << cell << " " << b;
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(shared.system->matrix()(b, c).is_null(), whole.system->matrix()(b, c).is_null());
+          EXPECT_LE(test::largest(shared.block(b, c) - whole.block(b, c)), 1e-11) << cell << " " << b << c;
+        }
+      }
+      EXPECT_EQ(shared.system->state_hash(x), whole.system->state_hash(y));
+      EXPECT_EQ(shared.system->symmetric(), whole.system->symmetric());
+      const Real merit = whole.system->merit(y, q);
+      EXPECT_NEAR(shared.system->merit(x, r), merit, 1e-12 * merit);
+      const auto measures = shared.system->measures(x, r), reference = whole.system->measures(y, q);
+      for (std::size_t k = 0; k < measures.size(); ++k)
+        EXPECT_NEAR(measures[k].value, reference[k].value, 1e-12 * reference[k].value) << measures[k].name;
+      shared.system->commit(x);
+      whole.system->commit(y);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::physics::testing

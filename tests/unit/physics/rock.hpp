@@ -1,0 +1,110 @@
+// Small pieces of fractured rock as equation systems, and their blocks as dense matrices.
+#pragma once
+
+#include <Tpetra_Core.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "assembly/system.hpp"
+#include "mesh/distribute.hpp"
+#include "mesh/facets.hpp"
+#include "physics/bulk_momentum.hpp"
+#include "physics/elastic_plastic_jump.hpp"
+#include "physics/interface_traction_balance.hpp"
+#include "unit/assembly/dense.hpp"
+#include "unit/mesh/meshes.hpp"
+
+namespace sprekk::physics::testing {
+
+using mesh::testing::all_cells;
+using mesh::testing::fracture;
+using test::Dense;
+
+inline constexpr laws::Elasticity soft{1, 1.5}, stiff{4, 2};
+
+inline base::Expression text(const std::string& formula) {
+  base::Expression e(formula);
+  e.compile();
+  return e;
+}
+
+struct Loads {
+  std::vector<base::Expression> body_force;
+  std::vector<BoundaryTraction> tractions;
+};
+
+/// A mesh and the equations on it.
+struct Rock {
+  mesh::GlobalMesh global;
+  RCP<const mesh::Mesh> mesh;
+  std::vector<laws::Elasticity> elasticity;  ///< [region]
+  JointParameters joint;
+  std::unique_ptr<assembly::System> system;
+
+  int dim() const { return mesh->dim(); }
+
+  /// Global block (row, column) of the Jacobian, the same on every rank.
+  Dense block(int row, int column) const { return test::gather(*system->matrix()(row, column)); }
+
+  /// Local number of an unknown's owner, or -1: sets x[block] at a global unknown.
+  static void set(fields::BlockVector& x, int block, GlobalIndex unknown, Real value) {
+    if (x[block]->getMap()->isNodeGlobalElement(unknown)) x[block]->replaceGlobalValue(unknown, value);
+  }
+
+  /// Displacement of every node by a function of its place and its global number.
+  template <class Function>
+  void displace(fields::BlockVector& x, const Function& u) const {
+    for (LocalIndex n = 0; n < mesh->n_owned_nodes; ++n)
+      for (int i = 0; i < dim(); ++i) x[0]->replaceLocalValue(n * dim() + i, u(&mesh->coordinates[n * dim()], i));
+  }
+
+  /// The output of a name, for the owned fracture faces of this rank.
+  std::vector<Real> output(const fields::BlockVector& x, const std::string& name) const {
+    for (const auto& field : system->outputs(x))
+      if (field.name == name) return field.values;
+    throw Error("no output " + name);
+  }
+};
+
+/// The bulk alone if the mesh has no fracture, else all three modules. Cells of region 1 are stiff, of region 0 soft.
+inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}, const Loads& loads = {},
+                      RCP<const Comm> comm = Tpetra::getDefaultComm(),
+                      const std::vector<assembly::DirichletCondition>& conditions = {}) {
+  global.region_names = {"soft", "stiff"};
+  Rock rock{global, mesh::make_distributed(global, comm), {soft, stiff}, joint, nullptr};
+  const BulkMomentumParameters bulk{rock.elasticity, BodyForce{loads.body_force}, loads.tractions};
+  std::vector<std::unique_ptr<assembly::Module>> modules;
+  modules.push_back(make_bulk_momentum(global.shape, bulk));
+  if (!global.fracture_names.empty()) {
+    modules.push_back(make_interface_traction_balance(global.shape, {bulk.elasticity, bulk.body_force}));
+    const std::vector<JointParameters> joints(global.fracture_names.size(), joint);
+    modules.push_back(make_elastic_plastic_jump(global.shape, {joints, bulk.elasticity}));
+  }
+  rock.system = std::make_unique<assembly::System>(rock.mesh, std::move(modules), conditions,
+                                                   assembly::Reference{2.5, 1}, rcp(new base::Timers));
+  rock.system->set_time(1, 1);
+  return rock;
+}
+
+/// A box of 2 x 2 [x 2] squares or cubes of unit size, cut by the plane y = 1 ("a") and, if `crossing`, x = 1 ("b");
+/// turned by 20 degrees. Rock above y = 1 is stiff.
+inline mesh::GlobalMesh cut_box(const std::string& cell, bool crossing) {
+  const bool flat = mesh::testing::dim_of(cell) == 2;
+  auto box = mesh::testing::unit_steps(cell, std::vector<int>(flat ? 2 : 3, 2));
+  box.fractures["a"] = flat ? fracture({0, 1}, {2, 1}) : fracture({0, 1, 0}, {2, 1, 2});
+  if (crossing) box.fractures["b"] = flat ? fracture({1, 0}, {1, 2}) : fracture({1, 0, 0}, {1, 2, 2});
+  auto level = mesh::make_box(box);
+  std::vector<int> region;
+  for (GlobalIndex c = 0; c < level.n_cells(); ++c) region.push_back(mesh::testing::cell_centre(level, c)[1] > 1);
+  box.rotation = 20;
+  auto turned = mesh::make_box(box);
+  turned.cell_region = region;
+  return turned;
+}
+
+inline bool on_simplices(const mesh::GlobalMesh& mesh) {
+  return mesh.shape == mesh::Shape::triangle || mesh.shape == mesh::Shape::tetrahedron;
+}
+
+}  // namespace sprekk::physics::testing
