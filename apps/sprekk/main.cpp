@@ -29,6 +29,11 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
   auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
   auto* point = app.add_subcommand("point", "drive one point of a joint along a path, print CSV");
+  std::string mesh_file;
+  std::vector<std::string> fractures;
+  auto* mesh_info = app.add_subcommand("mesh-info", "describe a mesh of gmsh");
+  mesh_info->add_option("file", mesh_file, "gmsh file")->required();
+  mesh_info->add_option("--fractures", fractures, "physical groups that are fractures, a,b,c")->delimiter(',');
   for (auto* command : {run, check, point}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
@@ -45,6 +50,12 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   try {
     if (reference->parsed()) {
       if (speaks) std::cout << model::reference();
+      return 0;
+    }
+    if (mesh_info->parsed()) {
+      base::collectively(*comm, [&] {
+        if (speaks) std::cout << model::mesh_info(mesh_file, fractures);
+      });
       return 0;
     }
     if (point->parsed()) {

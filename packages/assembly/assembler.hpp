@@ -1,4 +1,5 @@
-// One kernel for all modules: gather the unknowns of an entity, call the module's local operator, scatter what it returns.
+// One kernel for all modules: gather the unknowns of an entity, call the module's local operator, scatter what it
+// returns.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -35,7 +36,8 @@ struct Slots {
 /// Runs a local operator over a loop. Op is copied into kernels and has
 ///   using Columns = Slots<...>, Rows = Slots<...>;                 unknowns read, rows written, in local order
 ///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;       device, overwrites r
-///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device, overwrites J
+///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device,
+///   overwrites J
 template <class Op>
 class Assembler {
  public:
@@ -46,7 +48,9 @@ class Assembler {
   /// row_fields, column_fields: block numbers in the order of the operator's slots.
   Assembler(const Context& context, Loop loop, std::vector<int> row_fields, std::vector<int> column_fields,
             Positions positions)
-      : row_fields_(std::move(row_fields)), column_fields_(std::move(column_fields)), keep_(positions == Positions::keep) {
+      : row_fields_(std::move(row_fields)),
+        column_fields_(std::move(column_fields)),
+        keep_(positions == Positions::keep) {
     for (int f : row_fields_) {
       rows_.push_back(context.stencil(loop, f));
       n_owned_.push_back(context.layout(f).n_owned());
@@ -142,10 +146,10 @@ class Assembler {
 
   struct JacobianKernel {
     Gather gather;
-    PerRow<ConstView<LocalIndex**>> first;                         // [entity, group]
-    PerRow<PerColumn<ConstView<LocalIndex***>>> positions;         // [entity, row group, column group]
+    PerRow<ConstView<LocalIndex**>> first;                            // [entity, group]
+    PerRow<PerColumn<ConstView<LocalIndex***>>> positions;            // [entity, row group, column group]
     PerRow<PerColumn<typename LocalMatrix::row_map_type>> row_begin;  // [row]
-    PerRow<PerColumn<typename LocalMatrix::values_type>> values;   // [entry]
+    PerRow<PerColumn<typename LocalMatrix::values_type>> values;      // [entry]
 
     KOKKOS_INLINE_FUNCTION void operator()(int e) const {
       Real x[Columns::size], local[OpRows::size][Columns::size];
@@ -184,7 +188,8 @@ class Assembler {
     for (int i = 0; i < OpRows::n; ++i)
       for (int k = 0; k < Columns::n; ++k) {
         const auto& block = J(row_fields_[i], column_fields_[k]);
-        positions_.push_back(block.is_null() ? ConstView<LocalIndex***>() : find_positions(*block, rows_[i], columns_[k]));
+        positions_.push_back(block.is_null() ? ConstView<LocalIndex***>()
+                                             : find_positions(*block, rows_[i], columns_[k]));
       }
   }
 

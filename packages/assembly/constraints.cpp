@@ -7,8 +7,11 @@
 
 namespace sprekk::assembly {
 
-Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions)
-    : conditions_(std::move(conditions)), mask_("constrained", layout.n_owned()), values_("prescribed", layout.n_owned()) {
+Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
+                         std::vector<DirichletCondition> conditions)
+    : conditions_(std::move(conditions)),
+      mask_("constrained", layout.n_owned()),
+      values_("prescribed", layout.n_owned()) {
   const int dim = mesh.dim(), n_components = layout.field().n_components;
   std::vector<int> first_entry(layout.n_owned(), -1);
   const auto add = [&](LocalIndex node, int condition, int component) {
@@ -52,11 +55,12 @@ void Constraints::evaluate(Real t) {
   }
   for (const auto& [number, entry] : repeated_) {
     const Real first = values(entry.unknown), second = value(entry, t);
-    SPREKK_CHECK(std::abs(first - second) <= 1e-12 * largest_,
-                 "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
-                 "where they meet they must agree or leave the component free",
-                 conditions_[entries_[number].condition].name, conditions_[entry.condition].name, first, second,
-                 "xyz"[entry.component], conditions_[entry.condition].field, entry.x[0], entry.x[1], entry.x[2], t);
+    SPREKK_CHECK(
+        std::abs(first - second) <= 1e-12 * largest_,
+        "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
+        "where they meet they must agree or leave the component free",
+        conditions_[entries_[number].condition].name, conditions_[entry.condition].name, first, second,
+        "xyz"[entry.component], conditions_[entry.condition].field, entry.x[0], entry.x[1], entry.x[2], t);
   }
   Kokkos::deep_copy(values_, values);
 }

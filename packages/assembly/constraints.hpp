@@ -14,11 +14,11 @@ namespace sprekk::assembly {
 
 /// Values of a node field on a boundary, per component; a component without value is free.
 struct DirichletCondition {
-  std::string name;   ///< how messages call it
+  std::string name;  ///< how messages call it
   std::string field;
-  int boundary;       ///< number of the mesh's boundary
+  int boundary;  ///< number of the mesh's boundary
   std::vector<std::optional<base::Expression>> values;
-  int region = -1;    ///< only on faces of cells of this region; -1: all
+  int region = -1;  ///< only on faces of cells of this region; -1: all
 };
 
 /// All conditions on one node field: which owned unknowns they hold and to what value.
@@ -40,8 +40,8 @@ class Constraints {
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }
   const std::vector<Entry>& entries() const { return entries_; }  ///< one per constrained owned unknown
   ConstView<char*> mask() const { return mask_; }                 ///< [owned unknown] 1 if constrained
-  ConstView<Real*> values() const { return values_; }             ///< [owned unknown] at the last evaluated time, else 0
-  Real largest() const { return largest_; }                       ///< largest |value| at the last evaluated time
+  ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time, else 0
+  Real largest() const { return largest_; }            ///< largest |value| at the last evaluated time
 
  private:
   Real value(const Entry& entry, Real t) const;

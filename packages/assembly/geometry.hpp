@@ -11,9 +11,9 @@ namespace sprekk::assembly {
 
 /// What a kernel over cells reads of the mesh.
 struct Geometry {
-  ConstView<Real**> coordinates;   ///< [node, component], m
-  ConstView<LocalIndex**> cells;   ///< [cell, local node]
-  ConstView<int*> region;          ///< [cell]
+  ConstView<Real**> coordinates;  ///< [node, component], m
+  ConstView<LocalIndex**> cells;  ///< [cell, local node]
+  ConstView<int*> region;         ///< [cell]
 
   explicit Geometry(const mesh::Mesh& mesh);
 

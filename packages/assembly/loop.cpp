@@ -22,7 +22,8 @@ namespace {
 /// Fills a table with rows of equal length, entity by entity.
 class TableBuilder {
  public:
-  TableBuilder(std::size_t n_rows, int n_columns) : table_("stencil", n_rows, n_columns), host_(Kokkos::create_mirror_view(table_)) {}
+  TableBuilder(std::size_t n_rows, int n_columns)
+      : table_("stencil", n_rows, n_columns), host_(Kokkos::create_mirror_view(table_)) {}
   void add(LocalIndex value) {
     host_(row_, column_) = value;
     if (++column_ == static_cast<int>(host_.extent(1))) {
@@ -31,7 +32,8 @@ class TableBuilder {
     }
   }
   ConstView<LocalIndex**> finish() {
-    SPREKK_CHECK(row_ == host_.extent(0) || host_.extent(1) == 0, "stencil table filled to row {} of {}", row_, host_.extent(0));
+    SPREKK_CHECK(row_ == host_.extent(0) || host_.extent(1) == 0, "stencil table filled to row {} of {}", row_,
+                 host_.extent(0));
     Kokkos::deep_copy(table_, host_);
     return table_;
   }
@@ -44,7 +46,7 @@ class TableBuilder {
 };
 
 void add_cell_nodes(const mesh::Mesh& mesh, LocalIndex cell, int width, TableBuilder& table) {
-  for (int a = 0; a < mesh.nodes_per_cell(); ++a) 
+  for (int a = 0; a < mesh.nodes_per_cell(); ++a)
     table.add(mesh.free_node(mesh.cells[cell * mesh.nodes_per_cell() + a]) * width);
 }
 
@@ -71,8 +73,9 @@ Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, int width) {
   TableBuilder table(mesh.boundary_faces.size(), face_nodes);
   for (const auto& face : mesh.boundary_faces)
     for (int k = 0; k < face_nodes; ++k)
-      
-        table.add(mesh.free_node(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]]) * width);
+
+      table.add(mesh.free_node(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]]) *
+                width);
   return {table.finish(), width};
 }
 
@@ -115,7 +118,8 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
         const auto* begin = &graph.entries(graph.row_map(row));
         const auto* end = begin + (graph.row_map(row + 1) - graph.row_map(row));
         const auto* found = std::lower_bound(begin, end, column_first(e, c));
-        SPREKK_CHECK(found != end && *found == column_first(e, c), "row {} has no entry for column {}", row, column_first(e, c));
+        SPREKK_CHECK(found != end && *found == column_first(e, c), "row {} has no entry for column {}", row,
+                     column_first(e, c));
         host(e, r, c) = static_cast<LocalIndex>(found - begin);
       }
     }
@@ -129,8 +133,8 @@ RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& colum
   const LocalIndex n_groups = row_layout.n_owned() / row_width;
   std::vector<std::vector<LocalIndex>> columns(n_groups);
   for (const auto& [rows, cols] : couplings) {
-    SPREKK_CHECK(rows.width == row_width, "rows of {} are written in groups of {} and of {}", row_layout.field().name, row_width,
-                 rows.width);
+    SPREKK_CHECK(rows.width == row_width, "rows of {} are written in groups of {} and of {}", row_layout.field().name,
+                 row_width, rows.width);
     const auto row_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows.first);
     const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cols.first);
     for (std::size_t e = 0; e < row_first.extent(0); ++e)
@@ -155,7 +159,8 @@ RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& colum
   auto graph = rcp(new fields::CrsGraph(row_layout.owned(), column_layout.ghosted(), counts()));
   for (LocalIndex g = 0; g < n_groups; ++g)
     for (int i = 0; i < row_width; ++i)
-      graph->insertLocalIndices(g * row_width + i, Teuchos::ArrayView<const LocalIndex>(columns[g].data(), columns[g].size()));
+      graph->insertLocalIndices(g * row_width + i,
+                                Teuchos::ArrayView<const LocalIndex>(columns[g].data(), columns[g].size()));
   graph->fillComplete(column_layout.owned(), row_layout.owned());
   auto matrix = rcp(new fields::CrsMatrix(graph));
   matrix->fillComplete(column_layout.owned(), row_layout.owned());

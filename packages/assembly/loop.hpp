@@ -10,8 +10,9 @@
 
 namespace sprekk::assembly {
 
-/// What a kernel runs over. A contact law is evaluated on fracture_faces, each by its owner alone. The linear operators run
-/// over cells and fracture_sides, ghosts included, and write the rows that this rank owns, so assembly sends nothing.
+/// What a kernel runs over. A contact law is evaluated on fracture_faces, each by its owner alone. The linear operators
+/// run over cells and fracture_sides, ghosts included, and write the rows that this rank owns, so assembly sends
+/// nothing.
 enum class Loop {
   cells,           ///< all local cells
   fracture_sides,  ///< one side of a fracture face, wherever that side's cell is local

@@ -58,7 +58,8 @@ struct Declaration {
   std::vector<Coupling> couplings;
   std::vector<History> history;
   std::vector<OutputField> outputs;  ///< without values
-  bool linear = false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
+  bool linear =
+      false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
 };
 
 /// What modules are bound to once: the mesh, and the stencil of every field they named. Unknown names throw.
@@ -78,7 +79,8 @@ class Context {
   const std::vector<fields::Layout>* layouts_;
 };
 
-/// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity, component).
+/// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity,
+/// component).
 struct State {
   Real t = 0, dt = 0;
   std::vector<ConstView<Real*>> x;

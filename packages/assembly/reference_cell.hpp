@@ -1,6 +1,7 @@
 // Shape functions, face bubbles and quadrature of the cells; device-callable.
 //
-// Simplices live on {xi >= 0, sum xi <= 1}, quadrilaterals and hexahedra on [-1, 1]^dim; nodes and faces as in shape.hpp.
+// Simplices live on {xi >= 0, sum xi <= 1}, quadrilaterals and hexahedra on [-1, 1]^dim; nodes and faces as in
+// shape.hpp.
 #pragma once
 
 #include "base/types.hpp"
@@ -33,8 +34,8 @@ struct Gauss {
   }
 };
 
-/// points^dim quadrature points: the product of Gauss rules, exact for degree 2 points - 1 in each direction; on simplices
-/// the same points collapsed towards a vertex (conical product), exact for total degree 2 points - dim.
+/// points^dim quadrature points: the product of Gauss rules, exact for degree 2 points - 1 in each direction; on
+/// simplices the same points collapsed towards a vertex (conical product), exact for total degree 2 points - dim.
 template <Shape shape, int points>
 struct Quadrature {
   static constexpr int dim = mesh::dimension(shape);
@@ -82,10 +83,12 @@ using StiffnessQuadrature =
 /// Exact for products of bubble gradients, and for loads of degree 2 against bubbles, on affine cells.
 template <Shape shape>
 using BubbleQuadrature =
-    Quadrature<shape, mesh::linear(shape) == Shape::tetrahedron || (!is_simplex(shape) && mesh::order(shape) == 2) ? 4 : 3>;
+    Quadrature<shape,
+               mesh::linear(shape) == Shape::tetrahedron || (!is_simplex(shape) && mesh::order(shape) == 2) ? 4 : 3>;
 
 /// Lagrange functions of order 1 or 2 and face bubbles. Simplices: in barycentric coordinates l, corners l (order 1) or
-/// l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with nodes -1[, 0], 1.
+/// l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with nodes -1[,
+/// 0], 1.
 template <Shape shape>
 struct ReferenceCell {
   static constexpr int dim = mesh::dimension(shape);
@@ -129,11 +132,12 @@ struct ReferenceCell {
     }
   }
 
-  /// Face function b of a face and its reference gradient. It is 4 l1 l2 (2D) or 27 l1 l2 l3 (3D) on a simplex' face and
-  /// the product of 1 - xi^2 on a quadrilateral's or hexahedron's, vanishes on all other faces, and lies outside the
-  /// displacement space:
+  /// Face function b of a face and its reference gradient. It is 4 l1 l2 (2D) or 27 l1 l2 l3 (3D) on a simplex' face
+  /// and the product of 1 - xi^2 on a quadrilateral's or hexahedron's, vanishes on all other faces, and lies outside
+  /// the displacement space:
   ///   triangle 4 l1 l2, of order 2: 4 l1 l2 (1 - l3);  tetrahedron 27 l1 l2 l3;
-  ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), s falling from 1 on the face to 0.
+  ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), s falling from 1 on the face to
+  ///   0.
   KOKKOS_INLINE_FUNCTION static Real bubble(int face, const Real (&xi)[dim], Real (&db)[dim]) {
     if constexpr (is_simplex(shape))
       return simplex_bubble(face, xi, db);
@@ -142,8 +146,9 @@ struct ReferenceCell {
   }
 
   /// Mean of b over its (affine) face: 2/3 on edges, 9/20 on triangles, 4/9 on quadrilaterals.
-  static constexpr Real bubble_mean =
-      dim == 2 ? 2.0 / 3.0 : mesh::linear(shape) == Shape::tetrahedron ? 0.45 : 4.0 / 9.0;
+  static constexpr Real bubble_mean = dim == 2                                    ? 2.0 / 3.0
+                                      : mesh::linear(shape) == Shape::tetrahedron ? 0.45
+                                                                                  : 4.0 / 9.0;
 
   /// The centre of the reference cell.
   KOKKOS_INLINE_FUNCTION static void centre(Real (&xi)[dim]) {
@@ -171,10 +176,10 @@ struct ReferenceCell {
   /// Component i of a node of the square or cube: -1, 0 or 1.
   KOKKOS_INLINE_FUNCTION static int node_place(int a, int i) {
     constexpr int square[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
-    constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
-                               {-1, 1, 1},   {0, -1, -1}, {1, 0, -1}, {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
-                               {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0}, {1, 1, 0},   {-1, 1, 0}, {-1, 0, 0},
-                               {1, 0, 0},    {0, -1, 0},  {0, 1, 0},  {0, 0, -1},  {0, 0, 1},   {0, 0, 0}};
+    constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
+                               {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
+                               {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0}, {-1, 0, 0},
+                               {1, 0, 0},    {0, -1, 0},  {0, 1, 0},   {0, 0, -1},  {0, 0, 1},   {0, 0, 0}};
     return dim == 2 ? square[a][i] : cube[a][i];
   }
 

@@ -54,8 +54,8 @@ RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout&
   return coordinates;
 }
 
-/// Translations and rotations about a point that is no node (a node at the centre would give an aggregate of that node a
-/// zero column), [unknown, mode].
+/// Translations and rotations about a point that is no node (a node at the centre would give an aggregate of that node
+/// a zero column), [unknown, mode].
 RCP<MultiVector> rigid_body_modes(const fields::Layout& layout, const MultiVector& coordinates) {
   const int dim = static_cast<int>(coordinates.getNumVectors()), n_rotations = dim == 2 ? 1 : 3;
   Teuchos::Array<Real> centre(dim);
@@ -133,7 +133,8 @@ BlockMatrix System::create_matrix() const {
       const int row = context.field(coupling.row);
       for (const auto& name : coupling.columns) {
         const int column = context.field(name);
-        couplings[row * n + column].emplace_back(context.stencil(coupling.loop, row), context.stencil(coupling.loop, column));
+        couplings[row * n + column].emplace_back(context.stencil(coupling.loop, row),
+                                                 context.stencil(coupling.loop, column));
       }
     }
   BlockMatrix matrix(n);

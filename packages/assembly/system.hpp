@@ -74,19 +74,19 @@ class System : public fields::BlockProblem {
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
   std::vector<std::unique_ptr<Module>> modules_;
-  std::vector<Declaration> declarations_;            // [module]
-  std::vector<Unknown> unknowns_;                    // [block]
-  std::vector<fields::Layout> layouts_;              // [block]
+  std::vector<Declaration> declarations_;  // [module]
+  std::vector<Unknown> unknowns_;          // [block]
+  std::vector<fields::Layout> layouts_;    // [block]
   std::vector<fields::Block> blocks_;
   std::vector<fields::LocalGroup> groups_;
-  std::vector<Constraints> constraints_;             // [block]
-  std::vector<std::vector<View<Real**>>> history_;   // [module][number](owned entity, component)
-  std::vector<char> needs_ghosts_;                   // [block]
-  fields::BlockVector ghosted_;                      // [block] unknowns with ghosts
-  fields::BlockVector weights_;                      // [block] of merit()
-  fields::BlockVector load_;                         // [block] residual of the linear modules at x = 0, time t_
-  fields::BlockMatrix linear_;                       // what the linear modules write
-  fields::BlockMatrix matrix_;                       // df/dx; shares the blocks that only linear modules write
+  std::vector<Constraints> constraints_;            // [block]
+  std::vector<std::vector<View<Real**>>> history_;  // [module][number](owned entity, component)
+  std::vector<char> needs_ghosts_;                  // [block]
+  fields::BlockVector ghosted_;                     // [block] unknowns with ghosts
+  fields::BlockVector weights_;                     // [block] of merit()
+  fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
+  fields::BlockMatrix linear_;                      // what the linear modules write
+  fields::BlockMatrix matrix_;                      // df/dx; shares the blocks that only linear modules write
   Reference reference_;
   Scales scales_;
   RCP<base::Timers> timers_;

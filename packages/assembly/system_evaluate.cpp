@@ -69,7 +69,9 @@ void System::update_scales(Real t) {
   scales_.stress = std::max({scales_.stress, all[1], E * all[0] / L, 1e-12 * E});
   scales_.length = std::max({scales_.length, all[0], scales_.stress * L / E});
   const auto scale = [&](Quantity q) {
-    return q == Quantity::length ? scales_.length : q == Quantity::stress ? scales_.stress : scales_.stress * face_area_;
+    return q == Quantity::length   ? scales_.length
+           : q == Quantity::stress ? scales_.stress
+                                   : scales_.stress * face_area_;
   };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     blocks_[b].kinematic_scale = scale(unknowns_[b].value);
@@ -179,8 +181,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
         Kokkos::Max<Real>(largest));
     measures.push_back({blocks_[b].name, largest});
   }
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
   std::vector<Real> here, all(measures.size());
   for (const auto& measure : measures)  // a number that is none must not vanish in the maximum
     here.push_back(std::isnan(measure.value) ? std::numeric_limits<Real>::infinity() : measure.value);

@@ -27,8 +27,8 @@ void collectively(const Comm& comm, const std::function<void()>& work);
 }  // namespace sprekk
 
 /// A check that is always on: SPREKK_CHECK(n > 0, "cells must be positive, got {}", n);
-#define SPREKK_CHECK(condition, ...)                                  \
-  do {                                                                \
+#define SPREKK_CHECK(condition, ...)                                   \
+  do {                                                                 \
     if (!(condition)) throw ::sprekk::Error(fmt::format(__VA_ARGS__)); \
   } while (false)
 

@@ -93,7 +93,7 @@ void check_single_value(const std::string& text) {
 }  // namespace
 
 Expression::Expression(Real constant) : constant_(constant) {
-  SPREKK_CHECK(!std::isnan(constant), "an expression must be a number");
+  SPREKK_CHECK(!std::isnan(constant), "an expression must be finite (or infinite, where that is allowed), is nan");
 }
 
 Expression::Expression(std::string text, std::string place) : text_(std::move(text)), place_(std::move(place)) {

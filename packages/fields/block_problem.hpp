@@ -9,15 +9,15 @@
 
 namespace sprekk::fields {
 
-/// A block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components + component,
-/// in local and in global numbering.
+/// A block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components +
+/// component, in local and in global numbering.
 struct Block {
   std::string name;
-  RCP<const Map> map;                    ///< owned unknowns
-  int n_components;                      ///< unknowns per entity
-  Real kinematic_scale;                  ///< typical size of an unknown of this block under the present loads
-  Real residual_scale;                   ///< typical size of a row of this block under the present loads
-  RCP<const MultiVector> coordinates;    ///< [owned entity, dim], metre; null where multigrid has no use for it
+  RCP<const Map> map;                      ///< owned unknowns
+  int n_components;                        ///< unknowns per entity
+  Real kinematic_scale;                    ///< typical size of an unknown of this block under the present loads
+  Real residual_scale;                     ///< typical size of a row of this block under the present loads
+  RCP<const MultiVector> coordinates;      ///< [owned entity, dim], metre; null where multigrid has no use for it
   RCP<const MultiVector> near_null_space;  ///< [owned unknown, modes]; null likewise
 };
 
@@ -66,7 +66,8 @@ class BlockProblem {
   virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
   /// A squared energy norm of r, for line searches.
   virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
-  /// A hash of the discrete state (which faces are open, stick, slip) of x, the same on every rank and for any partition.
+  /// A hash of the discrete state (which faces are open, stick, slip) of x, the same on every rank and for any
+  /// partition.
   virtual std::size_t state_hash(const BlockVector& x) = 0;
 };
 

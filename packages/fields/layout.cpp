@@ -4,9 +4,12 @@ namespace sprekk::fields {
 
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
   switch (entity) {
-    case Entity::node: return with_ghosts ? mesh.n_free_nodes : mesh.n_owned_nodes;
-    case Entity::cell: return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
-    default: return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
+    case Entity::node:
+      return with_ghosts ? mesh.n_free_nodes : mesh.n_owned_nodes;
+    case Entity::cell:
+      return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
+    default:
+      return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
   }
 }
 
@@ -14,9 +17,12 @@ namespace {
 
 GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
   switch (entity) {
-    case Entity::node: return mesh.node_id[i];
-    case Entity::cell: return mesh.cell_id[i];
-    default: return mesh.fracture_faces[i].id;
+    case Entity::node:
+      return mesh.node_id[i];
+    case Entity::cell:
+      return mesh.cell_id[i];
+    default:
+      return mesh.fracture_faces[i].id;
   }
 }
 

@@ -17,8 +17,8 @@ struct Field {
   std::string unit;
 };
 
-/// The unknowns of one field on this rank: owned ones first, ghosts after them, so that an index below n_owned() is a row
-/// of this rank. Unknown = entity * n_components + component, locally and globally. Construction is collective.
+/// The unknowns of one field on this rank: owned ones first, ghosts after them, so that an index below n_owned() is a
+/// row of this rank. Unknown = entity * n_components + component, locally and globally. Construction is collective.
 class Layout {
  public:
   Layout(const Field& field, const mesh::Mesh& mesh);

@@ -22,9 +22,14 @@ namespace sprekk::io {
 namespace {
 
 int cell_type(mesh::Shape shape) {
-  constexpr int types[] = {VTK_TRIANGLE,           VTK_QUAD,           VTK_TETRA,
-                           VTK_HEXAHEDRON,         VTK_QUADRATIC_TRIANGLE, VTK_BIQUADRATIC_QUAD,
-                           VTK_QUADRATIC_TETRA,    VTK_TRIQUADRATIC_HEXAHEDRON};
+  constexpr int types[] = {VTK_TRIANGLE,
+                           VTK_QUAD,
+                           VTK_TETRA,
+                           VTK_HEXAHEDRON,
+                           VTK_QUADRATIC_TRIANGLE,
+                           VTK_BIQUADRATIC_QUAD,
+                           VTK_QUADRATIC_TETRA,
+                           VTK_TRIQUADRATIC_HEXAHEDRON};
   return types[static_cast<int>(shape)];
 }
 

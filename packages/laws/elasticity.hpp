@@ -1,4 +1,5 @@
-// Isotropic linear elasticity: sigma = 2 G eps + lambda tr(eps) I, in 2D plane strain; Wollmann (2024), (5), tension positive.
+// Isotropic linear elasticity: sigma = 2 G eps + lambda tr(eps) I, in 2D plane strain; Wollmann (2024), (5), tension
+// positive.
 #pragma once
 
 #include "base/check.hpp"
@@ -40,9 +41,7 @@ struct Elasticity {
 struct ElasticPair {
   std::optional<Real> E, nu, G, lambda, K;
 
-  int count() const {
-    return E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
-  }
+  int count() const { return E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value(); }
 };
 
 /// Lame's constants from exactly two given constants. Throws Error if the count is not two or if the result is not a

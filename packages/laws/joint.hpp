@@ -73,8 +73,8 @@ struct NormalGap {
   }
 };
 
-/// A joint: how it deforms elastically, what bounds its friction, where its faces touch. Another law of one of the three
-/// kinds replaces the template argument; nothing else changes.
+/// A joint: how it deforms elastically, what bounds its friction, where its faces touch. Another law of one of the
+/// three kinds replaces the template argument; nothing else changes.
 template <class Elastic = TangentialElasticity, class Friction = CoulombFriction, class Gap = NormalGap>
 struct JointLaw {
   Elastic elastic;
@@ -84,8 +84,8 @@ struct JointLaw {
 
 using Joint = JointLaw<>;
 
-/// The constants of the projection for an augmentation c, Pa/m: 1/c_t = 1/c + 1/K_t, 1/c_n = 1/c + 1/K_n. They steer the
-/// iteration; the solution does not depend on them.
+/// The constants of the projection for an augmentation c, Pa/m: 1/c_t = 1/c + 1/K_t, 1/c_n = 1/c + 1/K_n. They steer
+/// the iteration; the solution does not depend on them.
 struct Augmentation {
   Real normal, tangential;
 };

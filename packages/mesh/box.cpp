@@ -155,7 +155,8 @@ class BoxBuilder {
       bool inside = true;
       for (int i = 0; i < dim_; ++i) {
         Real centre = 0;
-        for (int k = 0; k < per_cell; ++k) centre += mesh_.coordinates[mesh_.cells[cell * per_cell + k] * dim_ + i] / per_cell;
+        for (int k = 0; k < per_cell; ++k)
+          centre += mesh_.coordinates[mesh_.cells[cell * per_cell + k] * dim_ + i] / per_cell;
         inside = inside && region.lower_corner[i] < centre && centre < region.upper_corner[i];
       }
       if (inside) mesh_.cell_region[cell] = static_cast<int>(mesh_.region_names.size()) - 1;
@@ -279,7 +280,8 @@ void BoxMesh::describe(base::Section& s) {
   s.entry(rotation, "rotation", "degree", base::any(),
           "angle, counter-clockwise about the origin, by which the box turns");
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
-  s.entry(periodic, "periodic", "-", "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
+  s.entry(periodic, "periodic", "-",
+          "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; without it the order is regular");
 }
@@ -290,8 +292,8 @@ GlobalMesh make_box(const BoxMesh& box) {
   std::vector<std::pair<std::string, std::string>> sides;
   for (const auto& direction : box.periodic) {
     const auto axis = std::string("xyz").substr(0, mesh.dim()).find(direction);
-    SPREKK_CHECK(direction.size() == 1 && axis != std::string::npos, "box mesh: periodic: is \"{}\", must be {}", direction,
-                 mesh.dim() == 2 ? "x or y" : "x, y or z");
+    SPREKK_CHECK(direction.size() == 1 && axis != std::string::npos, "box mesh: periodic: is \"{}\", must be {}",
+                 direction, mesh.dim() == 2 ? "x or y" : "x, y or z");
     sides.emplace_back(boundary_names[2 * axis], boundary_names[2 * axis + 1]);
   }
   return tie_periodic(mesh, sides);

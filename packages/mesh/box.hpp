@@ -39,16 +39,16 @@ struct BoxMesh {
   Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
   std::vector<Real> rotation_axis{0, 0, 1};  ///< 3D; through the origin
   std::optional<int> renumbering_seed;       ///< see renumbered()
-  std::vector<std::string> periodic;         ///< directions x, y, z in which opposite sides are tied, see tie_periodic()
+  std::vector<std::string> periodic;  ///< directions x, y, z in which opposite sides are tied, see tie_periodic()
   void describe(base::Section& section);
 };
 
 /// The mesh of a box. Squares are cut into two triangles with alternating diagonals, cubes into six Kuhn tetrahedra.
 ///
-/// Region "bulk", then those of the parameters; boundaries "west" (x-), "east" (x+), "south" (y-), "north" (y+), "bottom" (z-), "top" (z+), named
-/// before the rotation. Fractures in the order of their names, split and oriented (see split()) after the rotation.
-/// Throws an Error if the parameters contradict each other, if a fracture leaves the mesh planes or lies on the
-/// boundary, and if two fractures overlap.
+/// Region "bulk", then those of the parameters; boundaries "west" (x-), "east" (x+), "south" (y-), "north" (y+),
+/// "bottom" (z-), "top" (z+), named before the rotation. Fractures in the order of their names, split and oriented (see
+/// split()) after the rotation. Throws an Error if the parameters contradict each other, if a fracture leaves the mesh
+/// planes or lies on the boundary, and if two fractures overlap.
 GlobalMesh make_box(const BoxMesh& box);
 
 }  // namespace sprekk::mesh

@@ -93,7 +93,8 @@ class Distributor {
     std::vector<bool> result(global_.n_nodes(), false);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
       if (selected(cell))
-        for (int k = 0; k < nodes_per_cell_; ++k) result[node(cell, k)] = result[global_.free_node(node(cell, k))] = true;
+        for (int k = 0; k < nodes_per_cell_; ++k)
+          result[node(cell, k)] = result[global_.free_node(node(cell, k))] = true;
     return result;
   }
 
@@ -102,7 +103,8 @@ class Distributor {
     const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
     std::vector<bool> result(global_.n_cells(), false);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
-      for (int k = 0; k < nodes_per_cell_ && !result[cell]; ++k) result[cell] = is_near[global_.free_node(node(cell, k))];
+      for (int k = 0; k < nodes_per_cell_ && !result[cell]; ++k)
+        result[cell] = is_near[global_.free_node(node(cell, k))];
     for (const auto& face : global_.fracture_faces)
       if (part_[face.cell[minus]] == rank_) result[face.cell[plus]] = true;
     return result;

@@ -16,9 +16,9 @@ namespace sprekk::mesh {
 RCP<const Mesh> distribute(const GlobalMesh& mesh, const std::vector<int>& part, RCP<const Comm> comm);
 
 /// Every rank's part of a mesh that only rank 0 holds, as distribute() would give it with the partition() into one part
-/// per rank. make() is called on rank 0 only, which then builds and sends the parts one by one: no other rank ever holds
-/// more than its part, rank 0 at most the mesh, one part, and that part packed.
-/// Collective. An exception on rank 0, in make() too, becomes an Error on all ranks.
+/// per rank. make() is called on rank 0 only, which then builds and sends the parts one by one: no other rank ever
+/// holds more than its part, rank 0 at most the mesh, one part, and that part packed. Collective. An exception on rank
+/// 0, in make() too, becomes an Error on all ranks.
 RCP<const Mesh> make_distributed(const std::function<GlobalMesh()>& make, RCP<const Comm> comm);
 
 /// The same with the mesh of rank 0; that of other ranks is not read.

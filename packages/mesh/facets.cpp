@@ -16,7 +16,8 @@ Vector point(const GlobalMesh& mesh, GlobalIndex node) {
 std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
   std::array<GlobalIndex, max_face_nodes> nodes;
   const auto local = face_nodes(mesh.shape)[local_face];
-  for (int k = 0; k < max_face_nodes; ++k) nodes[k] = local[k] < 0 ? -1 : mesh.cells[cell * n_nodes(mesh.shape) + local[k]];
+  for (int k = 0; k < max_face_nodes; ++k)
+    nodes[k] = local[k] < 0 ? -1 : mesh.cells[cell * n_nodes(mesh.shape) + local[k]];
   return nodes;
 }
 

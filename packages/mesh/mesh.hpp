@@ -26,24 +26,28 @@ struct GlobalMesh {
   };
 
   Shape shape;
-  std::vector<Real> coordinates;   ///< [node * dim + component], metre
-  std::vector<GlobalIndex> cells;  ///< [cell * n_nodes(shape) + local node]
-  std::vector<int> cell_region;    ///< [cell], index into region_names
+  std::vector<Real> coordinates;         ///< [node * dim + component], metre
+  std::vector<GlobalIndex> cells;        ///< [cell * n_nodes(shape) + local node]
+  std::vector<int> cell_region;          ///< [cell], index into region_names
   std::vector<GlobalIndex> parent_node;  ///< [node] the node that split() copied, itself for all others; see split.hpp
-  std::vector<GlobalIndex> tied_to;      ///< the node that each of the last nodes shares its unknowns with; see periodic.hpp
+  std::vector<GlobalIndex>
+      tied_to;  ///< the node that each of the last nodes shares its unknowns with; see periodic.hpp
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
 
   /// Nodes with unknowns of their own come first.
   GlobalIndex n_free_nodes() const { return n_nodes() - static_cast<GlobalIndex>(tied_to.size()); }
-  GlobalIndex free_node(GlobalIndex node) const { return node < n_free_nodes() ? node : tied_to[node - n_free_nodes()]; }
+  GlobalIndex free_node(GlobalIndex node) const {
+    return node < n_free_nodes() ? node : tied_to[node - n_free_nodes()];
+  }
   int dim() const { return dimension(shape); }
   GlobalIndex n_cells() const { return static_cast<GlobalIndex>(cell_region.size()); }
   GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(coordinates.size()) / dim(); }
 };
 
-/// One rank's part. Owned entities come first in every list, ghosts follow; "n_" counts both, "n_owned_" the first part.
+/// One rank's part. Owned entities come first in every list, ghosts follow; "n_" counts both, "n_owned_" the first
+/// part.
 ///
 /// Ownership: a cell belongs to its part of the partition, a fracture face to the rank of its minus cell, a node to the
 /// lowest rank that owns a cell around it. Ghost cells are all cells that share a node with an owned cell, and the
@@ -51,14 +55,16 @@ struct GlobalMesh {
 /// those with at least one local cell. So rows of owned nodes can be assembled from local cells without communication.
 struct Mesh {
   struct FractureFace {
-    GlobalIndex id;                        ///< global number
-    int fracture;                          ///< index into fracture_names
-    std::array<LocalIndex, 2> cell;        ///< local cell on side minus, plus; -1 where that cell is not on this rank
-    std::array<int, 2> local_face;         ///< number of the face in that cell
-    std::array<std::array<LocalIndex, max_face_nodes>, 2> nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
-    Real area;                             ///< length in 2D; metre, metre^2
+    GlobalIndex id;                  ///< global number
+    int fracture;                    ///< index into fracture_names
+    std::array<LocalIndex, 2> cell;  ///< local cell on side minus, plus; -1 where that cell is not on this rank
+    std::array<int, 2> local_face;   ///< number of the face in that cell
+    std::array<std::array<LocalIndex, max_face_nodes>, 2>
+        nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
+    Real area;  ///< length in 2D; metre, metre^2
     std::array<Real, 3> centre;
-    std::array<std::array<Real, 3>, 3> frame;  ///< rows n, t1[, t2]; 2D t = (n_y, -n_x); 3D t1 = a x n/|a x n|, t2 = n x t1
+    std::array<std::array<Real, 3>, 3>
+        frame;  ///< rows n, t1[, t2]; 2D t = (n_y, -n_x); 3D t1 = a x n/|a x n|, t2 = n x t1
   };
   struct BoundaryFace {
     int boundary;
@@ -70,13 +76,13 @@ struct Mesh {
   RCP<const Comm> comm;
   Shape shape;
   LocalIndex n_owned_nodes = 0, n_owned_cells = 0, n_owned_fracture_faces = 0;
-  LocalIndex n_free_nodes = 0;         ///< nodes with unknowns of their own, owned and ghosts; tied ones follow
-  std::vector<LocalIndex> tied_to;     ///< [tied node] the local node that it shares its unknowns with
+  LocalIndex n_free_nodes = 0;      ///< nodes with unknowns of their own, owned and ghosts; tied ones follow
+  std::vector<LocalIndex> tied_to;  ///< [tied node] the local node that it shares its unknowns with
   std::vector<GlobalIndex> node_id, cell_id;
-  std::vector<int> cell_owner;             ///< [cell] rank
-  std::vector<Real> coordinates;           ///< [node * dim + component], metre
-  std::vector<LocalIndex> cells;           ///< [cell * nodes per cell + local node]
-  std::vector<int> cell_region;            ///< [cell]
+  std::vector<int> cell_owner;    ///< [cell] rank
+  std::vector<Real> coordinates;  ///< [node * dim + component], metre
+  std::vector<LocalIndex> cells;  ///< [cell * nodes per cell + local node]
+  std::vector<int> cell_region;   ///< [cell]
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
   std::vector<std::string> region_names, boundary_names, fracture_names;

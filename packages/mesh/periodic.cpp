@@ -17,8 +17,8 @@ using BoundaryFace = GlobalMesh::BoundaryFace;
 
 std::vector<BoundaryFace> faces_of(const GlobalMesh& mesh, const std::string& boundary) {
   const auto found = std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), boundary);
-  SPREKK_CHECK(found != mesh.boundary_names.end(), "periodic: \"{}\" is no boundary of the mesh, must be one of {}.{}", boundary,
-               base::quoted_list(mesh.boundary_names), base::did_you_mean(boundary, mesh.boundary_names));
+  SPREKK_CHECK(found != mesh.boundary_names.end(), "periodic: \"{}\" is no boundary of the mesh, must be one of {}.{}",
+               boundary, base::quoted_list(mesh.boundary_names), base::did_you_mean(boundary, mesh.boundary_names));
   const int number = static_cast<int>(found - mesh.boundary_names.begin());
   std::vector<BoundaryFace> faces;
   for (const auto& face : mesh.boundary_faces)
@@ -52,13 +52,15 @@ class Ties {
 /// Ties the nodes of the faces `second` to those of `first`.
 void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>& names, Ties& ties) {
   const auto first = faces_of(mesh, names.first), second = faces_of(mesh, names.second);
-  SPREKK_CHECK(first.size() == second.size() && !first.empty(), "periodic: boundaries \"{}\" and \"{}\" have {} and {} faces; they must match",
-               names.first, names.second, first.size(), second.size());
+  SPREKK_CHECK(first.size() == second.size() && !first.empty(),
+               "periodic: boundaries \"{}\" and \"{}\" have {} and {} faces; they must match", names.first,
+               names.second, first.size(), second.size());
   const Vector shift = mean_centre(mesh, second) - mean_centre(mesh, first);
   const Real tolerance = 1e-6 * norm(shift) / std::pow(static_cast<Real>(mesh.n_cells()), 1.0 / mesh.dim());
   using Key = std::array<long long, 3>;  // centres on a lattice much finer than the mesh
   const auto key = [&](const Vector& x) {
-    return Key{std::llround(x[0] / (100 * tolerance)), std::llround(x[1] / (100 * tolerance)), std::llround(x[2] / (100 * tolerance))};
+    return Key{std::llround(x[0] / (100 * tolerance)), std::llround(x[1] / (100 * tolerance)),
+               std::llround(x[2] / (100 * tolerance))};
   };
   std::map<Key, const BoundaryFace*> by_centre;
   for (const auto& face : first) by_centre[key(face_centre(mesh, face.cell, face.local_face))] = &face;
@@ -74,14 +76,16 @@ void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>
   for (const auto& face : second) {
     const Vector centre = face_centre(mesh, face.cell, face.local_face);
     const auto* other = partner(centre - shift);
-    SPREKK_CHECK(other, "periodic: the face of \"{}\" at ({}, {}, {}) has no partner on \"{}\"", names.second, centre[0], centre[1],
-                 centre[2], names.first);
-    const auto nodes = nodes_of_face(mesh, face.cell, face.local_face), others = nodes_of_face(mesh, other->cell, other->local_face);
+    SPREKK_CHECK(other, "periodic: the face of \"{}\" at ({}, {}, {}) has no partner on \"{}\"", names.second,
+                 centre[0], centre[1], centre[2], names.first);
+    const auto nodes = nodes_of_face(mesh, face.cell, face.local_face),
+               others = nodes_of_face(mesh, other->cell, other->local_face);
     for (int k = 0; k < n; ++k) {
       const Vector x = point(mesh, nodes[k]) - shift;
-      const auto match = std::find_if(others.begin(), others.begin() + n, [&](GlobalIndex node) { return norm(point(mesh, node) - x) < 1000 * tolerance; });
-      SPREKK_CHECK(match != others.begin() + n, "periodic: the node of \"{}\" at ({}, {}, {}) has no partner on \"{}\"", names.second,
-                   x[0] + shift[0], x[1] + shift[1], x[2] + shift[2], names.first);
+      const auto match = std::find_if(others.begin(), others.begin() + n,
+                                      [&](GlobalIndex node) { return norm(point(mesh, node) - x) < 1000 * tolerance; });
+      SPREKK_CHECK(match != others.begin() + n, "periodic: the node of \"{}\" at ({}, {}, {}) has no partner on \"{}\"",
+                   names.second, x[0] + shift[0], x[1] + shift[1], x[2] + shift[2], names.first);
       ties.tie(nodes[k], *match);
     }
   }

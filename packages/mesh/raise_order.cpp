@@ -19,8 +19,8 @@ struct Hash {
   }
 };
 
-/// The corners whose mean each added node is, in the order of the nodes; from the faces' node lists, so that there is one
-/// table of numbering.
+/// The corners whose mean each added node is, in the order of the nodes; from the faces' node lists, so that there is
+/// one table of numbering.
 std::vector<std::vector<int>> parents(Shape shape) {
   const int n_added = n_nodes(shape) - n_corners(shape), n_around = n_face_corners(shape);
   std::vector<std::vector<int>> result(n_added);

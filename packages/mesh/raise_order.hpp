@@ -5,10 +5,10 @@
 
 namespace sprekk::mesh {
 
-/// The mesh with nodes added in the middle of edges (and of the faces and insides of quadrilaterals and hexahedra), so that
-/// its cells keep their straight sides. Nodes keep their numbers; new ones follow. `mesh` has order 1 and is not yet split:
-/// splitting treats the new nodes like all others, so that an edge between two tip nodes that lies in a fracture opens.
-/// Linear in the number of cells.
+/// The mesh with nodes added in the middle of edges (and of the faces and insides of quadrilaterals and hexahedra), so
+/// that its cells keep their straight sides. Nodes keep their numbers; new ones follow. `mesh` has order 1 and is not
+/// yet split: splitting treats the new nodes like all others, so that an edge between two tip nodes that lies in a
+/// fracture opens. Linear in the number of cells.
 GlobalMesh raise_order(GlobalMesh mesh);
 
 }  // namespace sprekk::mesh

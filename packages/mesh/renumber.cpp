@@ -18,7 +18,8 @@ std::vector<GlobalIndex> random_permutation(GlobalIndex n, std::mt19937_64& rand
 
 }  // namespace
 
-GlobalMesh permuted(const GlobalMesh& mesh, const std::vector<GlobalIndex>& new_node, const std::vector<GlobalIndex>& new_cell) {
+GlobalMesh permuted(const GlobalMesh& mesh, const std::vector<GlobalIndex>& new_node,
+                    const std::vector<GlobalIndex>& new_cell) {
   const int dim = mesh.dim(), nodes_per_cell = n_nodes(mesh.shape);
   GlobalMesh result = mesh;
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node)

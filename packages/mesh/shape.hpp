@@ -24,24 +24,24 @@ constexpr Shape linear(Shape s) { return order(s) == 1 ? s : static_cast<Shape>(
 constexpr Shape quadratic(Shape s) { return order(s) == 2 ? s : static_cast<Shape>(static_cast<int>(s) + 4); }
 constexpr bool is_simplex(Shape s) { return linear(s) == Shape::triangle || linear(s) == Shape::tetrahedron; }
 constexpr int dimension(Shape s) { return linear(s) == Shape::triangle || linear(s) == Shape::quadrilateral ? 2 : 3; }
-constexpr int n_corners(Shape s) {
-  return linear(s) == Shape::triangle ? 3 : linear(s) == Shape::hexahedron ? 8 : 4;
-}
+constexpr int n_corners(Shape s) { return linear(s) == Shape::triangle ? 3 : linear(s) == Shape::hexahedron ? 8 : 4; }
 constexpr int n_nodes(Shape s) {
   constexpr int n[] = {3, 4, 4, 8, 6, 9, 10, 27};
   return n[static_cast<int>(s)];
 }
 constexpr int n_faces(Shape s) { return linear(s) == Shape::triangle ? 3 : linear(s) == Shape::hexahedron ? 6 : 4; }
-constexpr int n_face_corners(Shape s) { return linear(s) == Shape::tetrahedron ? 3 : linear(s) == Shape::hexahedron ? 4 : 2; }
+constexpr int n_face_corners(Shape s) {
+  return linear(s) == Shape::tetrahedron ? 3 : linear(s) == Shape::hexahedron ? 4 : 2;
+}
 constexpr int n_face_nodes(Shape s) {
   constexpr int n[] = {2, 2, 3, 4, 3, 3, 6, 9};
   return n[static_cast<int>(s)];
 }
 constexpr int max_face_nodes = 9;
 
-/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes on
-/// its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to node
-/// (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
+/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes
+/// on its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to
+/// node (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
 constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
   using Faces = std::array<std::array<int, max_face_nodes>, 6>;
   Faces faces{};
@@ -56,10 +56,17 @@ constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
                                    {0, 3, 2, 1, 11, 10, 9, 8, 24},   {4, 5, 6, 7, 12, 13, 14, 15, 25}};
   for (int f = 0; f < n_faces(s); ++f)
     for (int k = 0; k < n; ++k) switch (linear(s)) {
-        case Shape::triangle: faces[f][k] = triangle[f][k]; break;
-        case Shape::quadrilateral: faces[f][k] = quadrilateral[f][k]; break;
-        case Shape::tetrahedron: faces[f][k] = tetrahedron[f][k]; break;
-        default: faces[f][k] = hexahedron[f][k];
+        case Shape::triangle:
+          faces[f][k] = triangle[f][k];
+          break;
+        case Shape::quadrilateral:
+          faces[f][k] = quadrilateral[f][k];
+          break;
+        case Shape::tetrahedron:
+          faces[f][k] = tetrahedron[f][k];
+          break;
+        default:
+          faces[f][k] = hexahedron[f][k];
       }
   return faces;
 }
@@ -68,14 +75,22 @@ constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
 template <class F>
 auto for_shape(Shape s, const F& f) {
   switch (s) {
-    case Shape::triangle: return f(std::integral_constant<Shape, Shape::triangle>());
-    case Shape::quadrilateral: return f(std::integral_constant<Shape, Shape::quadrilateral>());
-    case Shape::tetrahedron: return f(std::integral_constant<Shape, Shape::tetrahedron>());
-    case Shape::hexahedron: return f(std::integral_constant<Shape, Shape::hexahedron>());
-    case Shape::triangle6: return f(std::integral_constant<Shape, Shape::triangle6>());
-    case Shape::quadrilateral9: return f(std::integral_constant<Shape, Shape::quadrilateral9>());
-    case Shape::tetrahedron10: return f(std::integral_constant<Shape, Shape::tetrahedron10>());
-    default: return f(std::integral_constant<Shape, Shape::hexahedron27>());
+    case Shape::triangle:
+      return f(std::integral_constant<Shape, Shape::triangle>());
+    case Shape::quadrilateral:
+      return f(std::integral_constant<Shape, Shape::quadrilateral>());
+    case Shape::tetrahedron:
+      return f(std::integral_constant<Shape, Shape::tetrahedron>());
+    case Shape::hexahedron:
+      return f(std::integral_constant<Shape, Shape::hexahedron>());
+    case Shape::triangle6:
+      return f(std::integral_constant<Shape, Shape::triangle6>());
+    case Shape::quadrilateral9:
+      return f(std::integral_constant<Shape, Shape::quadrilateral9>());
+    case Shape::tetrahedron10:
+      return f(std::integral_constant<Shape, Shape::tetrahedron10>());
+    default:
+      return f(std::integral_constant<Shape, Shape::hexahedron27>());
   }
 }
 

@@ -7,6 +7,8 @@
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 
@@ -27,15 +29,16 @@ std::array<Real, 3> centre(const mesh::Mesh& mesh, LocalIndex cell) {
   return x;
 }
 
-/// The different values of a property, and which of them each entity has; no list of numbers where the group of an entity
-/// (region, fracture) tells.
+/// The different values of a property, and which of them each entity has; no list of numbers where the group of an
+/// entity (region, fracture) tells.
 template <class T>
 struct Properties {
   std::vector<T> values;
   std::vector<int> number;
 };
 
-/// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's place.
+/// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's
+/// place.
 template <class T, class Uniform, class At>
 Properties<T> properties(int n_groups, const std::vector<int>& group_of, const Uniform& uniform, const At& at) {
   Properties<T> result;
@@ -56,8 +59,11 @@ Properties<T> properties(int n_groups, const std::vector<int>& group_of, const U
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
   return properties<laws::Elasticity>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region, [&](int region) { return material(region).is_uniform(); },
-      [&](int region, int cell) { return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell)); });
+      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
+      [&](int region) { return material(region).is_uniform(); },
+      [&](int region, int cell) {
+        return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell));
+      });
 }
 
 Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
@@ -67,7 +73,8 @@ Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh
   std::vector<int> fracture_of;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_of.push_back(mesh.fracture_faces[f].fracture);
   return properties<physics::JointParameters>(
-      static_cast<int>(mesh.fracture_names.size()), fracture_of, [&](int fracture) { return material(fracture).is_uniform(); },
+      static_cast<int>(mesh.fracture_names.size()), fracture_of,
+      [&](int fracture) { return material(fracture).is_uniform(); },
       [&](int fracture, int face) {
         return material(fracture).joint(face < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[face].centre);
       });
@@ -77,7 +84,8 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   physics::BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
   if (force.gravity.empty()) return force;
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
-    force.density_of_cell.push_back(scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density(centre(mesh, cell), 0));
+    force.density_of_cell.push_back(
+        scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density(centre(mesh, cell), 0));
   return force;
 }
 
@@ -102,8 +110,14 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
     here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  for (int i = 0; i < scene.dim(); ++i)
-    length = std::max(length, scene.mesh.upper_corner[i] - scene.mesh.lower_corner[i]);
+  std::vector<Real> corner(2 * mesh.dim(), -std::numeric_limits<Real>::max()), all(corner.size());
+  for (std::size_t k = 0; k < mesh.coordinates.size(); ++k) {
+    const std::size_t i = k % mesh.dim();
+    corner[2 * i] = std::max(corner[2 * i], mesh.coordinates[k]);
+    corner[2 * i + 1] = std::max(corner[2 * i + 1], -mesh.coordinates[k]);
+  }
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 2 * mesh.dim(), corner.data(), all.data());
+  for (int i = 0; i < mesh.dim(); ++i) length = std::max(length, all[2 * i] + all[2 * i + 1]);
   return {modulus, length};
 }
 
@@ -128,17 +142,19 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   return modules;
 }
 
-Model::Model(const Scene& scene, RCP<const Comm> comm) : scene_(scene), timers_(rcp(new base::Timers)), time_(scene.time.start) {
+Model::Model(const Scene& scene, RCP<const Comm> comm)
+    : scene_(scene), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   RCP<const mesh::Mesh> mesh;
   {
     const auto scope = timers_->scope("mesh");
-    mesh = mesh::make_distributed([&] { return mesh::make_box(scene_.mesh); }, comm);
+    mesh = mesh::make_distributed([&] { return scene_.make_mesh(); }, comm);
   }
+  const auto misfits = scene_.misfits({mesh->dim(), mesh->region_names, mesh->boundary_names, mesh->fracture_names});
+  SPREKK_CHECK(misfits.empty(), "Sprekk > {}", fmt::join(misfits, "\nSprekk > "));
   std::vector<std::unique_ptr<assembly::Module>> modules;
-  assembly::Reference sizes;
   base::collectively(*comm, [&] { modules = make_modules(scene_, *mesh); });
-  base::collectively(*comm, [&] { sizes = reference(scene_, *mesh); });
-  system_ = std::make_unique<assembly::System>(mesh, std::move(modules), dirichlet_conditions(scene_, *mesh), sizes, timers_);
+  system_ = std::make_unique<assembly::System>(mesh, std::move(modules), dirichlet_conditions(scene_, *mesh),
+                                               reference(scene_, *mesh), timers_);
   x_ = system_->initial();
   const auto scope = timers_->scope("set-up of the solver");
   newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);

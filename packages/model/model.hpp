@@ -14,14 +14,14 @@
 
 namespace sprekk::model {
 
-/// A scene brought to life on a communicator: mesh, modules, solver and the present state. Several can live in one process.
-/// All members are collective unless they return stored data.
+/// A scene brought to life on a communicator: mesh, modules, solver and the present state. Several can live in one
+/// process. All members are collective unless they return stored data.
 class Model {
  public:
   Model(const Scene& scene, RCP<const Comm> comm);
 
-  /// Goes from time() to t in one step, in substeps where Newton needs them. If the report is not converged, the state is
-  /// the last that did, at report.time.
+  /// Goes from time() to t in one step, in substeps where Newton needs them. If the report is not converged, the state
+  /// is the last that did, at report.time.
   solve::StepReport step_to(Real t);
 
   Real time() const { return time_; }

@@ -19,7 +19,8 @@ namespace {
 template <int dim>
 class PointDriver {
  public:
-  explicit PointDriver(const PointScene& scene) : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
+  explicit PointDriver(const PointScene& scene)
+      : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
     c_ = laws::augmentation(law_, typical_stiffness());
@@ -33,7 +34,8 @@ class PointDriver {
     Real length = 0, stress = 0;  // sizes that the step is judged by
     for (int i = 0; i < dim; ++i) {
       const Real size = std::max(std::abs(d[i]), std::abs(x_[dim + i]));
-      (point_.control[i] == "traction" ? stress : length) = std::max(point_.control[i] == "traction" ? stress : length, size);
+      (point_.control[i] == "traction" ? stress : length) =
+          std::max(point_.control[i] == "traction" ? stress : length, size);
     }
     length = std::max({length, stress / c_.normal, std::abs(x_[0])});
     stress = std::max(stress, length * std::min(c_.normal, c_.tangential));
@@ -130,13 +132,19 @@ std::vector<PointState> drive(const PointScene& scene) {
 void PointPath::describe(base::Section& s) {
   s.required(material, "material", "-", "name of a joint material");
   s.required(control, "control", "-", "per component n, t[, t2] what is prescribed: jump, traction, or column");
-  s.required(path, "path", "m or Pa", "per component the jump, the traction, or the displacement of the column's end: values or expressions of t");
-  s.entry(normal_stiffness, "column normal stiffness", "Pa/m", base::at_least(0), "k of a column in lambda_n = k (d_n - w_n)");
-  s.entry(tangential_stiffness, "column tangential stiffness", "Pa/m", base::at_least(0), "k of a column in lambda_t = k (d_t - w_t)");
-  s.entry(plastic_jump, "plastic jump", "m", base::any(), "tangential plastic jump at the start, per tangential component");
+  s.required(
+      path, "path", "m or Pa",
+      "per component the jump, the traction, or the displacement of the column's end: values or expressions of t");
+  s.entry(normal_stiffness, "column normal stiffness", "Pa/m", base::at_least(0),
+          "k of a column in lambda_n = k (d_n - w_n)");
+  s.entry(tangential_stiffness, "column tangential stiffness", "Pa/m", base::at_least(0),
+          "k of a column in lambda_t = k (d_t - w_t)");
+  s.entry(plastic_jump, "plastic jump", "m", base::any(),
+          "tangential plastic jump at the start, per tangential component");
   if (!s.complete()) return;
   if (control.size() < 2 || control.size() > 3) s.fail("control", "needs 2 components (2D) or 3 (3D)");
-  if (path.size() != control.size()) s.fail("path", fmt::format("has {} components, \"control\" has {}", path.size(), control.size()));
+  if (path.size() != control.size())
+    s.fail("path", fmt::format("has {} components, \"control\" has {}", path.size(), control.size()));
   if (!plastic_jump.empty() && plastic_jump.size() + 1 != control.size())
     s.fail("plastic jump", fmt::format("has {} components, must have {}", plastic_jump.size(), control.size() - 1));
   for (std::size_t i = 0; i < control.size(); ++i) {

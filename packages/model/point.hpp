@@ -7,8 +7,8 @@
 
 namespace sprekk::model {
 
-/// What drives the point. For every component either the jump w or the traction lambda is prescribed, or the joint stands in
-/// a column of rock of stiffness k whose end is displaced by d: lambda = k (d - w).
+/// What drives the point. For every component either the jump w or the traction lambda is prescribed, or the joint
+/// stands in a column of rock of stiffness k whose end is displaced by d: lambda = k (d - w).
 struct PointPath {
   std::string material;                                 ///< a joint
   std::vector<std::string> control;                     ///< per component n, t[, t2]: "jump", "traction" or "column"
@@ -35,8 +35,8 @@ struct PointState {
   std::vector<Real> jump, elastic, plastic, traction;  ///< n, t[, t2]
 };
 
-/// Implicit Euler along the path, one state per step. Throws an Error if a step has no solution that Newton's method finds,
-/// for instance a jump that a rigid joint cannot have.
+/// Implicit Euler along the path, one state per step. Throws an Error if a step has no solution that Newton's method
+/// finds, for instance a jump that a rigid joint cannot have.
 std::vector<PointState> drive_point(const PointScene& scene);
 
 /// Writes the states as CSV: t, contact state (0 open, 1 stick, 2 slip), then jump, elastic jump, plastic jump and

@@ -68,7 +68,8 @@ json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& ou
   json summary = json::object();
   const std::size_t n = mesh.fracture_names.size();
   if (n == 0) return summary;
-  const OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1, std::vector<Real>(mesh.n_owned_fracture_faces, 1)};
+  const OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1,
+                         std::vector<Real>(mesh.n_owned_fracture_faces, 1)};
   const auto area = statistics(mesh, ones).sum;
   const auto each = [&](const auto& set) {
     for (std::size_t k = 0; k < n; ++k) set(k, summary[mesh.fracture_names[k]]);
@@ -123,8 +124,10 @@ json block_summary(const assembly::System& system) {
       const long long rows = static_cast<long long>(A(i, j)->getGlobalNumRows());
       const long long bytes = entries * static_cast<long long>(sizeof(Real) + sizeof(LocalIndex)) +
                               rows * static_cast<long long>(sizeof(std::size_t));
-      summary["matrices"].push_back(
-          {{"row", system.blocks()[i].name}, {"column", system.blocks()[j].name}, {"entries", entries}, {"bytes", bytes}});
+      summary["matrices"].push_back({{"row", system.blocks()[i].name},
+                                     {"column", system.blocks()[j].name},
+                                     {"entries", entries},
+                                     {"bytes", bytes}});
     }
   for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
   for (const auto& group : system.local_groups()) {
@@ -176,7 +179,8 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   json_["steps"].push_back(step);
   ++n_steps_;
   if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);
-  if (reduce<int>(*model_.mesh().comm, Teuchos::REDUCE_MAX, {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
+  if (reduce<int>(*model_.mesh().comm, Teuchos::REDUCE_MAX,
+                  {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
     write_json();
   return contact_counts(*model_.mesh().comm, outputs);
 }
@@ -188,9 +192,11 @@ void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
   auto bulk = io::bulk_piece(mesh), fractures = io::fracture_piece(mesh);
   const std::vector<Real> rank(mesh.n_owned_cells, mesh.comm->getRank());
   bulk.cell_data.push_back(io::data_array("rank", 1, rank));
-  bulk.cell_data.push_back(io::data_array("material", 1, {mesh.cell_region.begin(), mesh.cell_region.begin() + mesh.n_owned_cells}));
+  bulk.cell_data.push_back(
+      io::data_array("material", 1, {mesh.cell_region.begin(), mesh.cell_region.begin() + mesh.n_owned_cells}));
   std::vector<Real> fracture_number;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_number.push_back(mesh.fracture_faces[f].fracture);
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    fracture_number.push_back(mesh.fracture_faces[f].fracture);
   fractures.cell_data.push_back(io::data_array("fracture", 1, fracture_number));
   for (const auto& output : outputs) {
     if (output.entity == fields::Entity::node)

@@ -1,5 +1,7 @@
 #include "model/run.hpp"
 
+#include "mesh/mesh_info.hpp"
+#include "mesh/msh_reader.hpp"
 #include "model/results.hpp"
 
 #include <chrono>
@@ -14,8 +16,8 @@ namespace {
 class Progress {
  public:
   Progress(base::Log& log, std::size_t n_steps) : log_(log), n_steps_(n_steps) {
-    log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9}", "time", "dt", "Newton", "linear", "cuts", "open",
-              "stick", "slip", "elapsed", "remaining");
+    log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9}", "time", "dt", "Newton", "linear", "cuts",
+              "open", "stick", "slip", "elapsed", "remaining");
   }
 
   void add(const solve::StepReport& report, Real dt, const std::array<long long, 3>& faces) {
@@ -87,6 +89,12 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
     Model model(scene, comm);
     model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
   });
+}
+
+std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures) {
+  mesh::MshOptions options;
+  for (const auto& name : fractures) options.fractures[name];
+  return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
 }
 
 std::string reference() { return base::reference<Scene>("Sprekk"); }

@@ -15,12 +15,16 @@ struct RunOptions {
   bool terminal = false;               ///< print a line per time step
 };
 
-/// Runs the scene and writes its results. Returns true if all steps converged; a step that did not is reported, and what
-/// was computed before is kept. Throws an Error for bad input, the same on every rank. Collective.
+/// Runs the scene and writes its results. Returns true if all steps converged; a step that did not is reported, and
+/// what was computed before is kept. Throws an Error for bad input, the same on every rank. Collective.
 bool run(const RunOptions& options, RCP<const Comm> comm);
 
-/// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run(). Collective.
+/// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().
+/// Collective.
 void check(const RunOptions& options, RCP<const Comm> comm);
+
+/// What is in a gmsh file, with the named physical groups as fractures. Not collective.
+std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures);
 
 /// All parameters of a scene, as Markdown.
 std::string reference();

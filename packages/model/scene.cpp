@@ -3,8 +3,11 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
+#include "mesh/msh_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace sprekk::model {
 
@@ -31,17 +34,21 @@ void Material::describe(base::Section& s) {
     s.entry(K, "bulk modulus", "Pa", base::positive(), "K");
     s.entry(density, "density", "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
-    if (type == "elastic" && s.complete() && n != 2) s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
+    if (type == "elastic" && s.complete() && n != 2)
+      s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
   }
   if (type != "elastic") {
     s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
             "K_t of the elastic part of the tangential jump (12); infinite: all tangential jump is plastic");
-    s.entry(friction_coefficient, "friction coefficient", "-", base::at_least(0), "mu of the bound (13); or give the angle");
+    s.entry(friction_coefficient, "friction coefficient", "-", base::at_least(0),
+            "mu of the bound (13); or give the angle");
     s.entry(friction_angle, "friction angle", "degree", base::at_least(0).below(90), "atan(mu) (3)");
-    s.entry(dilation_angle, "dilation angle", "degree", base::at_least(0).below(90), "theta: the gap grows by tan(theta)|u_t^p| (14)");
+    s.entry(dilation_angle, "dilation angle", "degree", base::at_least(0).below(90),
+            "theta: the gap grows by tan(theta)|u_t^p| (14)");
     s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
     s.entry(maximum_closure, "maximum closure", "m", base::at_least(0), "Du of the normal closure in (14); 0: none");
-    s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(), "K_n at zero traction; needed with a maximum closure");
+    s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(),
+            "K_n at zero traction; needed with a maximum closure");
     s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
     if (type == "joint" && s.complete()) {
       if (friction_coefficient.has_value() == friction_angle.has_value())
@@ -82,7 +89,8 @@ void Material::compile(const std::shared_ptr<const base::Tables>& tables) {
   for_each([&](const char* name, const Value& value, Real, bool, Real) {
     auto& mutable_value = const_cast<Value&>(value);  // for_each serves const members as well
     mutable_value.compile(tables);
-    SPREKK_CHECK(value.constant_in_time(), "material: \"{}\" is \"{}\"; a material may depend on x, y, z, not on t", name, value.text());
+    SPREKK_CHECK(value.constant_in_time(), "material: \"{}\" is \"{}\"; a material may depend on x, y, z, not on t",
+                 name, value.text());
   });
 }
 
@@ -96,15 +104,18 @@ void Material::check(const Point& x) const {
   for_each([&](const char* name, const Value& value, Real least, bool itself, Real limit) {
     if (value.is_constant()) return;  // checked when it was read
     const Real v = value(x, 0);
-    SPREKK_CHECK((itself ? v >= least : v > least) && v < limit, "material: \"{}\" = {} is {} at ({}, {}, {}), must be {} {}{}", name,
-                 value.text(), v, x[0], x[1], x[2], itself ? "at least" : "above", least,
+    SPREKK_CHECK((itself ? v >= least : v > least) && v < limit,
+                 "material: \"{}\" = {} is {} at ({}, {}, {}), must be {} {}{}", name, value.text(), v, x[0], x[1],
+                 x[2], itself ? "at least" : "above", least,
                  std::isfinite(limit) ? fmt::format(" and below {}", limit) : "");
   });
 }
 
 laws::Elasticity Material::elasticity(const Point& x) const {
   check(x);
-  const auto at = [&](const std::optional<Value>& value) { return value ? std::make_optional((*value)(x, 0)) : std::nullopt; };
+  const auto at = [&](const std::optional<Value>& value) {
+    return value ? std::make_optional((*value)(x, 0)) : std::nullopt;
+  };
   return laws::lame_constants({at(E), at(nu), at(G), at(lambda), at(K)});
 }
 
@@ -112,7 +123,8 @@ physics::JointParameters Material::joint(const Point& x) const {
   check(x);
   physics::JointParameters joint;
   joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
-  joint.law.friction.coefficient = friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
+  joint.law.friction.coefficient =
+      friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
   joint.law.gap.closure = {maximum_closure(x, 0), normal_stiffness ? (*normal_stiffness)(x, 0) : 1};
@@ -123,13 +135,17 @@ physics::JointParameters Material::joint(const Point& x) const {
 void Bulk::describe(base::Section& s) {
   s.required(material, "material", "-", "name of an elastic material");
   s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
-  s.entry(gravity, "gravity", "m/s^2", base::any(), "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
+  s.entry(gravity, "gravity", "m/s^2", base::any(),
+          "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
   s.entry(initial_stress, "initial stress", "Pa",
-          "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of x, y, z");
-  s.section(lithostatic_stress, "lithostatic stress", "initial stress of rock at rest under gravity along the last coordinate");
+          "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values "
+          "or expressions of x, y, z");
+  s.section(lithostatic_stress, "lithostatic stress",
+            "initial stress of rock at rest under gravity along the last coordinate");
   if (s.complete() && lithostatic_stress && !initial_stress.empty())
     s.fail("give either \"initial stress\" or \"lithostatic stress\"");
-  if (s.complete() && lithostatic_stress && gravity.empty()) s.fail("gravity", "missing; \"lithostatic stress\" needs it");
+  if (s.complete() && lithostatic_stress && gravity.size() != 2 && gravity.size() != 3)
+    s.fail("gravity", "must have 2 or 3 components for a \"lithostatic stress\"");
 }
 
 void Lithostatic::describe(base::Section& s) {
@@ -145,21 +161,23 @@ void BoundaryCondition::describe(base::Section& s) {
   s.required(boundary, "boundary", "-", "name of a boundary of the mesh: west, east, south, north, bottom, top");
   s.entry(region, "region", "-", "name of a region: the condition holds only on faces of its cells");
   s.entry(displacement, "displacement", "m", "per direction a value, an expression of x, y, z, t, or free");
-  s.entry(traction, "traction", "Pa", "force per area on the body, per direction a value or an expression of x, y, z, t");
+  s.entry(traction, "traction", "Pa",
+          "force per area on the body, per direction a value or an expression of x, y, z, t");
   if (s.complete() && displacement.empty() == traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
 }
 
 void Time::describe(base::Section& s) {
   s.entry(start, "start", "s", "time of the initial state");
   s.entry(end, "end", "s", "end of the last step");
-  s.entry(steps, "steps", "-", base::at_least(1), "number of equal steps from start to end");
+  s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end");
   s.entry(schedule, "schedule", "s", "ends of all steps, increasing; replaces end and steps");
   stepping.describe(s);
   if (!s.complete()) return;
   Real last = start;
   for (Real t : times()) {
     if (!(t > last)) {
-      s.fail(schedule ? "schedule" : "end", fmt::format("is {} after {}; times must increase, from \"start\" on", t, last));
+      s.fail(schedule ? "schedule" : "end",
+             fmt::format("is {} after {}; times must increase, from \"start\" on", t, last));
       break;
     }
     last = t;
@@ -179,81 +197,114 @@ void Output::describe(base::Section& s) {
   s.entry(every, "every", "-", base::at_least(1), "write them after every so many steps, and after the last");
 }
 
+void MeshFile::Fracture::describe(base::Section& s) {
+  s.entry(reference_normal, "reference normal", "-",
+          "the normal, from side - to side +, has a positive product with this vector");
+  s.entry(swap_sides, "swap sides", "-", "exchange side - and side +");
+}
+
+void MeshFile::describe(base::Section& s) {
+  s.required(path, "path", "-", "file of gmsh, version 2.2 or 4.1; relative to the scene's file");
+  s.named_sections(fractures, "fractures", "the physical groups that are fractures, by their names");
+}
+
 void Scene::describe(base::Section& s) {
-  s.section(mesh, "Mesh", "a box with plane fractures");
+  s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
+  if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
   s.named_sections(materials, "Materials", "rock and joints, by names of your choice");
   s.section(bulk, "Bulk", "the rock");
   s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
-  s.named_sections(boundary_conditions, "Boundary conditions", "by names of your choice; boundaries without one are free of traction");
+  s.named_sections(boundary_conditions, "Boundary conditions",
+                   "by names of your choice; boundaries without one are free of traction");
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");
-  if (s.complete()) check_names(s);
+  if (!s.complete() || mesh_file) return;
+  MeshNames names{static_cast<int>(mesh.lower_corner.size()), names_of(mesh.regions), {}, names_of(mesh.fractures)};
+  names.regions.push_back("bulk");
+  names.boundaries = {"west", "east", "south", "north"};
+  if (names.dim == 3) names.boundaries.insert(names.boundaries.end(), {"bottom", "top"});
+  for (const auto& misfit : misfits(names)) s.fail(misfit);
 }
 
-void Scene::check_names(base::Section& s) const {
+std::vector<std::string> Scene::misfits(const MeshNames& names) const {
+  std::vector<std::string> errors;
   const auto known = [&](const std::string& place, const std::string& name, const std::vector<std::string>& allowed) {
     for (const auto& a : allowed)
       if (a == name) return true;
-    s.fail(fmt::format("{}: is \"{}\", must be one of {}.{}", place, name, base::quoted_list(allowed),
-                       base::did_you_mean(name, allowed)));
+    errors.push_back(fmt::format("{}: is \"{}\", must be one of {}.{}", place, name, base::quoted_list(allowed),
+                                 base::did_you_mean(name, allowed)));
     return false;
   };
   const auto is_material = [&](const std::string& place, const std::string& name, const std::string& type) {
     std::vector<std::string> allowed;
     for (const auto& [key, material] : materials)
       if (material.type == type) allowed.push_back(key);
-    known(place + " > \"material\"", name, allowed);
+    return known(place + " > \"material\"", name, allowed);
   };
-  const auto has_length = [&](const std::string& place, std::size_t n) {
-    if (n != 0 && n != static_cast<std::size_t>(dim()))
-      s.fail(fmt::format("{}: has {} values, must have {}, one per direction", place, n, dim()));
+  const auto has_length = [&](const std::string& place, std::size_t n, std::size_t wanted) {
+    if (n != 0 && n != wanted) errors.push_back(fmt::format("{}: has {} values, must have {}", place, n, wanted));
   };
-  is_material("Bulk", bulk.material, "elastic");
-  has_length("Bulk > \"body force\"", bulk.body_force.size());
-  has_length("Bulk > \"gravity\"", bulk.gravity.size());
-  const std::size_t n_stresses = dim() == 2 ? 4 : 6;
-  if (!bulk.initial_stress.empty() && bulk.initial_stress.size() != n_stresses)
-    s.fail(fmt::format("Bulk > \"initial stress\": has {} values, must have {}", bulk.initial_stress.size(), n_stresses));
-  if (bulk.lithostatic_stress && bulk.gravity.size() == static_cast<std::size_t>(dim())) {
-    if (!material_of("bulk").density.is_constant())
-      s.fail("Bulk > lithostatic stress: needs a density that is a number; give an \"initial stress\" instead");
-    for (int i = 0; i < dim() - 1; ++i)
-      if (bulk.gravity[i] != 0) s.fail("Bulk > lithostatic stress: needs gravity along the last coordinate only");
-  }
-  auto region_names = names_of(mesh.regions);
-  region_names.push_back("bulk");
+  const std::size_t dim = names.dim;
+  const bool has_rock = is_material("Bulk", bulk.material, "elastic");
+  has_length("Bulk > \"body force\"", bulk.body_force.size(), dim);
+  has_length("Bulk > \"gravity\"", bulk.gravity.size(), dim);
+  has_length("Bulk > \"initial stress\"", bulk.initial_stress.size(), dim == 2 ? 4 : 6);
   for (const auto& [name, region] : regions)
-    if (known(fmt::format("Regions > \"{}\"", name), name, region_names)) is_material("Regions > " + name, region.material, "elastic");
-  for (const auto& [name, fracture] : fractures) {
-    if (known(fmt::format("Fractures > \"{}\"", name), name, names_of(mesh.fractures)))
+    if (known(fmt::format("Regions > \"{}\"", name), name, names.regions))
+      is_material("Regions > " + name, region.material, "elastic");
+  for (const auto& [name, fracture] : fractures)
+    if (known(fmt::format("Fractures > \"{}\"", name), name, names.fractures))
       is_material("Fractures > " + name, fracture.material, "joint");
-  }
-  for (const auto& [name, fracture] : mesh.fractures)
-    if (!fractures.count(name)) s.fail(fmt::format("Fractures: \"{}\" is in the mesh and has no section here", name));
-  std::vector<std::string> boundaries = {"west", "east", "south", "north"};
-  if (dim() == 3) boundaries.insert(boundaries.end(), {"bottom", "top"});
+  for (const auto& name : names.fractures)
+    if (!fractures.count(name))
+      errors.push_back(fmt::format("Fractures: \"{}\" is in the mesh and has no section here", name));
   bool held = false;
   for (const auto& [name, condition] : boundary_conditions) {
     const std::string place = "Boundary conditions > " + name;
-    known(place + " > \"boundary\"", condition.boundary, boundaries);
-    if (condition.region) known(place + " > \"region\"", *condition.region, region_names);
-    has_length(place + " > \"displacement\"", condition.displacement.size());
-    has_length(place + " > \"traction\"", condition.traction.size());
+    known(place + " > \"boundary\"", condition.boundary, names.boundaries);
+    if (condition.region) known(place + " > \"region\"", *condition.region, names.regions);
+    has_length(place + " > \"displacement\"", condition.displacement.size(), dim);
+    has_length(place + " > \"traction\"", condition.traction.size(), dim);
     for (const auto& value : condition.displacement) held = held || value.text() != "free";
   }
-  if (!held) s.fail("Boundary conditions: none prescribes a displacement; nothing holds the rock in place");
+  if (!held) errors.push_back("Boundary conditions: none prescribes a displacement; nothing holds the rock in place");
+  if (bulk.lithostatic_stress && has_rock && bulk.gravity.size() == dim) {
+    if (!material_of("bulk").density.is_constant())
+      errors.push_back(
+          "Bulk > lithostatic stress: needs a density that is a number; give an \"initial stress\" instead");
+    for (std::size_t i = 0; i + 1 < dim; ++i)
+      if (bulk.gravity[i] != 0)
+        errors.push_back("Bulk > lithostatic stress: needs gravity along the last coordinate only");
+  }
+  return errors;
 }
 
-std::vector<base::Expression> Scene::lithostatic() const {
-  const int up = dim() - 1;
-  const Real weight = -material_of("bulk").density({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
-  std::vector<base::Expression> stress(dim() == 2 ? 4 : 6, base::Expression(0));
+mesh::GlobalMesh Scene::make_mesh() const {
+  if (!mesh_file) return mesh::make_box(mesh);
+  mesh::MshOptions options;
+  for (const auto& [name, fracture] : mesh_file->fractures) {
+    auto& orientation = options.fractures[name];
+    orientation.swap_sides = fracture.swap_sides;
+    if (!fracture.reference_normal) continue;
+    orientation.reference.emplace();
+    std::copy_n(fracture.reference_normal->begin(), std::min<std::size_t>(3, fracture.reference_normal->size()),
+                orientation.reference->begin());
+  }
+  return mesh::read_msh(mesh_file->path, options);
+}
+
+std::vector<base::Expression> Scene::lithostatic(int dim) const {
+  const int up = dim - 1;
+  const Real weight =
+      -material_of("bulk").density({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
+  std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
     const Real factor = weight * (i == up ? 1 : bulk.lithostatic_stress->horizontal_ratio);
-    stress[i] = base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
+    stress[i] =
+        base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
   }
   return stress;
 }
@@ -267,16 +318,20 @@ Scene read_scene(const Comm& comm, const std::string& path, const std::vector<st
   auto list = base::read_xml(comm, path, "Sprekk");
   for (const auto& text : overrides) base::apply_override(list, text);
   Scene scene = base::read<Scene>(list, path, "Sprekk");
+  if (scene.mesh_file)
+    scene.mesh_file->path = (std::filesystem::path(path).parent_path() / scene.mesh_file->path).string();
   const auto tables = std::make_shared<const base::Tables>(scene.tables);
   const auto compile = [&](std::vector<base::Expression>& values) {
     for (auto& value : values)
       if (value.text() != "free") value.compile(tables);
   };
-  if (scene.bulk.lithostatic_stress) scene.bulk.initial_stress = scene.lithostatic();
+  if (scene.bulk.lithostatic_stress)
+    scene.bulk.initial_stress = scene.lithostatic(static_cast<int>(scene.bulk.gravity.size()));
   compile(scene.bulk.body_force);
   compile(scene.bulk.initial_stress);
   for (const auto& component : scene.bulk.initial_stress)
-    SPREKK_CHECK(component.constant_in_time(), "{}: Sprekk > Bulk > \"initial stress\": is \"{}\"; it may depend on x, y, z, not on t", path,
+    SPREKK_CHECK(component.constant_in_time(),
+                 "{}: Sprekk > Bulk > \"initial stress\": is \"{}\"; it may depend on x, y, z, not on t", path,
                  component.text());
   for (auto& [name, material] : scene.materials) material.compile(tables);
   for (auto& [name, condition] : scene.boundary_conditions) {

@@ -6,6 +6,7 @@
 #include "base/table.hpp"
 #include "laws/elasticity.hpp"
 #include "mesh/box.hpp"
+#include "mesh/mesh.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
@@ -64,6 +65,18 @@ struct Bulk {
   void describe(base::Section& section);
 };
 
+/// A mesh from a file of gmsh instead of a box.
+struct MeshFile {
+  struct Fracture {
+    std::optional<std::vector<Real>> reference_normal;
+    bool swap_sides = false;
+    void describe(base::Section& section);
+  };
+  std::string path;                           ///< relative to the scene's file
+  std::map<std::string, Fracture> fractures;  ///< the physical groups that are fractures
+  void describe(base::Section& section);
+};
+
 struct Region {
   std::string material;
   void describe(base::Section& section);
@@ -76,7 +89,7 @@ struct Fracture {
 
 struct BoundaryCondition {
   std::string boundary;
-  std::optional<std::string> region;  ///< only where the boundary touches this region
+  std::optional<std::string> region;           ///< only where the boundary touches this region
   std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
   std::vector<base::Expression> traction;
   void describe(base::Section& section);
@@ -97,8 +110,15 @@ struct Output {
   void describe(base::Section& section);
 };
 
+/// What a scene must fit to.
+struct MeshNames {
+  int dim;
+  std::vector<std::string> regions, boundaries, fractures;
+};
+
 struct Scene {
   mesh::BoxMesh mesh;
+  std::optional<MeshFile> mesh_file;  ///< used instead of `mesh` if it is there
   std::map<std::string, Material> materials;
   Bulk bulk;
   std::map<std::string, Region> regions;
@@ -110,12 +130,13 @@ struct Scene {
   Output output;
 
   void describe(base::Section& section);
-  int dim() const { return static_cast<int>(mesh.lower_corner.size()); }
+  /// The global mesh of either kind. Not collective.
+  mesh::GlobalMesh make_mesh() const;
   const Material& material_of(const std::string& region) const;
-  std::vector<base::Expression> lithostatic() const;  ///< components of the lithostatic stress
+  std::vector<base::Expression> lithostatic(int dim) const;  ///< components of the lithostatic stress
 
- private:
-  void check_names(base::Section& section) const;
+  /// What names and lengths do not fit to a mesh, a line each; empty if nothing.
+  std::vector<std::string> misfits(const MeshNames& names) const;
 };
 
 /// Reads a scene file, applies overrides "Path.To.Entry=value", checks everything that can be checked without running,

@@ -78,7 +78,8 @@ struct ElasticCell {
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b)
           for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += volume * elasticity.stiffness(g[a], g[b], i, j);
+            for (int j = 0; j < dim; ++j)
+              K[a * dim + i][b * dim + j] += volume * elasticity.stiffness(g[a], g[b], i, j);
     }
   }
 };
@@ -95,7 +96,8 @@ class BulkMomentum final : public assembly::Module {
 
   assembly::Declaration declare() const override {
     assembly::Declaration d;
-    assembly::Unknown u{{"displacement", fields::Entity::node, dim, "m"}, assembly::Quantity::length, assembly::Quantity::force};
+    assembly::Unknown u{
+        {"displacement", fields::Entity::node, dim, "m"}, assembly::Quantity::length, assembly::Quantity::force};
     u.rigid_body_modes = true;
     d.unknowns = {u};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
@@ -128,7 +130,9 @@ class BulkMomentum final : public assembly::Module {
         "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= load(i); });
   }
 
-  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { cells_->add_jacobian(*op_, state, J); }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    cells_->add_jacobian(*op_, state, J);
+  }
 
   bool constant_load() const override {
     const auto constant = [](const base::Expression& e) { return e.constant_in_time(); };
@@ -155,9 +159,11 @@ class BulkMomentum final : public assembly::Module {
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
         if (holds(traction, face))
-          assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto&, Real, const auto& x) {
-            for (const auto& e : traction.value) largest = std::max(largest, std::abs(e(x, t)));
-          });
+          assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face,
+                                               [&](const auto&, Real, const auto& x) {
+                                                 for (const auto& e : traction.value)
+                                                   largest = std::max(largest, std::abs(e(x, t)));
+                                               });
     if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return largest;
     Real force = 0;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
@@ -196,7 +202,8 @@ class BulkMomentum final : public assembly::Module {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }
   bool holds(const BoundaryTraction& traction, const mesh::Mesh::BoundaryFace& face) const {
-    return face.boundary == traction.boundary && (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
+    return face.boundary == traction.boundary &&
+           (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
   }
   int law_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
@@ -213,7 +220,8 @@ class BulkMomentum final : public assembly::Module {
 
   Real largest_initial_stress(const std::array<Real, 3>& x) const {
     Real largest = 0;
-    for (const auto& component : parameters_.initial_stress.value) largest = std::max(largest, std::abs(component(x, 0)));
+    for (const auto& component : parameters_.initial_stress.value)
+      largest = std::max(largest, std::abs(component(x, 0)));
     return largest;
   }
 
@@ -244,7 +252,8 @@ class BulkMomentum final : public assembly::Module {
         for (int a = 0; a < n; ++a) {
           point.gradient(dN[a], g);
           for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j) add(load, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, -volume * sigma[i][j] * g[j]);
+            for (int j = 0; j < dim; ++j)
+              add(load, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, -volume * sigma[i][j] * g[j]);
         }
       });
     }
@@ -255,13 +264,14 @@ class BulkMomentum final : public assembly::Module {
     for (const auto& face : mesh_->boundary_faces) {
       if (!holds(traction, face)) continue;
       const auto corners = mesh::face_nodes(shape)[face.local_face];
-      assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
-        for (int i = 0; i < dim; ++i) {
-          const Real force = area * traction.value[i](x, t);
-          for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-            add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
-        }
-      });
+      assembly::for_each_face_point<shape>(
+          *mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
+            for (int i = 0; i < dim; ++i) {
+              const Real force = area * traction.value[i](x, t);
+              for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+                add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
+            }
+          });
     }
   }
 

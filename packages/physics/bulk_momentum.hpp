@@ -27,8 +27,10 @@ struct BulkMomentumParameters {
 };
 
 /// Declares the unknown "displacement" (nodes, m) and adds to its rows, with test function v,
-///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v                     Wollmann (2024), (4), (5)
-/// Outputs: displacement (nodes), stress of the nodal displacement, with sigma_0, at cell centres (XX, YY, ZZ, XY, YZ, XZ; Pa).
+///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v                     Wollmann (2024),
+///   (4), (5)
+/// Outputs: displacement (nodes), stress of the nodal displacement, with sigma_0, at cell centres (XX, YY, ZZ, XY, YZ,
+/// XZ; Pa).
 std::unique_ptr<assembly::Module> make_bulk_momentum(mesh::Shape shape, BulkMomentumParameters parameters);
 
 }  // namespace sprekk::physics

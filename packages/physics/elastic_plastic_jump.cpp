@@ -122,16 +122,16 @@ class ElasticPlasticJump final : public assembly::Module {
 
   assembly::Declaration declare() const override {
     assembly::Declaration d;
-    assembly::Unknown traction{{"traction", fields::Entity::fracture_face, dim, "Pa"},
-                               assembly::Quantity::stress,
-                               assembly::Quantity::stress};
+    assembly::Unknown traction{
+        {"traction", fields::Entity::fracture_face, dim, "Pa"}, assembly::Quantity::stress, assembly::Quantity::stress};
     traction.local_group = "fracture face";
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
-      for (const char* frame : {" local", ""}) d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
+      for (const char* frame : {" local", ""})
+        d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
     for (const char* name : {"opening", "slip", "aperture"}) d.outputs.push_back({name, "m", face, 1});
     for (const char* name : {"state", "slip tendency"}) d.outputs.push_back({name, "-", face, 1});
     return d;
@@ -145,7 +145,8 @@ class ElasticPlasticJump final : public assembly::Module {
     faces_->add_jacobian(at(state), state, J);
   }
   void commit(assembly::State& state) const override;
-  void measure(const assembly::State& state, const assembly::Scales& scales, std::vector<fields::Measure>& measures) const override;
+  void measure(const assembly::State& state, const assembly::Scales& scales,
+               std::vector<fields::Measure>& measures) const override;
   void merit_weights(const assembly::Rows& weights) const override {
     Kokkos::deep_copy(weights[fields_[2]], merit_weight_);
   }
@@ -166,7 +167,8 @@ class ElasticPlasticJump final : public assembly::Module {
   void for_each_face(const assembly::State& state, const Visit& visit) const {
     const Op op = at(state);
     View<Point*> points("points", mesh_->n_owned_fracture_faces);
-    faces_->for_each(op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
+    faces_->for_each(
+        op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
@@ -191,7 +193,8 @@ class ElasticPlasticJump final : public assembly::Module {
 template <Shape shape>
 std::vector<Real> ElasticPlasticJump<shape>::fracture_lengths() const {
   const std::size_t n_fractures = parameters_.joints.size();
-  std::vector<Real> here(n_fractures * 2 * dim, -std::numeric_limits<Real>::max()), all(here.size()), lengths(n_fractures, 0);
+  std::vector<Real> here(n_fractures * 2 * dim, -std::numeric_limits<Real>::max()), all(here.size()),
+      lengths(n_fractures, 0);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];
     for (int k = 0; k < n; ++k)
@@ -265,8 +268,8 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
     for (int side : {mesh::minus, mesh::plus}) {
       const Real E = parameters_.elasticity[elasticity_of(face.cell[side])].youngs_modulus();
       modulus = side == mesh::minus ? E : std::min(modulus, E);
-      assembly::for_each_cell_point<shape>(*mesh_, face.cell[side],
-                                           [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
+      assembly::for_each_cell_point<shape>(
+          *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
     augmentation_h(f) = laws::augmentation(law_h(joint_of(f)), modulus / lengths[face.fracture]);
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
@@ -284,18 +287,19 @@ template <Shape shape>
 void ElasticPlasticJump<shape>::commit(assembly::State& state) const {
   const Op op = at(state);
   const auto p = state.history[0], slid = state.history[1];
-  faces_->for_each(op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
-    const Point point = op.point(f, x);
-    slid(f, 0) = point.state == ContactState::slip;
-    if (point.state == ContactState::stick) return;
-    Real elastic[dim], plastic[dim];
-    laws::split_jump<dim>(op.law(op.number(f)), point.state, point.w, point.traction, elastic, plastic);
-    for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
-  });
+  faces_->for_each(
+      op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
+        const Point point = op.point(f, x);
+        slid(f, 0) = point.state == ContactState::slip;
+        if (point.state == ContactState::stick) return;
+        Real elastic[dim], plastic[dim];
+        laws::split_jump<dim>(op.law(op.number(f)), point.state, point.w, point.traction, elastic, plastic);
+        for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
+      });
 }
 
-/// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t where
-/// they stick or slip are held against the displacement scale.
+/// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t
+/// where they stick or slip are held against the displacement scale.
 template <Shape shape>
 void ElasticPlasticJump<shape>::measure(const assembly::State& state, const assembly::Scales& scales,
                                         std::vector<fields::Measure>& measures) const {
@@ -305,7 +309,8 @@ void ElasticPlasticJump<shape>::measure(const assembly::State& state, const asse
     if (point.state == ContactState::open) return;
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
-    const Real size = std::max(std::abs(point.R[0]) / augmentation(f).normal, std::sqrt(square) / augmentation(f).tangential);
+    const Real size =
+        std::max(std::abs(point.R[0]) / augmentation(f).normal, std::sqrt(square) / augmentation(f).tangential);
     if (!(size <= largest)) largest = size;
   });
   measures.push_back({"split of the jump", largest / scales.length});
@@ -315,7 +320,8 @@ template <Shape shape>
 std::size_t ElasticPlasticJump<shape>::state_hash(const assembly::State& state) const {
   std::size_t sum = 0;
   for_each_face(state, [&](LocalIndex f, const Point& point) {
-    std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(point.state) + 1;
+    std::size_t h =
+        static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(point.state) + 1;
     for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
       h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
       h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
@@ -359,7 +365,9 @@ void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector
     fields[9].values.push_back(laws::norm(tangential));
     fields[10].values.push_back(joint.initial_aperture + point.w[0]);
     const bool open = point.state == ContactState::open;
-    fields[11].values.push_back(static_cast<Real>(open ? point.state : slid(f, 0) ? ContactState::slip : ContactState::stick));
+    fields[11].values.push_back(static_cast<Real>(open         ? point.state
+                                                  : slid(f, 0) ? ContactState::slip
+                                                               : ContactState::stick));
     fields[12].values.push_back(open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
   });
 }

@@ -61,7 +61,8 @@ struct BalancedSide {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[Columns::size], Real (&J)[Rows::size][Columns::size]) const {
+  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[Columns::size],
+                                       Real (&J)[Rows::size][Columns::size]) const {
     for (auto& row : J)
       for (Real& value : row) value = 0;
     for (int k = 0; k < dim; ++k) {
@@ -81,7 +82,8 @@ class InterfaceTractionBalance final : public assembly::Module {
   using Op = BalancedSide<shape>;
   static constexpr int dim = Op::dim, n = Op::n;
 
-  explicit InterfaceTractionBalance(InterfaceTractionBalanceParameters parameters) : parameters_(std::move(parameters)) {}
+  explicit InterfaceTractionBalance(InterfaceTractionBalanceParameters parameters)
+      : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "interface traction balance"; }
 
@@ -100,15 +102,20 @@ class InterfaceTractionBalance final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const int u = context.field("displacement"), beta = context.field("side bubble"), lambda = context.field("traction");
+    const int u = context.field("displacement"), beta = context.field("side bubble"),
+              lambda = context.field("traction");
     using Assembler = assembly::Assembler<Op>;
     sides_ = std::make_unique<Assembler>(context, Loop::fracture_sides, std::vector<int>{u, beta},
                                          std::vector<int>{u, beta, lambda}, Assembler::Positions::once);
     build_operator();
   }
 
-  void residual(const assembly::State& state, const assembly::Rows& r) const override { sides_->add_residual(*op_, state, r); }
-  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { sides_->add_jacobian(*op_, state, J); }
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    sides_->add_residual(*op_, state, r);
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    sides_->add_jacobian(*op_, state, J);
+  }
 
   bool constant_load() const override { return parameters_.body_force.constant_in_time(); }
 
@@ -123,13 +130,15 @@ class InterfaceTractionBalance final : public assembly::Module {
     for (std::size_t s = 0; s < sides.size(); ++s) {
       const auto& face = mesh_->fracture_faces[sides[s][0]];
       const int local_face = face.local_face[sides[s][1]];
-      assembly::for_each_cell_point<shape>(*mesh_, face.cell[sides[s][1]], [&](const Real(&xi)[dim], Real volume, const auto& x) {
-        const Real b = Op::Cell::bubble(local_face, xi, db);
-        for (int i = 0; i < dim; ++i)
-          force(s, i) += volume * b * parameters_.body_force(i, face.cell[sides[s][1]], x, t);
-      });
+      assembly::for_each_cell_point<shape>(
+          *mesh_, face.cell[sides[s][1]], [&](const Real(&xi)[dim], Real volume, const auto& x) {
+            const Real b = Op::Cell::bubble(local_face, xi, db);
+            for (int i = 0; i < dim; ++i)
+              force(s, i) += volume * b * parameters_.body_force(i, face.cell[sides[s][1]], x, t);
+          });
       if (stressed)
-        add_initial_stress(face, sides[s][1], Kokkos::subview(force, s, Kokkos::ALL), Kokkos::subview(nodal, s, Kokkos::ALL));
+        add_initial_stress(face, sides[s][1], Kokkos::subview(force, s, Kokkos::ALL),
+                           Kokkos::subview(nodal, s, Kokkos::ALL));
     }
     Kokkos::deep_copy(op_->force, force);
     Kokkos::deep_copy(op_->nodal, nodal);
@@ -179,7 +188,8 @@ class InterfaceTractionBalance final : public assembly::Module {
       const int side = sides[s][1], local_face = face.local_face[side];
       const LocalIndex cell = face.cell[side];
       const Real signed_area = side == mesh::plus ? face.area : -face.area;
-      stiffness(s) = n_faces[cell] * integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
+      stiffness(s) =
+          n_faces[cell] * integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
       bubble(s) = signed_area * Op::Cell::bubble_mean;
       const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
@@ -198,8 +208,9 @@ class InterfaceTractionBalance final : public assembly::Module {
   /// eigenvalue of the bubble's own stiffness B.
   template <class Coupling>
   Real integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
-    const auto& law = parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
-                                                                                    : parameters_.elasticity_of_cell[cell]];
+    const auto& law =
+        parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
+                                                                      : parameters_.elasticity_of_cell[cell]];
     Real X[n][dim], dN[n][dim], db[dim], B[dim * dim] = {};
     assembly::gather_host<shape>(*mesh_, cell, X);
     assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto&) {
@@ -219,7 +230,8 @@ class InterfaceTractionBalance final : public assembly::Module {
     Real eigenvalues[dim], work[16];
     int info = 0;
     Teuchos::LAPACK<int, Real>().SYEV('N', 'U', dim, B, dim, eigenvalues, work, 16, &info);
-    SPREKK_CHECK(info == 0, "fracture face of cell {}: the bubble's stiffness has no eigenvalues", mesh_->cell_id[cell]);
+    SPREKK_CHECK(info == 0, "fracture face of cell {}: the bubble's stiffness has no eigenvalues",
+                 mesh_->cell_id[cell]);
     return eigenvalues[dim - 1];
   }
 
@@ -232,7 +244,8 @@ class InterfaceTractionBalance final : public assembly::Module {
 
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_interface_traction_balance(Shape shape, InterfaceTractionBalanceParameters parameters) {
+std::unique_ptr<assembly::Module> make_interface_traction_balance(Shape shape,
+                                                                  InterfaceTractionBalanceParameters parameters) {
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     return std::make_unique<InterfaceTractionBalance<s()>>(std::move(parameters));
   });

@@ -63,11 +63,12 @@ std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mes
                                           const mesh::Mesh::FractureFace& face, int side) {
   std::array<Real, 3> sum{};
   Real total = 0;
-  assembly::for_each_face_point<shape>(mesh, face.cell[side], face.local_face[side], [&](const auto&, Real area, const auto& x) {
-    const auto traction = stress.template traction<mesh::dimension(shape)>(x, face.frame[0]);
-    for (int i = 0; i < 3; ++i) sum[i] += area * traction[i];
-    total += area;
-  });
+  assembly::for_each_face_point<shape>(
+      mesh, face.cell[side], face.local_face[side], [&](const auto&, Real area, const auto& x) {
+        const auto traction = stress.template traction<mesh::dimension(shape)>(x, face.frame[0]);
+        for (int i = 0; i < 3; ++i) sum[i] += area * traction[i];
+        total += area;
+      });
   for (auto& component : sum) component /= total;
   return sum;
 }

@@ -17,8 +17,9 @@ using Teuchos::ParameterList;
 constexpr int coarse_size = 1000;
 
 /// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
-/// wrong on several. The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would
-/// not fit when contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
+/// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
+/// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
+/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
 ParameterList multigrid_defaults(int n_components, int n_ranks) {
   ParameterList list("MueLu");
   list.set("verbosity", "none");
@@ -29,6 +30,7 @@ ParameterList multigrid_defaults(int n_components, int n_ranks) {
   list.set("reuse: type", "tP");
   list.set("aggregation: drop tol", 1e-12);
   list.set("sa: use filtered matrix", true);
+  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
   list.set("smoother: type", "CHEBYSHEV");
   list.sublist("smoother: params").set("chebyshev: degree", 2).set("chebyshev: ratio eigenvalue", 7.0);
   if (n_ranks > 1) {
@@ -151,8 +153,8 @@ class IterativeSolver : public LinearSolver {
   const ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would make
-  /// the coarse matrix singular, and its direct solver fail on the one rank that has it.
+  /// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would
+  /// make the coarse matrix singular, and its direct solver fail on the one rank that has it.
   static RCP<CrsMatrix> raised(const CrsMatrix& matrix) {
     const auto copy = rcp(new CrsMatrix(matrix, Teuchos::Copy));
     const auto local = copy->getLocalMatrixHost();

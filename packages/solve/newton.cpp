@@ -88,15 +88,16 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   return list;
 }
 
-/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an entry
-/// of `given` that it has not.
+/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an
+/// entry of `given` that it has not.
 void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path) {
   for (const auto& item : given) {
     const auto& entry = read.getEntry(item.first);
     if (entry.isList())
       refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first);
     else
-      SPREKK_CHECK(entry.isUsed(), "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
+      SPREKK_CHECK(entry.isUsed(),
+                   "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
                    item.first);
   }
 }

@@ -27,7 +27,7 @@ model::Scene make_scene(const std::string& cell, int order, const Law& law) {
   model::Scene scene;
   scene.mesh = mesh::testing::crossed(cell);
   scene.mesh.order = order;
-  const int dim = scene.dim();
+  const int dim = static_cast<int>(scene.mesh.lower_corner.size());
   auto& rock = scene.materials["rock"];
   rock.type = "elastic";
   rock.E = 20e9;

@@ -25,7 +25,8 @@ std::vector<GlobalField> gathered(model::Model& model) {
     std::vector<Real> here(n * field.n_components, 0), sum(here.size());
     for (LocalIndex e = 0; e < n_owned; ++e) {
       const GlobalIndex id = nodes ? mesh.node_id[e] : cells ? mesh.cell_id[e] : mesh.fracture_faces[e].id;
-      std::copy_n(field.values.begin() + e * field.n_components, field.n_components, here.begin() + id * field.n_components);
+      std::copy_n(field.values.begin() + e * field.n_components, field.n_components,
+                  here.begin() + id * field.n_components);
     }
     Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), sum.data());
     all.push_back({field.name, sum});
@@ -33,15 +34,17 @@ std::vector<GlobalField> gathered(model::Model& model) {
   return all;
 }
 
-/// Lengths to 1e-10 of the prescribed displacement u, stresses to 1e-10 of the stress E u/L that it makes in a body of size
-/// L, contact states exactly. (The slip tendency follows from the traction, which it divides by a bound that may be small.)
+/// Lengths to 1e-10 of the prescribed displacement u, stresses to 1e-10 of the stress E u/L that it makes in a body of
+/// size L, contact states exactly. (The slip tendency follows from the traction, which it divides by a bound that may
+/// be small.)
 void expect_same(const assembly::Scales& scales, const std::vector<GlobalField>& a, const std::vector<GlobalField>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     ASSERT_EQ(a[k].name, b[k].name);
     ASSERT_EQ(a[k].values.size(), b[k].values.size());
     const std::string& name = a[k].name;
-    const bool length = name != "stress" && name.find("traction") == name.npos && name != "state" && name != "slip tendency";
+    const bool length =
+        name != "stress" && name.find("traction") == name.npos && name != "state" && name != "slip tendency";
     if (name == "slip tendency") continue;
     const Real scale = name == "state" ? 0 : length ? scales.length : scales.stress;
     for (std::size_t i = 0; i < a[k].values.size(); ++i)
@@ -77,7 +80,8 @@ Counts expect_same_answer(model::Scene scene) {
 TEST(SameAnswer, CrossingFractures2D) {
   for (const auto& cell : cells_of(2)) {
     SCOPED_TRACE(cell);
-    const auto counts = expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.cell=" + cell, "Mesh.rotation=30"}));
+    const auto counts =
+        expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.cell=" + cell, "Mesh.rotation=30"}));
     EXPECT_GT(counts.open, 0);
     EXPECT_GT(counts.stick, 0);
     EXPECT_GT(counts.slip, 0);
@@ -108,16 +112,18 @@ TEST(SameAnswer, TheSeedsScenes) {
 }
 
 TEST(SameAnswer, IterativeSolver) {
-  expect_same_answer(read_scene("verification/crossing_3d.xml", {"Solver.Linear solver.type=iterative", "Time.schedule={1}"}));
+  expect_same_answer(
+      read_scene("verification/crossing_3d.xml", {"Solver.Linear solver.type=iterative", "Time.schedule={1}"}));
 }
 
 /// A fracture in one corner: its faces have one owner.
 TEST(SameAnswer, RanksWithoutFractureFaces) {
   const auto comm = Tpetra::getDefaultComm();
   if (comm->getSize() == 1) GTEST_SKIP() << "needs more than one rank";
-  const auto scene = read_scene("verification/crossing_2d.xml",
-                                {"Mesh.fractures.flat.lower corner={0.875, 0.875}", "Mesh.fractures.flat.upper corner={1, 0.875}",
-                                 "Mesh.fractures.steep.lower corner={0.875, 0.75}", "Mesh.fractures.steep.upper corner={0.875, 1}"});
+  const auto scene =
+      read_scene("verification/crossing_2d.xml",
+                 {"Mesh.fractures.flat.lower corner={0.875, 0.875}", "Mesh.fractures.flat.upper corner={1, 0.875}",
+                  "Mesh.fractures.steep.lower corner={0.875, 0.75}", "Mesh.fractures.steep.upper corner={0.875, 1}"});
   const model::Model model(scene, comm);
   ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_fracture_faces == 0));
   expect_same_answer(scene);
@@ -130,7 +136,8 @@ TEST(SameAnswer, RanksWithoutCells) {
   const model::Model model(scene, comm);
   ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_cells == 0));
   for (const char* d : {"{1, -1}", "{1, 1}"})
-    expect_same_answer(read_scene("seed/push_2d.xml", {"Mesh.cells={1, 2}", std::string("Boundary conditions.moved.displacement=") + d}));
+    expect_same_answer(read_scene("seed/push_2d.xml",
+                                  {"Mesh.cells={1, 2}", std::string("Boundary conditions.moved.displacement=") + d}));
 }
 
 TEST(SameAnswer, RanksWithoutCellsAndNoFracture) {
@@ -160,7 +167,8 @@ TEST(TwoModels, OnTwoCommunicators) {
   const bool first = world->getRank() == 0;
   const RCP<const Comm> part = world->split(first ? 0 : 1, world->getRank());
   const std::string tight = "Solver.tolerance=1e-13";
-  const auto scene_2d = read_scene("verification/crossing_2d.xml", {tight}), scene_3d = read_scene("verification/crossing_3d.xml", {tight});
+  const auto scene_2d = read_scene("verification/crossing_2d.xml", {tight}),
+             scene_3d = read_scene("verification/crossing_3d.xml", {tight});
   const auto& scene = first ? scene_2d : scene_3d;
   model::Model model(scene, part), single(scene, alone());
   for (Real t : scene.time.times()) {

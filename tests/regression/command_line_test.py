@@ -62,7 +62,9 @@ class Errors(ProgramTest):
 
     def test_wrong_type(self):
         self.expect_error(self.changed('type="double" value="1e-5"', 'type="string" value="soft"'),
-                          ["changed.xml", "Sprekk > Materials > joint", '"tangential stiffness"', '"soft"', "number"])
+                          ["changed.xml", "Sprekk > Materials > joint", '"tangential stiffness"', '"soft"', "unknown name"])
+        self.expect_error(self.changed('type="double" value="1"/>\n    <Parameter name="steps"', 'type="string" value="soon"/>\n    <Parameter name="steps"'),
+                          ["changed.xml", "Sprekk > Time", '"end"', '"soon"', "number"])
         self.expect_error(self.changed('type="double" value="1e-5"', 'type="double" value="soft"'),
                           ["changed.xml", '"tangential stiffness"', "soft"])
 

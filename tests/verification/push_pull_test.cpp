@@ -1,12 +1,13 @@
-// The seed's block with a fracture through it, pushed and pulled, on every cell shape, turned, renumbered, sides swapped.
+// The seed's block with a fracture through it, pushed and pulled, on every cell shape, turned, renumbered, sides
+// swapped.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-constexpr Real K_t = 1e-5;                         // Pa/m, of these scenes
+constexpr Real K_t = 1e-5;                                 // Pa/m, of these scenes
 constexpr Real G = 1e6, lambda = 1e3, P = 2 * G + lambda;  // Pa
-const Real plane_strain = P - lambda * lambda / P;  // of a free side: stress per strain in 2D, Pa
+const Real plane_strain = P - lambda * lambda / P;         // of a free side: stress per strain in 2D, Pa
 
 /// One rigid motion of the same problem.
 struct Variant {
@@ -38,8 +39,8 @@ std::vector<Variant> variants(int dim) {
 
 /// Calls visit(model, Q) for a scene in every variant with one of the cells, after its step.
 template <class Visit>
-void for_variants(const std::string& name, int dim, const std::vector<std::string>& cells, const std::vector<std::string>& overrides,
-                  const Visit& visit) {
+void for_variants(const std::string& name, int dim, const std::vector<std::string>& cells,
+                  const std::vector<std::string>& overrides, const Visit& visit) {
   for (const auto& v : variants(dim)) {
     if (std::find(cells.begin(), cells.end(), v.cell) == cells.end()) continue;
     SCOPED_TRACE(fmt::format("{} {} {} degrees about ({}) swapped {} renumbered {}", name, v.cell, v.degrees,
@@ -58,9 +59,10 @@ void for_variants(const std::string& name, int dim, const std::vector<std::strin
   }
 }
 
-void run(const std::string& name, int dim, const std::vector<std::string>& cells, const std::vector<std::string>& overrides,
-         const Expected& expected) {
-  for_variants(name, dim, cells, overrides, [&](model::Model& model, const Matrix3& Q) { expect_joint(model, expected, Q); });
+void run(const std::string& name, int dim, const std::vector<std::string>& cells,
+         const std::vector<std::string>& overrides, const Expected& expected) {
+  for_variants(name, dim, cells, overrides,
+               [&](model::Model& model, const Matrix3& Q) { expect_joint(model, expected, Q); });
 }
 
 /// Mean over the area of a component of an output. Collective.
@@ -76,16 +78,19 @@ Real mean(const model::Model& model, const assembly::OutputField& field, int com
 }
 
 TEST(Push2D, JumpIsElastic) {
-  // The sides are free, so the normal traction varies a little from mesh to mesh: it is compared where that matters, below.
-  run("seed/push_2d.xml", 2, cells_of(2), {}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {K_t, -2.001e6, 0}, 1e-9, 1e-6 * 2.001e6});
+  // The sides are free, so the normal traction varies a little from mesh to mesh: it is compared where that matters,
+  // below.
+  run("seed/push_2d.xml", 2, cells_of(2), {},
+      {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {K_t, -2.001e6, 0}, 1e-9, 1e-6 * 2.001e6});
 }
 
 TEST(Push3D, JumpIsElastic) {
-  run("seed/push_3d.xml", 3, {"hexahedron"}, {}, {{0, 1, 0}, {2, 0, 3}, {0, 0, 0}, {2 * K_t, -2.001e6, 3 * K_t}, 1e-9, 1e-6 * 2.001e6});
+  run("seed/push_3d.xml", 3, {"hexahedron"}, {},
+      {{0, 1, 0}, {2, 0, 3}, {0, 0, 0}, {2 * K_t, -2.001e6, 3 * K_t}, 1e-9, 1e-6 * 2.001e6});
 }
 
-/// The tetrahedra below and above the fracture are no mirror images, so its sides bulge differently where Poisson's ratio
-/// is not zero. Without it the state is uniform and exact.
+/// The tetrahedra below and above the fracture are no mirror images, so its sides bulge differently where Poisson's
+/// ratio is not zero. Without it the state is uniform and exact.
 TEST(Push3D, JumpIsElasticBetweenTetrahedra) {
   run("seed/push_3d.xml", 3, {"tetrahedron"}, {"Materials.rock.Lame's first parameter=0"},
       {{0, 1, 0}, {2, 0, 3}, {0, 0, 0}, {2 * K_t, -2e6, 3 * K_t}, 1e-9, 1e-9 * 2e6});
@@ -112,8 +117,9 @@ TEST(Push3D, TetrahedraDoNotSeeTheFrame) {
   });
   std::vector<Real> errors;
   for (const int n : {4, 8, 16}) {
-    model::Model model(read_scene("seed/push_3d.xml", {"Mesh.cell=tetrahedron", fmt::format("Mesh.cells={{{0}, {0}, {0}}}", n)}),
-                       Tpetra::getDefaultComm());
+    model::Model model(
+        read_scene("seed/push_3d.xml", {"Mesh.cell=tetrahedron", fmt::format("Mesh.cells={{{0}, {0}, {0}}}", n)}),
+        Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(1).converged);
     const Outputs out(model);
     errors.push_back(std::hypot(mean(model, out["elastic jump"], 0) - 2, mean(model, out["elastic jump"], 2) - 3));
@@ -132,8 +138,8 @@ TEST(Pull3D, JumpIsPlasticAndTheFaceIsOpen) {
 }
 
 /// Shear traction K_t u^e, to the accuracy of u^e; the normal traction lies between that of free and of held sides, and
-/// agrees with two independent computations, each with its own discretisation of the free sides: a finite-volume code on
-/// the same 2 x 2 cells (-2000999.55 Pa; 3D -2000999.137 Pa) and quadratic elements (-2000999.65 Pa).
+/// agrees with two independent computations, each with its own discretisation of the free sides: a finite-volume code
+/// on the same 2 x 2 cells (-2000999.55 Pa; 3D -2000999.137 Pa) and quadratic elements (-2000999.65 Pa).
 TEST(Push, Tractions) {
   for (const int dim : {2, 3}) {
     model::Model model(read_scene(dim == 2 ? "seed/push_2d.xml" : "seed/push_3d.xml"), Tpetra::getDefaultComm());
@@ -141,12 +147,17 @@ TEST(Push, Tractions) {
     const Outputs out(model);
     const auto& traction = out["traction"];
     EXPECT_NEAR(mean(model, traction, 0), dim == 2 ? K_t : 2 * K_t, 1e-9 * K_t);
-    if (dim == 3) { EXPECT_NEAR(mean(model, traction, 2), 3 * K_t, 1e-9 * K_t); }
+    if (dim == 3) {
+      EXPECT_NEAR(mean(model, traction, 2), 3 * K_t, 1e-9 * K_t);
+    }
     const Real t_n = mean(model, traction, 1);
-    for (const Real other : dim == 2 ? std::vector<Real>{-2000999.55, -2000999.65} : std::vector<Real>{-2000999.13711814})
+    for (const Real other :
+         dim == 2 ? std::vector<Real>{-2000999.55, -2000999.65} : std::vector<Real>{-2000999.13711814})
       EXPECT_NEAR(t_n, other, 1e-6 * 2.001e6);
     EXPECT_GT(t_n, -P);
-    if (dim == 2) { EXPECT_LT(t_n, -plane_strain); }
+    if (dim == 2) {
+      EXPECT_LT(t_n, -plane_strain);
+    }
   }
 }
 

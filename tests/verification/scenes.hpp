@@ -77,7 +77,8 @@ inline Matrix3 turn(model::Scene& scene, Real degrees, const Vector3& axis) {
     std::vector<base::Expression> turned;
     for (std::size_t i = 0; i < vector.size(); ++i) {
       std::string text = "0";
-      for (std::size_t j = 0; j < vector.size(); ++j) text += fmt::format(" + ({:.17g})*({})", Q[i][j], vector[j].text());
+      for (std::size_t j = 0; j < vector.size(); ++j)
+        text += fmt::format(" + ({:.17g})*({})", Q[i][j], vector[j].text());
       turned.emplace_back(text);
       turned.back().compile(tables);
     }
@@ -139,7 +140,8 @@ inline void expect_joint(model::Model& model, const Expected& e, const Matrix3& 
       for (Real& c : v) c *= sign;
       return v;
     };
-    const auto elastic = back("elastic jump"), plastic = back("plastic jump"), jump = back("jump"), traction = back("traction");
+    const auto elastic = back("elastic jump"), plastic = back("plastic jump"), jump = back("jump"),
+               traction = back("traction");
     for (int i = 0; i < 3; ++i) {
       EXPECT_NEAR(elastic[i], e.elastic[i], e.tolerance) << "face " << f << " component " << i;
       EXPECT_NEAR(plastic[i], e.plastic[i], e.tolerance) << "face " << f << " component " << i;
@@ -181,7 +183,9 @@ inline GatheredFaces gathered_faces(model::Model& model, const Matrix3& Q, const
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
   GatheredFaces faces;
   for (GlobalIndex id = 0; id < mesh.n_global_fracture_faces; ++id) {
-    const auto vector = [&](int k) { return Vector3{all[9 * id + 3 * k], all[9 * id + 3 * k + 1], all[9 * id + 3 * k + 2]}; };
+    const auto vector = [&](int k) {
+      return Vector3{all[9 * id + 3 * k], all[9 * id + 3 * k + 1], all[9 * id + 3 * k + 2]};
+    };
     faces.centre.push_back(vector(0));
     faces.jump.push_back(vector(1));
     faces.traction.push_back(vector(2));

@@ -33,7 +33,10 @@ void expect_cycle(const model::Scene& scene, const Vector3& m, const Matrix3& Q)
     const auto report = model.step_to(k);
     ASSERT_TRUE(report.converged) << report.reason;
     EXPECT_EQ(report.cuts, 0);
-    expect_joint(model, state(scene.dim(), m, cyclic_l_t[k - 1], -0.3, cyclic_u_p[k - 1], 0, 0), Q);
+    expect_joint(
+        model,
+        state(static_cast<int>(scene.mesh.lower_corner.size()), m, cyclic_l_t[k - 1], -0.3, cyclic_u_p[k - 1], 0, 0),
+        Q);
   }
 }
 
@@ -75,7 +78,8 @@ TEST(CyclicShear, Oblique) {
     const auto scene = read_scene(
         "verification/cyclic_3d.xml",
         {"Mesh.cell=" + cell,
-         set("moved.displacement", {fmt::format("{:.17g}*tangential(t)", c), fmt::format("{:.17g}*tangential(t)", s), "-0.1"}),
+         set("moved.displacement",
+             {fmt::format("{:.17g}*tangential(t)", c), fmt::format("{:.17g}*tangential(t)", s), "-0.1"}),
          set("left.traction", {"-lateral(t)", "0", shear(-c)}), set("right.traction", {"lateral(t)", "0", shear(c)}),
          set("front.traction", {"0", "-lateral(t)", shear(-s)}), set("back.traction", {"0", "lateral(t)", shear(s)})});
     expect_cycle(scene, {c, s, 0}, identity());
@@ -91,7 +95,9 @@ TEST(CyclicShear, StateTellsStickFromSlip) {
       ASSERT_TRUE(model.step_to(k).converged);
       const Outputs out(model);
       for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f)
-        if (states[k - 1] != 0) { EXPECT_EQ(out.scalar("state", f), states[k - 1]) << "step " << k; }
+        if (states[k - 1] != 0) {
+          EXPECT_EQ(out.scalar("state", f), states[k - 1]) << "step " << k;
+        }
     }
   }
 }
@@ -125,12 +131,15 @@ TEST(JointRegimes, ExactStates) {
           const Real before = r.follows_slip ? factor * slip.*member : factor * r.*member;
           return std::vector<Real>{0, before, factor * r.*member, 0};
         };
-        const auto scene = read_scene(fmt::format("verification/regimes_{}d.xml", dim),
-                                      {"Mesh.cell=" + cell, values("tangential", path(&Regime::d_t, 1)), values("normal", path(&Regime::d_n, 1)),
-                                       values("shear", path(&Regime::l_t, 1)), values("lateral", path(&Regime::l_n, 1.0 / 3))});
+        const auto scene = read_scene(
+            fmt::format("verification/regimes_{}d.xml", dim),
+            {"Mesh.cell=" + cell, values("tangential", path(&Regime::d_t, 1)), values("normal", path(&Regime::d_n, 1)),
+             values("shear", path(&Regime::l_t, 1)), values("lateral", path(&Regime::l_n, 1.0 / 3))});
         model::Model model(scene, Tpetra::getDefaultComm());
         ASSERT_TRUE(model.step_to(1).converged);
-        if (r.follows_slip) { ASSERT_TRUE(model.step_to(2).converged); }
+        if (r.follows_slip) {
+          ASSERT_TRUE(model.step_to(2).converged);
+        }
         expect_joint(model, state(dim, {1, 0, 0}, r.l_t, r.l_n, r.u_p, r.opening, closure(r.l_n)));
       }
 }
@@ -154,17 +163,20 @@ TEST(IntactRock, UniaxialCompression) {
   for (const int dim : {2, 3})
     for (const auto& cell : cells_of(dim)) {
       SCOPED_TRACE(cell);
-      model::Model model(read_scene(fmt::format("verification/uniaxial_{}d.xml", dim), {"Mesh.cell=" + cell}), Tpetra::getDefaultComm());
+      model::Model model(read_scene(fmt::format("verification/uniaxial_{}d.xml", dim), {"Mesh.cell=" + cell}),
+                         Tpetra::getDefaultComm());
       const auto report = model.step_to(1);
       ASSERT_TRUE(report.converged);
       EXPECT_EQ(report.newton_iterations, 1);
-      const Real along = dim == 2 ? -p * (1 - nu * nu) / E : -p / E, across = dim == 2 ? p * nu * (1 + nu) / E : p * nu / E;
+      const Real along = dim == 2 ? -p * (1 - nu * nu) / E : -p / E,
+                 across = dim == 2 ? p * nu * (1 + nu) / E : p * nu / E;
       const Outputs out(model);
       const auto& mesh = model.mesh();
       for (LocalIndex node = 0; node < mesh.n_nodes(); ++node)
         for (int i = 0; i < dim; ++i) {
           const Real strain = i == dim - 1 ? along : across;
-          EXPECT_NEAR(out["displacement"].values[node * dim + i], strain * mesh.coordinates[node * dim + i], 1e-12 * 4 * p / E * 10);
+          EXPECT_NEAR(out["displacement"].values[node * dim + i], strain * mesh.coordinates[node * dim + i],
+                      1e-12 * 4 * p / E * 10);
         }
       const Vector3 exact = dim == 2 ? Vector3{0, -p, -nu * p} : Vector3{0, 0, -p};
       for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c)
