@@ -36,6 +36,10 @@ void Section::fail(const std::string& entry, const std::string& what) {
   if (mode_ == Mode::read) errors_->push_back(place(entry) + ": " + what);
 }
 
+void Section::fail_inside(const std::string& what) {
+  if (mode_ == Mode::read) errors_->push_back(fmt::format("{}: {} > {}", file_, path_, what));
+}
+
 Section Section::child(const std::string& name) const {
   Section inner(mode_, path_ + " > " + name);
   inner.file_ = file_;

@@ -70,6 +70,8 @@ class Section {
   /// Reports what no single entry can tell, e.g. that two of them contradict each other; heard only while reading.
   void fail(const std::string& what);
   void fail(const std::string& entry, const std::string& what);
+  /// The same of something further inside: `what` opens with its path, e.g. `Bulk > "material": is ...`.
+  void fail_inside(const std::string& what);
 
   /// Whether everything of this section, so far, was read without an error: so that describe() can compare entries.
   bool complete() const { return mode_ == Mode::read && errors_->size() == n_errors_before_; }

@@ -164,7 +164,7 @@ void PointScene::describe(base::Section& s) {
   if (!s.complete()) return;
   const auto found = materials.find(point.material);
   if (found == materials.end() || found->second.type != "joint")
-    s.fail(fmt::format("Point > \"material\": is \"{}\", must be the name of a joint material", point.material));
+    s.fail_inside(fmt::format("Point > \"material\": is \"{}\", must be the name of a joint material", point.material));
 }
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {

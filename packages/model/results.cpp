@@ -141,8 +141,8 @@ json block_summary(const assembly::System& system) {
 Results::Results(Model& model, std::string directory) : model_(model), directory_(std::move(directory)) {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
-  auto effective = base::effective(const_cast<Scene&>(model_.scene()), "Sprekk");
-  base::write_xml(*comm, effective, directory_ + "/effective_input.xml");
+  Scene scene = model_.scene();
+  base::write_xml(*comm, base::effective(scene, "Sprekk"), directory_ + "/effective_input.xml");
   if (model_.scene().output.vtu) {
     bulk_.emplace(comm, directory_, "bulk");
     if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures");

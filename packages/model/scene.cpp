@@ -226,7 +226,7 @@ void Scene::describe(base::Section& s) {
   names.regions.push_back("bulk");
   names.boundaries = {"west", "east", "south", "north"};
   if (names.dim == 3) names.boundaries.insert(names.boundaries.end(), {"bottom", "top"});
-  for (const auto& misfit : misfits(names)) s.fail(misfit);
+  for (const auto& misfit : misfits(names)) s.fail_inside(misfit);
 }
 
 std::vector<std::string> Scene::misfits(const MeshNames& names) const {
