@@ -69,8 +69,12 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
       return 0;
     }
     return model::run(options, comm) ? 0 : 3;
-  } catch (const std::exception& error) {  // thrown alike on all ranks
+  } catch (const Error& error) {  // thrown alike on all ranks
     if (speaks) std::cerr << "sprekk: " << error.what() << std::endl;
+    return 1;
+  } catch (const std::exception& error) {  // perhaps here alone: the others must not wait
+    std::cerr << "sprekk: rank " << comm->getRank() << ": " << error.what() << std::endl;
+    MPI_Abort(MPI_COMM_WORLD, 1);
     return 1;
   }
 }

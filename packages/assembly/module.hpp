@@ -100,7 +100,7 @@ class Module {
   virtual ~Module() = default;
   virtual std::string name() const = 0;
   virtual Declaration declare() const = 0;
-  /// Builds the module's tables and constant operators. Called once. Collective.
+  /// Builds the module's tables and constant operators. Called once. Collective; what can throw on one rank comes last.
   virtual void bind(const Context& context) = 0;
 
   /// Adds this module's part to the residual (loads at state.t included). Local: sends nothing.

@@ -167,7 +167,7 @@ void System::create_matrices() {
 void System::bind_modules() {
   const Context context(mesh_, geometry_, layouts_);
   for (std::size_t m = 0; m < modules_.size(); ++m) {
-    modules_[m]->bind(context);
+    base::collectively(*comm(), [&] { modules_[m]->bind(context); });
     history_.emplace_back();
     for (const auto& h : declarations_[m].history)
       history_[m].emplace_back(h.name, fields::n_entities(*mesh_, h.entity, false), h.n_components);
@@ -178,7 +178,6 @@ void System::find_exchanges() {
   const Context context(mesh_, geometry_, layouts_);
   std::vector<int> here(blocks_.size(), 0), anywhere(blocks_.size(), 0);
   for (const auto& declaration : declarations_) {
-    if (declaration.linear) continue;
     for (const auto& coupling : declaration.couplings)
       for (const auto& name : coupling.columns) {
         const int f = context.field(name);

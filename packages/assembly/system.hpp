@@ -50,7 +50,7 @@ class System : public fields::BlockProblem {
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
   const std::vector<fields::Layout>& layouts() const { return layouts_; }
   const Scales& scales() const { return scales_; }
-  /// True for a block whose ghosts the nonlinear modules read, and which is therefore exchanged for every residual.
+  /// True for a block whose ghosts some module reads, and which is therefore exchanged, once, for every residual.
   bool exchanged(int block) const { return needs_ghosts_[block]; }
   /// A matrix with all declared blocks, zero; what jacobian() fills. Collective.
   fields::BlockMatrix create_matrix() const;
@@ -91,7 +91,7 @@ class System : public fields::BlockProblem {
   Scales scales_;
   RCP<base::Timers> timers_;
   Real t_ = 0, dt_ = 0, face_area_ = 1;
-  bool symmetric_ = true;
+  bool symmetric_ = true, loaded_ = false;
 };
 
 }  // namespace sprekk::assembly

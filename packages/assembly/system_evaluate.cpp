@@ -81,11 +81,10 @@ void System::update_scales(Real t) {
 
 void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
-  const bool first = dt_ == 0;
   t_ = t;
   dt_ = dt;
   update_scales(t);
-  bool changes = first;
+  bool changes = !loaded_;
   base::collectively(*comm(), [&] {
     for (const auto& module : modules_) {
       module->set_time(t, scales_);
@@ -100,6 +99,7 @@ void System::set_time(Real t, Real dt) {
   const auto views = rows(load_);
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (declarations_[m].linear) modules_[m]->residual(state(static_cast<int>(m)), views);
+  loaded_ = true;
 }
 
 void System::raw_residual(const BlockVector& x, BlockVector& r) {
@@ -109,7 +109,7 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
   for (int i = 0; i < n; ++i) {
     Tpetra::deep_copy(*r[i], *load_[i]);
     for (int j = 0; j < n; ++j)
-      if (!linear_(i, j).is_null()) linear_(i, j)->apply(*x[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
+      if (!linear_(i, j).is_null()) linear_(i, j)->localApply(*ghosted_[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
   }
   const auto views = rows(r);
   for (std::size_t m = 0; m < modules_.size(); ++m)
@@ -225,7 +225,7 @@ std::vector<OutputField> System::outputs(const BlockVector& x) {
   std::vector<OutputField> outputs;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto fields = declarations_[m].outputs;
-    modules_[m]->output(state(static_cast<int>(m)), fields);
+    base::collectively(*comm(), [&] { modules_[m]->output(state(static_cast<int>(m)), fields); });
     for (auto& field : fields) outputs.push_back(std::move(field));
   }
   return outputs;

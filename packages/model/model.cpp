@@ -126,7 +126,7 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
 std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = elasticity(scene, mesh);
   const auto force = body_force(scene, mesh);
-  const physics::InitialStress stress{scene.bulk.initial_stress};
+  const auto stress = scene.initial_stress();
   physics::BulkMomentumParameters bulk{rock.values, force, {}, stress, rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())

@@ -162,7 +162,6 @@ Results::Results(Model& model, std::string directory) : model_(model), directory
 }
 
 std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {
-  auto outputs = model_.system().outputs(model_.state());
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
                {"linear_iterations", report.linear_iterations},
@@ -170,6 +169,11 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
                {"cuts", report.cuts},
                {"converged", report.converged}};
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
+  if (!report.converged && report.substeps == 0) {  // nothing new to show
+    json_["steps"].push_back(step);
+    return {0, 0, 0};
+  }
+  const auto outputs = model_.system().outputs(model_.state());
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
   step["reactions"] = json::object();
   for (const auto& [name, force] : model_.system().reactions(model_.state())) {

@@ -74,7 +74,7 @@ void Material::for_each(const Visit& visit) const {
     optional("bulk modulus", K, 0, false, infinite);
     visit("density", density, 0, true, infinite);
   } else {
-    visit("tangential stiffness", tangential_stiffness, 0, false, 2 * infinite);
+    visit("tangential stiffness", tangential_stiffness, 0, false, infinite);
     optional("friction coefficient", friction_coefficient, 0, true, infinite);
     optional("friction angle", friction_angle, 0, true, 90);
     visit("dilation angle", dilation_angle, 0, true, 90);
@@ -164,6 +164,8 @@ void BoundaryCondition::describe(base::Section& s) {
   s.entry(traction, "traction", "Pa",
           "force per area on the body, per direction a value or an expression of x, y, z, t");
   if (s.complete() && displacement.empty() == traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
+  for (const auto& value : traction)
+    if (value.text() == "free") s.fail("traction", "is \"free\" in a component; give 0 for no traction");
 }
 
 void Time::describe(base::Section& s) {
@@ -296,7 +298,9 @@ mesh::GlobalMesh Scene::make_mesh() const {
   return mesh::read_msh(mesh_file->path, options);
 }
 
-std::vector<base::Expression> Scene::lithostatic(int dim) const {
+physics::InitialStress Scene::initial_stress() const {
+  if (!bulk.lithostatic_stress) return {bulk.initial_stress};
+  const int dim = static_cast<int>(bulk.gravity.size());
   const int up = dim - 1;
   const Real weight =
       -material_of("bulk").density({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
@@ -306,7 +310,8 @@ std::vector<base::Expression> Scene::lithostatic(int dim) const {
     stress[i] =
         base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
   }
-  return stress;
+  for (auto& component : stress) component.compile();
+  return {stress};
 }
 
 const Material& Scene::material_of(const std::string& region) const {
@@ -319,14 +324,13 @@ Scene read_scene(const Comm& comm, const std::string& path, const std::vector<st
   for (const auto& text : overrides) base::apply_override(list, text);
   Scene scene = base::read<Scene>(list, path, "Sprekk");
   if (scene.mesh_file)
-    scene.mesh_file->path = (std::filesystem::path(path).parent_path() / scene.mesh_file->path).string();
+    scene.mesh_file->path =
+        std::filesystem::absolute(std::filesystem::path(path).parent_path() / scene.mesh_file->path).string();
   const auto tables = std::make_shared<const base::Tables>(scene.tables);
   const auto compile = [&](std::vector<base::Expression>& values) {
     for (auto& value : values)
       if (value.text() != "free") value.compile(tables);
   };
-  if (scene.bulk.lithostatic_stress)
-    scene.bulk.initial_stress = scene.lithostatic(static_cast<int>(scene.bulk.gravity.size()));
   compile(scene.bulk.body_force);
   compile(scene.bulk.initial_stress);
   for (const auto& component : scene.bulk.initial_stress)

@@ -133,7 +133,7 @@ struct Scene {
   /// The global mesh of either kind. Not collective.
   mesh::GlobalMesh make_mesh() const;
   const Material& material_of(const std::string& region) const;
-  std::vector<base::Expression> lithostatic(int dim) const;  ///< components of the lithostatic stress
+  physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
 
   /// What names and lengths do not fit to a mesh, a line each; empty if nothing.
   std::vector<std::string> misfits(const MeshNames& names) const;

@@ -192,7 +192,7 @@ class ElasticPlasticJump final : public assembly::Module {
 
 template <Shape shape>
 std::vector<Real> ElasticPlasticJump<shape>::fracture_lengths() const {
-  const std::size_t n_fractures = parameters_.joints.size();
+  const std::size_t n_fractures = mesh_->fracture_names.size();
   std::vector<Real> here(n_fractures * 2 * dim, -std::numeric_limits<Real>::max()), all(here.size()),
       lengths(n_fractures, 0);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {

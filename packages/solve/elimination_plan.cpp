@@ -178,11 +178,6 @@ class Planner {
     group.pivot = View<int*>("group pivots", n_owned(group) * m);
     group.work = View<Real*>("group work", n_owned(group) * m);
     group.column_scale = View<Real*>("group column scale", m);
-    const auto scale = Kokkos::create_mirror_view(group.column_scale);
-    for (std::size_t i = 0; i < group.blocks.size(); ++i)
-      for (int c = 0; c < blocks()[group.blocks[i]].n_components; ++c)
-        scale(group.offset[i] + c) = blocks()[group.blocks[i]].kinematic_scale;
-    Kokkos::deep_copy(group.column_scale, scale);
   }
 
   void plan_response(GroupPlan& group, int b) {

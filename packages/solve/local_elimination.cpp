@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -92,6 +93,7 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
     if (!condensed.copy.matrix.is_null()) condensed.copy(values_of(*condensed.matrix));
   }
   std::string failure;
+  for (auto& group : plan_.groups) set_scales(problem, group);
   for (auto& group : plan_.groups)
     if (factor(group, failure))
       for (int r = 0; r < n_remaining(); ++r)
@@ -113,6 +115,19 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   checksum_ = sum;
   fresh_ = !failure.empty();
   return {changed != 0, failure};
+}
+
+/// The sizes of a group's unknowns under the present loads, as powers of two relative to the first block: so scaling
+/// rounds nothing, and factors keep their bits while loads grow in proportion.
+void LocalElimination::set_scales(const BlockProblem& problem, GroupPlan& group) {
+  const auto scale = Kokkos::create_mirror_view(group.column_scale);
+  const Real first = problem.blocks()[group.blocks.front()].kinematic_scale;
+  for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+    const auto& block = problem.blocks()[group.blocks[i]];
+    const Real power = std::exp2(std::round(std::log2(block.kinematic_scale / first)));
+    for (int c = 0; c < block.n_components; ++c) scale(group.offset[i] + c) = power;
+  }
+  Kokkos::deep_copy(group.column_scale, scale);
 }
 
 /// Packs and factors A_zz, and makes A_zz^-1 A_zb. False on every rank, with the reason, if an entity is singular.

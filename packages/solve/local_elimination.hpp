@@ -40,6 +40,7 @@ class LocalElimination {
   void expand(const BlockVector& b, const BlockVector& y, BlockVector& dx) const;
 
  private:
+  static void set_scales(const BlockProblem& problem, GroupPlan& group);
   bool factor(GroupPlan& group, std::string& failure) const;
   void condense(GroupPlan& group, int r, int s) const;
   void apply_inverse(const GroupPlan& group, BlockVector& z) const;

@@ -40,7 +40,10 @@ StepReport TimeStepper::advance(BlockVector& x, Real t_from, Real t_to) {
     }
     fields::copy(committed, x);
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
-    if (size == 1) return report;
+    if (size == 1) {
+      if (done > 0) problem_.set_time(report.time, end - report.time);  // where x is
+      return report;
+    }
     size /= 2;
     ++report.cuts;
   }

@@ -104,7 +104,16 @@ TEST(SameAnswer, RenumberedAndSwapped) {
   expect_same_answer(scene);
 }
 
-TEST(SameAnswer, TheSeedsScenes) {
+/// Initial stress, gravity, ties, and a joint and a rock that change from place to place.
+TEST(SameAnswer, LoadsAndVaryingMaterials) {
+  expect_same_answer(read_scene("verification/lithostatic_3d.xml"));
+  expect_same_answer(read_scene("verification/periodic_2d.xml", {"Mesh.cells={6, 8}"}));
+  expect_same_answer(read_scene("gmsh/crossing.xml"));
+  expect_same_answer(read_scene("seed/immersed_2d.xml", {"Materials.joint.friction coefficient=0.1 + 0.05*x",
+                                                         "Materials.rock.shear modulus=1e6*(1 + y)"}));
+}
+
+TEST(SameAnswer, ScenesOfTheThesis) {
   for (const char* name : {"push_2d", "push_3d", "pull_2d", "pull_3d", "immersed_2d"}) {
     SCOPED_TRACE(name);
     expect_same_answer(read_scene(std::string("seed/") + name + ".xml"));

@@ -139,9 +139,13 @@ class Results(ProgramTest):
         self.assertIn("no convergence in 1 iterations", out + err)
 
     def test_cuts_are_counted(self):
-        r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=2", QUIET)
+        # the sides follow the shear traction min(2/3 d_t, 0.18), so that substeps are exact
+        path = ["Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
+                "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}", "Solver.tolerance=1e-10"]
+        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", *path, QUIET)
         self.assertEqual(r["status"], "completed")
-        self.assertEqual(len(r["steps"]), 8)
+        self.assertGreater(r["steps"][0]["cuts"], 0)
+        self.assertGreater(r["steps"][0]["substeps"], 1)
         last = r["steps"][-1]["fractures"]["fracture"]
         self.assertAlmostEqual(last["mean_plastic_jump"]["global"][0], 0.23, places=9)
 
