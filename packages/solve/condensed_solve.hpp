@@ -4,11 +4,12 @@
 #include "base/timer.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/local_elimination.hpp"
+#include "solve/merged.hpp"
 
 namespace sprekk::solve {
 
 /// What is kept between solves: positions, factors or the hierarchy; renewed only when values have changed. All members
-/// are collective unless they return stored data. Exactly one block must remain after elimination.
+/// are collective unless they return stored data. Blocks that remain after elimination are solved for together.
 class CondensedSolve {
  public:
   CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options,
@@ -25,11 +26,15 @@ class CondensedSolve {
   int n_setups() const { return n_setups_; }  ///< factorisations or hierarchies made so far
 
  private:
-  const Block& remaining() const { return problem_.blocks()[elimination_.remaining().front()]; }
+  std::vector<Block> remaining() const;
+  Merged merge() const;
+  std::vector<Real> scales() const;
+  LinearSystem system() const;
 
   BlockProblem& problem_;
   RCP<base::Timers> timers_;
   LocalElimination elimination_;
+  Merged merged_;
   ChosenSolver chosen_;
   Real tolerance_;
   bool symmetric_ = false;

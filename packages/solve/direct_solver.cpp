@@ -2,6 +2,7 @@
 #include <dmumps_c.h>
 #include <mpi.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Details_extractMpiCommFromTeuchos.hpp>
 #include <cstdio>
 #include <map>
@@ -34,7 +35,8 @@ std::string message(const DMUMPS_STRUC_C& mumps) {
 
 class DirectSolver : public LinearSolver {
  public:
-  explicit DirectSolver(const Teuchos::ParameterList& overrides) : parameters_("MUMPS") {
+  DirectSolver(const Teuchos::ParameterList& overrides, bool on_one_rank)
+      : parameters_("MUMPS"), on_one_rank_(on_one_rank) {
     parameters_.set("ICNTL(7)", 7, "ordering: automatic");
     parameters_.set("ICNTL(14)", 40, "extra work space, percent");
     parameters_.setParameters(overrides);
@@ -45,13 +47,13 @@ class DirectSolver : public LinearSolver {
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
 
-  std::string setup(const RCP<const CrsMatrix>& matrix, const Block& block, bool symmetric,
-                    const RCP<const CrsMatrix>&) override {
-    if (!ready_ || (symmetric_ && !symmetric)) {  // not back again: an analysis costs more than symmetry saves
+  std::string setup(const LinearSystem& system) override {
+    if (!ready_ || (symmetric_ && !system.symmetric)) {  // not back again: an analysis costs more than symmetry saves
       release();
-      start(*matrix, block, symmetric);
+      start(system);
     }
-    matrix_ = matrix;
+    matrix_ = system.matrix;
+    if (on_one_rank_) gather();
     failure_.clear();
     fill_values();
     if (!analysed_ && run(analyse) < 0) return failure_ = message(mumps_);
@@ -102,21 +104,35 @@ class DirectSolver : public LinearSolver {
  private:
   int run(Job job) {
     mumps_.job = job;
-    dmumps_c(&mumps_);
+    if (mpi_comm_ != MPI_COMM_NULL) dmumps_c(&mumps_);
+    if (on_one_rank_) Teuchos::broadcast(*comm_, 0, 2, mumps_.infog);
     return mumps_.infog[0];
   }
 
+  /// All rows of the matrix on rank 0.
+  void gather() { factored_ = Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(matrix_, *to_root_); }
+
   /// Starts MUMPS on its own communicator and tells it the graph.
-  void start(const CrsMatrix& matrix, const Block& block, bool symmetric) {
-    const auto& map = *block.map;
+  void start(const LinearSystem& system) {
+    matrix_ = factored_ = system.matrix;
+    const bool symmetric = system.symmetric;
+    const auto& map = *matrix_->getRowMap();
     const GlobalIndex n = map.getGlobalNumElements();
     SPREKK_CHECK(map.getMinAllGlobalIndex() == 0 && map.getMaxAllGlobalIndex() == n - 1 && n < 2147483647,
-                 "direct solve of block '{}': unknowns must be numbered from 0 without gaps, below 2^31", block.name);
-    const auto comm = map.getComm();
-    MPI_Comm_dup(Tpetra::Details::extractMpiCommFromTeuchos(*comm), &mpi_comm_);
+                 "direct solve: {} unknowns, numbered {} to {}; they must be numbered from 0 without gaps, below 2^31",
+                 n, map.getMinAllGlobalIndex(), map.getMaxAllGlobalIndex());
+    comm_ = map.getComm();
+    const bool root = comm_->getRank() == 0;
+    const auto root_map = rcp(new fields::Map(n, root ? n : 0, 0, comm_));
+    to_root_ = rcp(new fields::Import(matrix_->getRowMap(), root_map));
+    from_root_ = rcp(new fields::Import(root_map, matrix_->getRowMap()));
+    at_root_ = rcp(new Vector(root_map));
+    if (on_one_rank_) gather();
+    MPI_Comm_split(Tpetra::Details::extractMpiCommFromTeuchos(*comm_), on_one_rank_ && !root ? MPI_UNDEFINED : 0,
+                   comm_->getRank(), &mpi_comm_);
     symmetric_ = symmetric;
     mumps_ = {};
-    mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);
+    if (mpi_comm_ != MPI_COMM_NULL) mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);
     mumps_.par = 1;
     mumps_.sym = symmetric ? 2 : 0;
     run(initialise);
@@ -125,14 +141,14 @@ class DirectSolver : public LinearSolver {
     for (const auto& [i, value] : icntl_) mumps_.icntl[i] = value;
     for (const auto& [i, value] : cntl_) mumps_.cntl[i] = value;
 
-    const auto graph = matrix.getLocalMatrixHost().graph;
-    const auto& columns = *matrix.getColMap();
+    const auto graph = factored_->getLocalMatrixHost().graph;
+    const auto &rows = *factored_->getRowMap(), &columns = *factored_->getColMap();
     rows_.clear();
     columns_.clear();
     positions_.clear();
     for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; ++row)
       for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k) {
-        const GlobalIndex i = map.getGlobalElement(row), j = columns.getGlobalElement(graph.entries(k));
+        const GlobalIndex i = rows.getGlobalElement(row), j = columns.getGlobalElement(graph.entries(k));
         if (symmetric && j > i) continue;
         rows_.push_back(i + 1);
         columns_.push_back(j + 1);
@@ -146,12 +162,6 @@ class DirectSolver : public LinearSolver {
     mumps_.irn_loc = rows_.data();
     mumps_.jcn_loc = columns_.data();
     mumps_.a_loc = values_.data();
-
-    const bool root = comm->getRank() == 0;
-    const auto root_map = rcp(new fields::Map(n, root ? n : 0, 0, comm));
-    to_root_ = rcp(new fields::Import(block.map, root_map));
-    from_root_ = rcp(new fields::Import(root_map, block.map));
-    at_root_ = rcp(new Vector(root_map));
     ready_ = true;
     analysed_ = false;
   }
@@ -171,7 +181,7 @@ class DirectSolver : public LinearSolver {
   }
 
   void fill_values() {
-    const auto values = matrix_->getLocalMatrixHost().values;
+    const auto values = factored_->getLocalMatrixHost().values;
     for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = values(positions_[k]);
   }
 
@@ -190,20 +200,22 @@ class DirectSolver : public LinearSolver {
   void release() {
     if (!ready_) return;
     run(terminate);
-    MPI_Comm_free(&mpi_comm_);
+    if (mpi_comm_ != MPI_COMM_NULL) MPI_Comm_free(&mpi_comm_);
     ready_ = false;
   }
 
   Teuchos::ParameterList parameters_;
+  const bool on_one_rank_;
+  RCP<const Comm> comm_;
   std::map<int, int> icntl_;    // from 0
   std::map<int, double> cntl_;  // from 0
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false;
   std::string failure_ = "the matrix was not set up";
-  RCP<const CrsMatrix> matrix_;
-  std::vector<int> rows_, columns_;     // 1-based
-  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' values
+  RCP<const CrsMatrix> matrix_, factored_;  // the one that MUMPS gets: the same, or all of it on rank 0
+  std::vector<int> rows_, columns_;         // 1-based
+  std::vector<std::size_t> positions_;      // of the entries handed over, in the matrix' values
   std::vector<double> values_;
   RCP<fields::Import> to_root_, from_root_;
   RCP<Vector> at_root_;  // all of a vector on rank 0
@@ -211,8 +223,8 @@ class DirectSolver : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps) {
-  return std::make_unique<DirectSolver>(mumps);
+std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, bool on_one_rank) {
+  return std::make_unique<DirectSolver>(mumps, on_one_rank);
 }
 
 }  // namespace sprekk::solve

@@ -1,11 +1,10 @@
-// Belos, preconditioned from the right by MueLu.
+// Belos, preconditioned from the right by a solver for each block.
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
-#include <MueLu_CreateTpetraPreconditioner.hpp>
 #include <MueLu_MasterList.hpp>
 
 #include "base/check.hpp"
-#include "solve/linear_solver.hpp"
+#include "solve/block_solver.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -13,36 +12,6 @@ namespace {
 using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
-
-constexpr int coarse_size = 1000;
-
-/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
-/// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
-/// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
-/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
-ParameterList multigrid_defaults(int n_components, int n_ranks) {
-  ParameterList list("MueLu");
-  list.set("verbosity", "none");
-  list.set("number of equations", n_components);
-  list.set("multigrid algorithm", "sa");
-  list.set("coarse: max size", coarse_size);
-  list.set("transpose: use implicit", true);
-  list.set("reuse: type", "tP");
-  list.set("aggregation: drop tol", 1e-12);
-  list.set("sa: use filtered matrix", true);
-  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
-  list.set("smoother: type", "CHEBYSHEV");
-  list.sublist("smoother: params").set("chebyshev: degree", 2).set("chebyshev: ratio eigenvalue", 7.0);
-  if (n_ranks > 1) {
-    list.set("repartition: enable", true);
-    list.set("repartition: partitioner", "zoltan2");
-    list.set("repartition: start level", 1);
-    list.set("repartition: min rows per proc", 3 * coarse_size);
-    list.set("repartition: target rows per proc", 3 * coarse_size);
-    list.set("repartition: max imbalance", 1.3);
-  }
-  return list;
-}
 
 ParameterList krylov_defaults() {
   ParameterList list("Belos");
@@ -88,41 +57,45 @@ std::string gist(const std::string& text) {
 
 class IterativeSolver : public LinearSolver {
  public:
-  IterativeSolver(const LinearSolverOptions& options, const Block& block) : parameters_("iterative") {
+  IterativeSolver(const LinearSolverOptions& options, const std::vector<Block>& blocks)
+      : muelu_(options.muelu), parameters_("iterative") {
     check_names(ParameterList(options.muelu).setName("MueLu"), {*MueLu::MasterList::List()});
     check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
-    parameters_.sublist("MueLu") = multigrid_defaults(block.n_components, block.map->getComm()->getSize());
-    if (options.muelu.isParameter("smoother: type")) parameters_.sublist("MueLu").remove("smoother: params");
-    parameters_.sublist("MueLu").setParameters(options.muelu);
+    parameters_.sublist("MueLu") = multigrid_parameters(options.muelu, blocks.front());
     parameters_.sublist("Belos") = krylov_defaults();
     parameters_.sublist("Belos").setParameters(options.belos);
+    long long n = 0;
+    for (const auto& block : blocks) n += block.map->getGlobalNumElements();
     // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
-    const int largest_coarse = parameters_.sublist("MueLu").get<int>("coarse: max size");
-    if (static_cast<long long>(block.map->getGlobalNumElements()) <= largest_coarse) {
-      coarse_ = make_direct_solver(options.mumps);
+    if (n <= parameters_.sublist("MueLu").get<int>("coarse: max size")) {
+      coarse_ = make_direct_solver(options.mumps, true);
       parameters_.sublist("MUMPS") = coarse_->parameters();
+    } else {
+      for (const auto& block : blocks) solvers_.push_back(make_block_solver(options.muelu, block));
     }
   }
 
-  bool reads_bulk() const override { return !coarse_; }
+  bool reads_bulk() const override { return !coarse_ && preconditioner_.is_null(); }
 
-  std::string setup(const RCP<const CrsMatrix>& matrix, const Block& block, bool symmetric,
-                    const RCP<const CrsMatrix>& bulk) override {
-    if (coarse_) return coarse_->setup(matrix, block, symmetric, bulk);
-    symmetric_ = symmetric;
-    // Tpetra's and MueLu's interfaces take operators that may change; nothing here changes the matrix.
-    matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(matrix);
-    try {
-      base::collectively(*matrix->getComm(), [&] {
-        raised_ = raised(*matrix);
-        if (preconditioner_.is_null()) create(block, bulk);
-        MueLu::ReuseTpetraPreconditioner(raised_, *preconditioner_);
-      });
-      failure_.clear();
-    } catch (const Error& error) {
-      preconditioner_ = Teuchos::null;
-      failure_ = fmt::format("multigrid set-up: {}", gist(error.what()));
+  std::string setup(const LinearSystem& system) override {
+    if (coarse_) return coarse_->setup(system);
+    symmetric_ = system.symmetric && solvers_.size() == 1;  // a sweep over blocks is not symmetric
+    // Belos' interface takes operators that may change; nothing here changes the matrix.
+    matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(system.matrix);
+    failure_.clear();
+    for (std::size_t r = 0; r < solvers_.size() && failure_.empty(); ++r) {
+      const auto& part = system.diagonal[r];
+      try {
+        base::collectively(*matrix_->getComm(), [&] { solvers_[r]->setup(part); });
+      } catch (const Error& error) {
+        failure_ = fmt::format("preconditioner of block '{}': {}", part.block.name, gist(error.what()));
+        for (std::size_t s = 0; s < solvers_.size(); ++s)  // what the libraries left may differ among ranks
+          solvers_[s] = make_block_solver(muelu_, system.diagonal[s].block);
+        preconditioner_ = Teuchos::null;
+      }
     }
+    if (failure_.empty())
+      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system, solvers_);
     return failure_;
   }
 
@@ -153,31 +126,6 @@ class IterativeSolver : public LinearSolver {
   const ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would
-  /// make the coarse matrix singular, and its direct solver fail on the one rank that has it.
-  static RCP<CrsMatrix> raised(const CrsMatrix& matrix) {
-    const auto copy = rcp(new CrsMatrix(matrix, Teuchos::Copy));
-    const auto local = copy->getLocalMatrixHost();
-    const auto& columns = *copy->getColMap();
-    for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
-      for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-        if (columns.getGlobalElement(local.graph.entries(k)) == copy->getRowMap()->getGlobalElement(row))
-          local.values(k) *= 1 + 1e-8;
-    return copy;
-  }
-
-  /// Aggregates by the graph of the bulk, where no edge crosses an interface.
-  void create(const Block& block, const RCP<const CrsMatrix>& bulk) {
-    ParameterList list(parameters_.sublist("MueLu"));
-    auto& user_data = list.sublist("user data");
-    if (!block.near_null_space.is_null())
-      user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
-    if (!block.coordinates.is_null())
-      user_data.set("Coordinates", rcp(new MultiVector(*block.coordinates, Teuchos::Copy)));
-    const RCP<Operator> from = bulk.is_null() ? raised_ : raised(*bulk);
-    preconditioner_ = MueLu::CreateTpetraPreconditioner(from, list);
-  }
-
   int iterate(const Vector& b, Vector& x, Real tolerance) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
@@ -196,18 +144,20 @@ class IterativeSolver : public LinearSolver {
     return solver->getNumIters();
   }
 
-  ParameterList parameters_;
+  ParameterList muelu_, parameters_;
   std::unique_ptr<LinearSolver> coarse_;
-  RCP<CrsMatrix> matrix_, raised_;
-  RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> preconditioner_;
+  std::vector<RCP<BlockSolver>> solvers_;  // [block]
+  RCP<CrsMatrix> matrix_;
+  RCP<const Operator> preconditioner_;
   bool symmetric_ = false;
   std::string failure_ = "the matrix was not set up";
 };
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options, const Block& block) {
-  return std::make_unique<IterativeSolver>(options, block);
+std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options,
+                                                    const std::vector<Block>& blocks) {
+  return std::make_unique<IterativeSolver>(options, blocks);
 }
 
 }  // namespace sprekk::solve

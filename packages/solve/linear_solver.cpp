@@ -13,6 +13,8 @@ void LinearSolverOptions::describe(base::Section& section) {
   section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
   section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
+  section.entry(reproducible, "reproducible", "-",
+                "direct: factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
   section.passthrough(muelu, "MueLu", "parameters of MueLu");
@@ -25,16 +27,21 @@ std::string ChosenSolver::describe() const {
   return text.str();
 }
 
-ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Block& block) {
-  const bool is_3d = !block.coordinates.is_null() && block.coordinates->getNumVectors() == 3;
-  const long long n = block.map->getGlobalNumElements();
+ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::vector<Block>& blocks) {
+  bool is_3d = false;
+  long long n = 0;
+  for (const auto& block : blocks) {
+    is_3d = is_3d || (!block.coordinates.is_null() && block.coordinates->getNumVectors() == 3);
+    n += block.map->getGlobalNumElements();
+  }
   const long long limit = is_3d ? options.direct_limit_3d : options.direct_limit_2d;
   const bool direct = options.type == "direct" || (options.type == "auto" && n <= limit);
   const std::string reason = options.type == "auto"
                                  ? fmt::format("{}: {} with {} unknowns; direct up to {}",
                                                direct ? "direct" : "iterative", is_3d ? "3D" : "2D", n, limit)
                                  : fmt::format("{}: asked for; {} unknowns", options.type, n);
-  return {direct ? make_direct_solver(options.mumps) : make_iterative_solver(options, block), reason};
+  return {direct ? make_direct_solver(options.mumps, options.reproducible) : make_iterative_solver(options, blocks),
+          reason};
 }
 
 Real relative_residual(const CrsMatrix& matrix, const Vector& b, const Vector& x, Vector& r) {

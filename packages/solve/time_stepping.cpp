@@ -12,12 +12,13 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "how often a step that fails is halved before the run ends");
 }
 
-StepReport TimeStepper::advance(BlockVector& x, Real t_from, Real t_to) {
+StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   StepReport report;
   auto committed = fields::create_like(x);
   fields::copy(x, committed);
   // in units of the smallest substep, so that substeps end exactly at t_to
   const long long whole = 1LL << options_.max_halvings;
+  const Real t_from = t;
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
   report.time = t_from;
@@ -33,7 +34,8 @@ StepReport TimeStepper::advance(BlockVector& x, Real t_from, Real t_to) {
       problem_.commit(x);
       fields::copy(x, committed);
       done += size;
-      report.time = end;
+      committed_dt_ = end - report.time;
+      report.time = t = end;
       ++report.substeps;
       size *= 2;
       continue;
@@ -41,7 +43,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real t_from, Real t_to) {
     fields::copy(committed, x);
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
     if (size == 1) {
-      if (done > 0) problem_.set_time(report.time, end - report.time);  // where x is
+      if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // where x is
       return report;
     }
     size /= 2;

@@ -28,15 +28,16 @@ class TimeStepper {
   TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
       : problem_(problem), newton_(newton), options_(options) {}
 
-  /// Takes x, the committed state at t_from, to t_to. Where Newton fails the substep is halved and x restored; after
-  /// one that converged it doubles. Each is committed. If the smallest one fails too, x is the last committed state, at
-  /// report.time. Collective.
-  StepReport advance(BlockVector& x, Real t_from, Real t_to);
+  /// Takes x, the committed state at t, to t_to. Where Newton fails the substep is halved and x restored; after one
+  /// that converged it doubles. Each is committed, and t goes with x: they belong together also where the smallest
+  /// substep fails, or an evaluation throws. Collective.
+  StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
   BlockProblem& problem_;
   Newton& newton_;
   TimeSteppingOptions options_;
+  Real committed_dt_ = 0;  // length of the last committed substep; 0 before the first
 };
 
 }  // namespace sprekk::solve

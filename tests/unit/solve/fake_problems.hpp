@@ -49,6 +49,7 @@ struct GridOptions {
   int d = 2, nx = 5, ny = 6;
   bool faces = true, constraints = true;
   int singular_face = -1;  ///< a face whose bubble has no stiffness
+  bool eliminate = true;   ///< bubble and traction are a local group
 };
 
 /// Springs on a grid of nodes, cut by a row of faces between two rows of nodes: 'displacement' u at nodes; at faces a
@@ -76,7 +77,7 @@ class GridProblem : public BlockProblem {
     if (o_.faces) {
       blocks_.push_back({"bubble", z, d, 1, 1, Teuchos::null, Teuchos::null});
       blocks_.push_back({"traction", z, d, 1, 1, Teuchos::null, Teuchos::null});
-      groups_.push_back({"contact", {1, 2}});
+      if (o_.eliminate) groups_.push_back({"contact", {1, 2}});
     }
     constrained_ = View<char*>("constrained", unknowns.size());
     for (std::size_t i = 0; i < unknowns.size(); ++i) constrained_(i) = o_.constraints && row_of(unknowns[i] / d) >= 0;
@@ -129,7 +130,7 @@ class GridProblem : public BlockProblem {
     }
   }
   const BlockMatrix& matrix() const override { return matrix_; }
-  bool symmetric() const override { return true; }
+  bool symmetric() const override { return o_.eliminate; }
   ConstView<char*> constrained(int block) const override {
     return block == 0 ? ConstView<char*>(constrained_) : ConstView<char*>();
   }

@@ -12,9 +12,13 @@ namespace {
 using solve::CondensedSolve;
 using solve::LinearSolverOptions;
 
+solve::LinearSystem system_of(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric) {
+  return {matrix, symmetric, {{block, matrix, Teuchos::null}}};
+}
+
 /// Builds A x = b with a known x and solves it.
 void expect_solved(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric, solve::LinearSolver& solver) {
-  ASSERT_EQ(solver.setup(matrix, block, symmetric), "");
+  ASSERT_EQ(solver.setup(system_of(matrix, block, symmetric)), "");
   for (int again = 0; again < 2; ++again) {
     Vector exact(block.map), b(block.map), x(block.map);
     for (std::size_t i = 0; i < exact.getLocalLength(); ++i)
@@ -28,7 +32,7 @@ void expect_solved(const RCP<CrsMatrix>& matrix, const Block& block, bool symmet
     matrix->resumeFill();  // other values on the same graph
     matrix->scale(2);
     matrix->fillComplete(matrix->getDomainMap(), matrix->getRangeMap());
-    ASSERT_EQ(solver.setup(matrix, block, symmetric), "");
+    ASSERT_EQ(solver.setup(system_of(matrix, block, symmetric)), "");
   }
 }
 
@@ -44,7 +48,7 @@ struct Grid {
 };
 
 TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
-  for (bool symmetric : {true, false}) {
+  for (const auto& [symmetric, on_one_rank] : {std::pair{true, false}, {false, false}, {true, true}, {false, true}}) {
     Grid grid(12);
     if (!symmetric) {
       Vector scale(grid.matrix->getRowMap());
@@ -52,7 +56,7 @@ TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
         scale.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
       grid.matrix->leftScale(scale);
     }
-    const auto solver = solve::make_direct_solver({});
+    const auto solver = solve::make_direct_solver({}, on_one_rank);
     expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
   }
 }
@@ -69,7 +73,7 @@ TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
 }
 
 TEST(DirectSolver, ReportsASingularMatrix) {
-  for (bool structural : {true, false}) {
+  for (const auto& [structural, on_one_rank] : {std::pair{true, false}, {false, false}, {true, true}, {false, true}}) {
     const auto comm = Tpetra::getDefaultComm();
     std::vector<GlobalIndex> mine;
     for (int i = comm->getRank(); i < 6; i += comm->getSize()) mine.push_back(i);
@@ -78,8 +82,9 @@ TEST(DirectSolver, ReportsASingularMatrix) {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) fill.add(i, j, structural ? (j < 3) : i * 6 + j);  // rank 1 or 2
     const auto matrix = fill.done();
-    const auto solver = solve::make_direct_solver({});
-    const std::string failure = solver->setup(matrix, {"s", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false);
+    const auto solver = solve::make_direct_solver({}, on_one_rank);
+    const std::string failure =
+        solver->setup(system_of(matrix, {"s", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false));
     Vector b(map), x(map);
     for (std::size_t i = 0; i < b.getLocalLength(); ++i) b.replaceLocalValue(i, std::cos(map->getGlobalElement(i)));
     const auto report = solver->solve(b, x, 1e-10);
@@ -98,7 +103,7 @@ TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
   for (bool symmetric : {true, false}) {
     Grid grid(48);
     LinearSolverOptions options;
-    const auto solver = solve::make_iterative_solver(options, grid.problem.blocks()[0]);
+    const auto solver = solve::make_iterative_solver(options, grid.problem.blocks());
     expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
   }
 }
@@ -106,8 +111,8 @@ TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
 TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
   for (int n : {32, 64}) {
     Grid grid(n);
-    const auto solver = solve::make_iterative_solver({}, grid.problem.blocks()[0]);
-    ASSERT_EQ(solver->setup(grid.matrix, grid.problem.blocks()[0], true), "");
+    const auto solver = solve::make_iterative_solver({}, grid.problem.blocks());
+    ASSERT_EQ(solver->setup(system_of(grid.matrix, grid.problem.blocks()[0], true)), "");
     Vector b(grid.matrix->getRangeMap()), x(grid.matrix->getDomainMap());
     b.putScalar(1);
     const auto report = solver->solve(b, x, 1e-8);
@@ -118,7 +123,7 @@ TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
 
 TEST(IterativeSolver, SolvesLessThanACoarseLevel) {
   Grid grid(4);
-  const auto solver = solve::make_iterative_solver({}, grid.problem.blocks()[0]);
+  const auto solver = solve::make_iterative_solver({}, grid.problem.blocks());
   expect_solved(grid.matrix, grid.problem.blocks()[0], true, *solver);
 }
 
@@ -126,8 +131,8 @@ TEST(IterativeSolver, ReportsWhatDidNotConverge) {
   Grid grid(32);
   LinearSolverOptions options;
   options.belos.set("Maximum Iterations", 2);
-  const auto solver = solve::make_iterative_solver(options, grid.problem.blocks()[0]);
-  ASSERT_EQ(solver->setup(grid.matrix, grid.problem.blocks()[0], true), "");
+  const auto solver = solve::make_iterative_solver(options, grid.problem.blocks());
+  ASSERT_EQ(solver->setup(system_of(grid.matrix, grid.problem.blocks()[0], true)), "");
   Vector b(grid.matrix->getRangeMap()), x(grid.matrix->getDomainMap());
   b.putScalar(1);
   const auto report = solver->solve(b, x, 1e-10);
@@ -159,14 +164,49 @@ TEST(IterativeSolver, AggregatesByTheBulkAndSolvesContact) {
   EXPECT_EQ(solve.n_setups(), 3);
 }
 
+/// Face unknowns that are not eliminated: the same solution as with elimination, in units that differ by much.
+TEST(CondensedSolve, SolvesForSeveralBlocksAtOnce) {
+  const auto comm = Tpetra::getDefaultComm();
+  GridProblem eliminated(comm, {2, 40, 40, true, true, -1});
+  GridOptions options{2, 40, 40, true, true, -1};
+  options.eliminate = false;
+  GridProblem together(comm, options);
+  for (const std::string type : {"direct", "iterative"}) {
+    LinearSolverOptions linear;
+    linear.type = type;
+    CondensedSolve reference(eliminated, {}), solve(together, linear);
+    auto b = together.zero(), expected = together.zero(), dx = together.zero(), x = together.zero();
+    for (Real state : {1.0, -1.0}) {
+      x[2]->putScalar(state);
+      for (GridProblem* problem : {&eliminated, &together}) problem->jacobian(x);
+      for (auto& v : b) v->putScalar(1);
+      reference.update();
+      solve.update();
+      ASSERT_TRUE(reference.solve(b, expected, 1e-12).converged);
+      const auto report = solve.solve(b, dx, 1e-12);
+      if (type == "iterative" && state < 0) {  // closed: tractions do not couple with themselves
+        EXPECT_FALSE(report.converged);
+        EXPECT_NE(report.reason.find("block 'traction': its matrix has zeros"), std::string::npos) << report.reason;
+        continue;
+      }
+      ASSERT_TRUE(report.converged) << report.reason;
+      EXPECT_LE(report.iterations, 60) << type;
+      for (std::size_t k = 0; k < dx.size(); ++k) {
+        const Real size = expected[k]->normInf();
+        expected[k]->update(-1, *dx[k], 1);
+        EXPECT_LE(expected[k]->normInf(), 1e-8 * size) << type << ", block " << k;
+      }
+    }
+  }
+}
+
 TEST(MakeLinearSolver, ChoosesBySizeAndSaysWhy) {
   Grid grid(6);
   LinearSolverOptions options;
   options.direct_limit_2d = 72;
-  EXPECT_EQ(make_linear_solver(options, grid.problem.blocks()[0]).reason,
-            "direct: 2D with 72 unknowns; direct up to 72");
+  EXPECT_EQ(make_linear_solver(options, grid.problem.blocks()).reason, "direct: 2D with 72 unknowns; direct up to 72");
   options.direct_limit_2d = 71;
-  const auto chosen = make_linear_solver(options, grid.problem.blocks()[0]);
+  const auto chosen = make_linear_solver(options, grid.problem.blocks());
   EXPECT_EQ(chosen.reason, "iterative: 2D with 72 unknowns; direct up to 71");
   EXPECT_NE(chosen.describe().find("smoother: type"), std::string::npos);
 }

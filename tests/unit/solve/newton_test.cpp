@@ -196,14 +196,35 @@ TEST(TimeStepper, CutsAndGrowsBack) {
   Newton newton(problem, options);
   TimeStepper stepper(problem, newton, {});
   auto x = problem.constant(2);
-  const auto report = stepper.advance(x, 2, 3);
+  Real t = 2;
+  const auto report = stepper.advance(x, t, 3);
   ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(t, 3);
   EXPECT_EQ(problem.committed_times, (std::vector<Real>{2.25, 2.5, 2.75, 3}));
   EXPECT_EQ(report.time, 3);
   EXPECT_EQ(report.substeps, 4);
   EXPECT_GE(report.cuts, 2);
   EXPECT_GT(report.newton_iterations, 4 + 2 * 5 - 1);
   EXPECT_NEAR(x[0]->normInf(), 3, 1e-12);
+}
+
+TEST(TimeStepper, TimeGoesWithTheStateWhereAnEvaluationThrows) {
+  const auto f = [](Real x, Real t, Real dt) {
+    if (t > 2.6 && dt <= 0.3) throw Error("no loads beyond 2.6");
+    return dt <= 0.3 ? x - t : 1 + x * x;
+  };
+  ScalarProblem problem(Tpetra::getDefaultComm(), 4, f,
+                        [](Real x, Real, Real dt) { return dt <= 0.3 ? 1 : 2 * x + 1e-3; });
+  NewtonOptions options;
+  options.max_iterations = 5;
+  Newton newton(problem, options);
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(2);
+  Real t = 2;
+  EXPECT_THROW(stepper.advance(x, t, 3), Error);
+  EXPECT_EQ(problem.committed_times, (std::vector<Real>{2.25, 2.5}));
+  EXPECT_EQ(t, 2.5);
+  for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_NEAR(x[0]->getData()[i], 2.5, 1e-12);
 }
 
 TEST(TimeStepper, ReportsAndRestoresPastTheSmallestSubstep) {
@@ -213,7 +234,9 @@ TEST(TimeStepper, ReportsAndRestoresPastTheSmallestSubstep) {
   Newton newton(problem, options);
   TimeStepper stepper(problem, newton, {});
   auto x = problem.constant(0.125);
-  const auto report = stepper.advance(x, 0, 1);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  EXPECT_EQ(t, 0);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.cuts, 6);
   EXPECT_EQ(report.time, 0);
@@ -227,7 +250,8 @@ TEST(TimeStepper, TakesOneStepWhereNothingIsWrong) {
   Newton newton(problem, {});
   TimeStepper stepper(problem, newton, {});
   auto x = problem.zero();
-  const auto report = stepper.advance(x, 0, 1);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
   EXPECT_TRUE(report.converged) << report.reason;
   EXPECT_EQ(report.substeps, 1);
   EXPECT_EQ(report.cuts, 0);

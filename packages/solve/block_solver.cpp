@@ -1,0 +1,167 @@
+// MueLu for one block, Ifpack2 for another, and the sweep that joins them.
+#include <Ifpack2_Factory.hpp>
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+
+#include "base/check.hpp"
+#include "solve/block_solver.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Map;
+using fields::MultiVector;
+using fields::Operator;
+using Teuchos::ParameterList;
+
+constexpr int coarse_size = 1000;
+
+/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
+/// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
+/// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
+/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew.
+ParameterList multigrid_defaults(int n_components, int n_ranks) {
+  ParameterList list("MueLu");
+  list.set("verbosity", "none");
+  list.set("number of equations", n_components);
+  list.set("multigrid algorithm", "sa");
+  list.set("coarse: max size", coarse_size);
+  list.set("transpose: use implicit", true);
+  list.set("reuse: type", "tP");
+  list.set("aggregation: drop tol", 1e-12);
+  list.set("sa: use filtered matrix", true);
+  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
+  list.set("smoother: type", "CHEBYSHEV");
+  list.sublist("smoother: params").set("chebyshev: degree", 2).set("chebyshev: ratio eigenvalue", 7.0);
+  if (n_ranks > 1) {
+    list.set("repartition: enable", true);
+    list.set("repartition: partitioner", "zoltan2");
+    list.set("repartition: start level", 1);
+    list.set("repartition: min rows per proc", 3 * coarse_size);
+    list.set("repartition: target rows per proc", 3 * coarse_size);
+    list.set("repartition: max imbalance", 1.3);
+  }
+  return list;
+}
+
+/// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would
+/// make the coarse matrix singular, and its direct solver fail on the one rank that has it.
+RCP<CrsMatrix> raised(const CrsMatrix& matrix) {
+  const auto copy = rcp(new CrsMatrix(matrix, Teuchos::Copy));
+  const auto local = copy->getLocalMatrixHost();
+  const auto& columns = *copy->getColMap();
+  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+      if (columns.getGlobalElement(local.graph.entries(k)) == copy->getRowMap()->getGlobalElement(row))
+        local.values(k) *= 1 + 1e-8;
+  return copy;
+}
+
+class Multigrid : public BlockSolver {
+ public:
+  explicit Multigrid(const ParameterList& parameters) : parameters_(parameters) {}
+
+  void setup(const DiagonalBlock& block) override {
+    const auto matrix = raised(*block.matrix);
+    if (hierarchy_.is_null()) create(block.block, block.bulk.is_null() ? matrix : raised(*block.bulk));
+    MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
+  }
+  RCP<const Operator> inverse() const override { return hierarchy_; }
+
+ private:
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface.
+  void create(const Block& block, const RCP<CrsMatrix>& bulk) {
+    ParameterList list(parameters_);
+    auto& user_data = list.sublist("user data");
+    if (!block.near_null_space.is_null())
+      user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
+    user_data.set("Coordinates", rcp(new MultiVector(*block.coordinates, Teuchos::Copy)));
+    const RCP<Operator> from = bulk;
+    hierarchy_ = MueLu::CreateTpetraPreconditioner(from, list);
+  }
+
+  ParameterList parameters_;
+  RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> hierarchy_;
+};
+
+bool has_zero_on_diagonal(const CrsMatrix& matrix) {
+  Vector diagonal(matrix.getRowMap());
+  matrix.getLocalDiagCopy(diagonal);
+  const auto d = diagonal.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t i = 0; i < d.extent(0); ++i)
+    if (d(i, 0) == 0) return true;
+  return false;
+}
+
+class Relaxation : public BlockSolver {
+ public:
+  void setup(const DiagonalBlock& block) override {
+    SPREKK_CHECK(!block.matrix.is_null() && !has_zero_on_diagonal(*block.matrix),
+                 "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
+    if (relaxation_.is_null()) {
+      relaxation_ =
+          Ifpack2::Factory::create<Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>>("RELAXATION", block.matrix);
+      ParameterList list;
+      list.set("relaxation: type", "Symmetric Gauss-Seidel");
+      list.set("relaxation: sweeps", 2);
+      relaxation_->setParameters(list);
+      relaxation_->initialize();
+    }
+    relaxation_->compute();
+  }
+  RCP<const Operator> inverse() const override { return relaxation_; }
+
+ private:
+  RCP<Ifpack2::Preconditioner<Real, LocalIndex, GlobalIndex>> relaxation_;
+};
+
+/// y = sum_r of the parts y_r = (s_r^2 A_rr)^-1 (x - A (y_1 + ... + y_(r-1)))_r.
+class BlockSweep : public Operator {
+ public:
+  BlockSweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) : system_(system) {
+    for (const auto& solver : solvers) inverses_.push_back(solver->inverse());
+  }
+  RCP<const Map> getDomainMap() const override { return system_.matrix->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return system_.matrix->getRangeMap(); }
+
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
+    MultiVector sum(y.getMap(), y.getNumVectors()), rest(x, Teuchos::Copy);
+    std::size_t first = 0;
+    for (std::size_t r = 0; r < inverses_.size(); ++r) {
+      const auto& part = system_.diagonal[r];
+      if (r > 0) {
+        system_.matrix->apply(sum, rest);
+        rest.update(1, x, -1);
+      }
+      const auto from = rest.offsetView(part.block.map, first);
+      const auto to = sum.offsetViewNonConst(part.block.map, first);
+      inverses_[r]->apply(*from, *to);
+      to->scale(1 / (part.scale * part.scale));
+      first += part.block.map->getNodeNumElements();
+    }
+    y.update(alpha, sum, beta);
+  }
+
+ private:
+  LinearSystem system_;
+  std::vector<RCP<const Operator>> inverses_;
+};
+
+}  // namespace
+
+ParameterList multigrid_parameters(const ParameterList& muelu, const Block& block) {
+  auto list = multigrid_defaults(block.n_components, block.map->getComm()->getSize());
+  if (muelu.isParameter("smoother: type")) list.remove("smoother: params");
+  list.setParameters(muelu);
+  return list;
+}
+
+RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& block) {
+  if (block.coordinates.is_null()) return rcp(new Relaxation);
+  return rcp(new Multigrid(multigrid_parameters(muelu, block)));
+}
+
+RCP<const Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) {
+  return rcp(new BlockSweep(system, solvers));
+}
+
+}  // namespace sprekk::solve

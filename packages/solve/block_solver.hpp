@@ -1,0 +1,26 @@
+// Approximate inverses of single blocks, and of several by a sweep over them: the preconditioners of Krylov's method.
+#pragma once
+
+#include "solve/linear_solver.hpp"
+
+namespace sprekk::solve {
+
+class BlockSolver {
+ public:
+  virtual ~BlockSolver() = default;
+  /// Makes ready for these values; the graph must stay as it was. Throws where a library does. Collective.
+  virtual void setup(const DiagonalBlock& block) = 0;
+  /// About the inverse of the block's matrix, without the system's scale. The object may change at every set-up.
+  virtual RCP<const fields::Operator> inverse() const = 0;
+};
+
+/// Multigrid for blocks with coordinates, Gauss-Seidel within a rank for others. `muelu` goes over the defaults.
+RCP<BlockSolver> make_block_solver(const Teuchos::ParameterList& muelu, const Block& block);
+
+/// All that MueLu is told of a block.
+Teuchos::ParameterList multigrid_parameters(const Teuchos::ParameterList& muelu, const Block& block);
+
+/// One sweep of block Gauss-Seidel over the system with these solvers, [block].
+RCP<const fields::Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers);
+
+}  // namespace sprekk::solve
