@@ -24,11 +24,10 @@ std::string Bounds::text() const {
     text = low_is_open_ || high_is_open_ ? lower + " and " + upper : fmt::format("between {} and {}", low, high);
   else if (has_low || has_high)
     text = has_low ? lower : upper;
-  return infinite_ ? text + " or infinite" : text;
+  if (infinite_) text += " or infinite";
+  return word_.empty() ? text : fmt::format("{} or \"{}\"", text, word_);
 }
 
-std::string Bounds::length_text() const {
-  return size_ ? fmt::format("{} element{}", *size_, *size_ == 1 ? "" : "s") : std::string();
-}
+std::string Bounds::length_text() const { return size_ ? counted(*size_, "element") : std::string(); }
 
 }  // namespace sprekk::base

@@ -18,11 +18,13 @@ class Bounds {
   Bounds& below(Real high) { return high_ = high, high_is_open_ = true, *this; }
   Bounds& to(Real high) { return high_ = high, high_is_open_ = false, *this; }
   Bounds& or_infinite() { return infinite_ = true, *this; }
+  Bounds& or_word(const std::string& word) { return word_ = word, *this; }  ///< of expressions, e.g. "free"
   Bounds& size(std::size_t n) { return size_ = n, *this; }
 
   bool contains(Real value) const;
   bool allows_infinity() const { return infinite_; }
   std::optional<std::size_t> size() const { return size_; }
+  const std::string& word() const { return word_; }
 
   std::string text() const;         ///< "at least 0"; "finite" if every finite number is inside
   std::string length_text() const;  ///< "3 elements"; empty if any length is allowed
@@ -32,6 +34,7 @@ class Bounds {
   Real low_ = -infinity_, high_ = infinity_;
   bool low_is_open_ = true, high_is_open_ = true, infinite_ = false;
   std::optional<std::size_t> size_;
+  std::string word_;
 };
 
 inline Bounds any() { return {}; }  ///< every finite number

@@ -4,6 +4,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "base/units.hpp"
 #include "base/value.hpp"
 
 namespace sprekk::base {
@@ -34,18 +35,47 @@ bool inside(Reading& reading, const std::string& suffix, Real value) {
 
 bool length_fits(Reading& reading, std::size_t n) {
   if (!reading.bounds.size() || *reading.bounds.size() == n) return true;
-  reading.fail("", fmt::format("has {} element{}, must have {}", n, n == 1 ? "" : "s", reading.bounds.length_text()));
+  reading.fail("", fmt::format("has {}, must have {}", counted(n, "element"), reading.bounds.length_text()));
   return false;
 }
 
 std::string index(std::size_t i) { return fmt::format("[{}]", i); }
 
+/// Calls use() with the number that a quantity is in `unit`, unless there is none, which it reports.
+template <class Use>
+void convert(Reading& reading, const std::string& suffix, const std::string& unit, const Quantity& value,
+             const Use& use) {
+  std::optional<Real> number;
+  try {
+    number = value_in(unit, value);
+  } catch (const Error& error) {
+    return reading.fail(suffix, fmt::format("is \"{}\", {}", quantity_text(value), error.what()));
+  }
+  use(*number);
+}
+
+/// The unit of one element: units of elements are separated by ", ".
+std::string unit_of_element(const std::string& units, std::size_t i) {
+  std::size_t begin = 0;
+  for (std::size_t end; i > 0 && (end = units.find(", ", begin)) != units.npos; --i) begin = end + 2;
+  return units.substr(begin, units.find(", ", begin) - begin);
+}
+
 template <class From, class T>
 bool decode_array(const ParameterEntry& entry, Reading& reading, std::vector<T>& target) {
   return if_type<Array<From>>(entry, [&](const Array<From>& values) {
-    bool good = length_fits(reading, values.size());
-    for (int i = 0; i < values.size(); ++i) good = inside(reading, index(i), values[i]) && good;
-    if (good) target.assign(values.begin(), values.end());
+    const auto n_errors = reading.errors.size();
+    length_fits(reading, values.size());
+    std::vector<T> numbers;
+    const auto add = [&](T number) {
+      if (inside(reading, index(numbers.size()), static_cast<Real>(number))) numbers.push_back(number);
+    };
+    for (int i = 0; i < values.size(); ++i)
+      if constexpr (std::is_same_v<From, Quantity>)
+        convert(reading, index(i), reading.unit, values[i], add);
+      else
+        add(values[i]);
+    if (reading.errors.size() == n_errors) target = std::move(numbers);
   });
 }
 
@@ -60,14 +90,28 @@ bool decode_integer(const ParameterEntry& entry, Reading& reading, T& target) {
   return if_type<int>(entry, use) || if_type<long long>(entry, use);
 }
 
-/// One expression from a number or a text.
-void decode_expression(Reading& reading, const std::string& suffix, Real value, Expression& target) {
+/// One expression from a number, a quantity or a text.
+void decode_expression(Reading& reading, const std::string& suffix, const std::string&, Real value,
+                       Expression& target) {
   if (inside(reading, suffix, value)) target = Expression(value);
 }
-void decode_expression(Reading& reading, const std::string& suffix, const std::string& text, Expression& target) {
-  if (const auto number = parse_number(text)) return decode_expression(reading, suffix, *number, target);
+void decode_expression(Reading& reading, const std::string& suffix, const std::string& unit, const Quantity& value,
+                       Expression& target) {
+  convert(reading, suffix, unit, value, [&](Real v) { decode_expression(reading, suffix, unit, v, target); });
+}
+void decode_expression(Reading& reading, const std::string& suffix, const std::string& unit, const std::string& text,
+                       Expression& target) {
+  if (const auto number = parse_number(text)) return decode_expression(reading, suffix, unit, *number, target);
+  if (const auto quantity = parse_quantity(text)) {  // no expression opens like one
+    const std::string defect = defect_of_unit(quantity->unit);
+    if (defect.empty()) return decode_expression(reading, suffix, unit, *quantity, target);
+    return reading.fail(suffix,
+                        fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", text, defect));
+  }
   try {
-    target = Expression(text, reading.place + suffix);
+    Expression expression(text, reading.place + suffix);
+    if (reading.tables && reading.bounds.word() != text) expression.compile(reading.tables);
+    target = expression;
   } catch (const Error& error) {
     reading.errors.push_back(error.what());
   }
@@ -79,7 +123,8 @@ bool decode_expressions(const ParameterEntry& entry, Reading& reading, std::vect
     const auto n_errors = reading.errors.size();
     length_fits(reading, values.size());
     std::vector<Expression> expressions(values.size());
-    for (int i = 0; i < values.size(); ++i) decode_expression(reading, index(i), values[i], expressions[i]);
+    for (int i = 0; i < values.size(); ++i)
+      decode_expression(reading, index(i), unit_of_element(reading.unit, i), values[i], expressions[i]);
     if (reading.errors.size() == n_errors) target = std::move(expressions);
   });
 }
@@ -90,9 +135,15 @@ void decode(const ParameterEntry& entry, Reading reading, double& target) {
   const auto use = [&](Real value) {
     if (inside(reading, "", value)) target = value;
   };
+  const auto use_quantity = [&](const Quantity& quantity) { convert(reading, "", reading.unit, quantity, use); };
   if (if_type<double>(entry, use) || if_type<int>(entry, use) || if_type<long long>(entry, use)) return;
-  if (entry.isType<std::string>() && Teuchos::getValue<std::string>(entry) == "infinite")
-    return use(*parse_number("infinite"));
+  if (if_type<Quantity>(entry, use_quantity)) return;
+  if (entry.isType<std::string>()) {
+    const auto& text = Teuchos::getValue<std::string>(entry);
+    if (text == "infinite") return use(*parse_number(text));
+    const auto quantity = parse_quantity(text);
+    if (quantity && defect_of_unit(quantity->unit).empty()) return use_quantity(*quantity);
+  }
   wrong_type(entry, reading, "a number, e.g. type=\"double\"");
 }
 
@@ -115,8 +166,9 @@ void decode(const ParameterEntry& entry, Reading reading, std::string& target) {
 }
 
 void decode(const ParameterEntry& entry, Reading reading, std::vector<double>& target) {
-  if (!decode_array<double>(entry, reading, target) && !decode_array<int>(entry, reading, target))
-    wrong_type(entry, reading, "numbers, e.g. type=\"Array(double)\" value=\"{1, 2}\"");
+  const bool done = decode_array<double>(entry, reading, target) || decode_array<int>(entry, reading, target) ||
+                    decode_array<Quantity>(entry, reading, target);
+  if (!done) wrong_type(entry, reading, "numbers, e.g. type=\"Array(double)\" value=\"{1, 2}\"");
 }
 
 void decode(const ParameterEntry& entry, Reading reading, std::vector<int>& target) {
@@ -133,15 +185,16 @@ void decode(const ParameterEntry& entry, Reading reading, std::vector<std::strin
 }
 
 void decode(const ParameterEntry& entry, Reading reading, Expression& target) {
-  const auto use = [&](const auto& value) { decode_expression(reading, "", value, target); };
-  if (!if_type<double>(entry, use) && !if_type<int>(entry, use) && !if_type<std::string>(entry, use))
-    wrong_type(entry, reading, "a number or an expression, e.g. type=\"string\" value=\"-0.1*t\"");
+  const auto use = [&](const auto& value) { decode_expression(reading, "", reading.unit, value, target); };
+  const bool done = if_type<double>(entry, use) || if_type<int>(entry, use) || if_type<Quantity>(entry, use) ||
+                    if_type<std::string>(entry, use);
+  if (!done) wrong_type(entry, reading, "a number or an expression, e.g. type=\"string\" value=\"-0.1*t\"");
 }
 
 void decode(const ParameterEntry& entry, Reading reading, std::vector<Expression>& target) {
-  const bool done = decode_expressions<double>(entry, reading, target) ||
-                    decode_expressions<int>(entry, reading, target) ||
-                    decode_expressions<std::string>(entry, reading, target);
+  const bool done =
+      decode_expressions<double>(entry, reading, target) || decode_expressions<int>(entry, reading, target) ||
+      decode_expressions<Quantity>(entry, reading, target) || decode_expressions<std::string>(entry, reading, target);
   if (!done) wrong_type(entry, reading, "numbers or expressions, e.g. type=\"Array(string)\" value=\"{0, -0.1*t}\"");
 }
 

@@ -14,14 +14,18 @@ namespace sprekk::base {
 /// Where a value comes from, what it may be, and what is wrong with it.
 struct Reading {
   std::string place;  ///< `scene.xml: Sprekk > Time > "end"`
+  std::string
+      unit;  ///< that numbers are kept in, "-" for none; "m, Pa" if the elements of an array have different ones
   const Bounds& bounds;
+  std::shared_ptr<const Tables> tables;  ///< that expressions may call; null: they are not compiled
   std::vector<std::string>& errors;
 
   void fail(const std::string& suffix, const std::string& what) { errors.push_back(place + suffix + ": " + what); }
 };
 
 /// Converts an entry to the type of `target` and checks the bounds; on an error, which goes to reading.errors, `target`
-/// stays what it was. A number may be written as an integer, and as the string "infinite" where the bounds allow it.
+/// stays what it was. A number may be written as an integer, as a quantity of any unit that measures the same, and,
+/// both in a string, as "infinite" where the bounds allow it.
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, double& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, int& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, long long& target);
@@ -30,7 +34,7 @@ void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::string& 
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<double>& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<int>& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<std::string>& target);
-/// A number or a string; bounds are checked of constants only.
+/// A number, a quantity, or a string with an expression; bounds are checked of constants only.
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, Expression& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<Expression>& target);
 

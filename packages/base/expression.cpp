@@ -14,11 +14,17 @@ struct Expression::Compiled {
   mu::Parser parser;
   Real x = 0, y = 0, z = 0, t = 0;
   std::shared_ptr<const Tables> tables;
+
+  void define_names() {
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    parser.DefineVar("z", &z);
+    parser.DefineVar("t", &t);
+    parser.DefineConst("pi", 3.14159265358979323846);
+  }
 };
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Called by muParser; `named_table` points to an entry of the Tables that the expression holds.
 double evaluate_table(void* named_table, double argument) {
@@ -66,7 +72,7 @@ void check_names(const std::string& text, const mu::Parser& parser) {
     const auto end = std::find_if_not(word, text.end(), in_word);
     const std::string name(word, end);
     const bool known = std::count(names.begin(), names.end(), name) || parser.GetConst().count(name);
-    SPREKK_CHECK(name.empty() || !is_letter(name[0]) || known, "unknown name \"{}\" at position {}.{}", name,
+    SPREKK_CHECK(name.empty() || !is_letter(name[0]) || known, "unknown name \"{}\" at position {}{}", name,
                  word - text.begin(), did_you_mean(name, names));
     word = std::max(end, word + 1);
   }
@@ -106,15 +112,11 @@ void Expression::compile(std::shared_ptr<const Tables> tables) {
   auto compiled = std::make_shared<Compiled>();
   auto& parser = compiled->parser;
   const auto fail = [&](const std::string& what) {
-    throw Error(
-        fmt::format("{}: in \"{}\": {}; allowed are {}", place_, text_, what, quoted_list(known_names(parser))));
+    const char* link = what.back() == '?' ? " Allowed are" : "; allowed are";
+    throw Error(fmt::format("{}: in \"{}\": {}{} {}", place_, text_, what, link, quoted_list(known_names(parser))));
   };
   try {
-    parser.DefineVar("x", &compiled->x);
-    parser.DefineVar("y", &compiled->y);
-    parser.DefineVar("z", &compiled->z);
-    parser.DefineVar("t", &compiled->t);
-    parser.DefineConst("pi", pi);
+    compiled->define_names();
     define_tables(parser, *tables);
     compiled->tables = std::move(tables);
     check_single_value(text_);
@@ -130,6 +132,17 @@ void Expression::compile(std::shared_ptr<const Tables> tables) {
   }
   compiled_ = std::move(compiled);
   if (constant_at_compile_) constant_ = evaluate({}, 0);
+}
+
+std::string defect_of_table_name(const std::string& name) {
+  Expression::Compiled names;
+  names.define_names();
+  try {
+    define_tables(names.parser, {{name, {{0, 1}, {0, 1}}}});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 Real Expression::operator()(const std::array<Real, 3>& x, Real t) const {
@@ -152,7 +165,7 @@ Real Expression::evaluate(const std::array<Real, 3>& x, Real t) const {
   try {
     const Real value = compiled_->parser.Eval();
     if (std::isfinite(value)) return value;
-    problem = fmt::format("is {}, must be finite", value);
+    problem = fmt::format("is {}, must be finite", std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
   } catch (const mu::ParserError& error) {
     problem = error.GetMsg();
   } catch (const Error& error) {

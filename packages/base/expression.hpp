@@ -37,6 +37,7 @@ class Expression {
 
  private:
   struct Compiled;
+  friend std::string defect_of_table_name(const std::string& name);
 
   Real evaluate(const std::array<Real, 3>& x, Real t) const;
 
@@ -45,5 +46,8 @@ class Expression {
   std::string text_, place_;  ///< empty if the expression was given as a number
   std::shared_ptr<Compiled> compiled_;
 };
+
+/// Why expressions cannot call a table by this name; empty if they can.
+std::string defect_of_table_name(const std::string& name);
 
 }  // namespace sprekk::base

@@ -4,14 +4,17 @@
 
 namespace sprekk::base {
 
-Log::Log(const Comm& comm, Level level) : Log(comm, level, std::cout, isatty(STDOUT_FILENO) != 0) {}
+Log::Log(const Comm& comm, Level level) : Log(comm, level, std::cout, std::cerr, isatty(STDOUT_FILENO) != 0) {}
 
-Log::Log(const Comm& comm, Level level, std::ostream& out, bool terminal)
-    : out_(comm.getRank() == 0 ? &out : nullptr), level_(level), terminal_(terminal) {}
+Log::Log(const Comm& comm, Level level, std::ostream& out, std::ostream& warnings, bool terminal)
+    : out_(comm.getRank() == 0 ? &out : nullptr),
+      warnings_(comm.getRank() == 0 ? &warnings : nullptr),
+      level_(level),
+      terminal_(terminal) {}
 
-void Log::line(const std::string& text) {
+void Log::line(std::ostream& to, const std::string& text) {
   clear();
-  *out_ << text << std::endl;
+  to << text << std::endl;
 }
 
 void Log::replaceable(const std::string& text) {
@@ -21,7 +24,7 @@ void Log::replaceable(const std::string& text) {
 }
 
 void Log::clear() {
-  if (pending_) *out_ << "\r\x1b[K";  // to the start of the line, and erase it
+  if (pending_) *out_ << "\r\x1b[K" << std::flush;  // to the start of the line, and erase it
   pending_ = false;
 }
 

@@ -1,31 +1,50 @@
 #include "base/parameters.hpp"
 
+#include <Teuchos_Array.hpp>
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "base/units.hpp"
 #include "base/value.hpp"
 
 namespace sprekk::base {
 
-namespace {
-
-/// For a cell of a Markdown table.
-std::string cell(const std::string& text) {
-  std::string escaped;
-  for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
-  return escaped;
-}
-
-}  // namespace
-
 void Section::passthrough(Teuchos::ParameterList& target, const std::string& name, const std::string& meaning) {
   names_.push_back(name);
   if (mode_ == Mode::document)
-    rows_ += fmt::format("| {} | section | - | as it is | any | {} |\n", name, cell(meaning));
+    specification_.sections.push_back({name, meaning, {}, {}, true});
   else if (mode_ == Mode::write)
     output_->sublist(name).setParameters(target);
-  else if (const auto* list = find_list(name))
+  else if (const auto* list = find_list(name)) {
+    for (const auto& message : unreadable(*list)) errors_->push_back(message);
+    refuse_units(*list, path_ + " > " + name);
     target.setParameters(*list);
+  }
+}
+
+void Section::refuse_units(const Teuchos::ParameterList& list, const std::string& path) {
+  for (const auto& named_entry : list) {
+    const auto& name = named_entry.first;
+    const auto& entry = named_entry.second;
+    if (entry.isList()) refuse_units(list.sublist(name), path + " > " + name);
+    if (entry.isType<Quantity>() || entry.isType<Teuchos::Array<Quantity>>())
+      errors_->push_back(
+          fmt::format("{}: {} > \"{}\": is {}, must be without a unit", file_, path, name, base::describe(entry)));
+  }
+}
+
+void Section::expressions_call(const Tables& tables) {
+  if (mode_ != Mode::read) return;
+  const Table nothing{{-1e9, 1e9}, {0, 0}};  // in place of a table whose defect is reported, so that names are known
+  auto callable = std::make_shared<Tables>();
+  for (const auto& [name, table] : tables) {
+    const std::string defect = defect_of_table_name(name);
+    if (defect.empty())
+      callable->emplace(name, table.defect().empty() ? table : nothing);
+    else
+      fail(defect);
+  }
+  tables_ = callable;
 }
 
 void Section::fail(const std::string& what) {
@@ -44,6 +63,7 @@ Section Section::child(const std::string& name) const {
   Section inner(mode_, path_ + " > " + name);
   inner.file_ = file_;
   inner.errors_ = errors_;
+  inner.tables_ = tables_;
   if (errors_) inner.n_errors_before_ = errors_->size();
   return inner;
 }
@@ -56,14 +76,21 @@ const Teuchos::ParameterEntry* Section::find(const Spec& spec) {
   const auto* entry = input_->getEntryPtr(spec.name);
   const std::string unit = spec.unit == "-" ? "" : fmt::format(" ({})", spec.unit);
   if (!entry && spec.required)
-    errors_->push_back(fmt::format("{}{}: missing; it is required. {}", place(spec.name), unit, spec.meaning));
-  return entry;
+    errors_->push_back(fmt::format("{}{}: missing; it is required: {}", place(spec.name), unit, spec.meaning));
+  return entry && is_unreadable(*entry) ? nullptr : entry;
+}
+
+bool Section::is_unreadable(const Teuchos::ParameterEntry& entry) {
+  if (!entry.isType<Unreadable>()) return false;
+  errors_->push_back(Teuchos::getValue<Unreadable>(entry).message);
+  return true;
 }
 
 const Teuchos::ParameterList* Section::find_list(const std::string& name) {
   const auto* entry = input_->getEntryPtr(name);
   if (!entry) return nullptr;
   if (entry->isList()) return &input_->sublist(name);
+  if (is_unreadable(*entry)) return nullptr;
   fail(name, fmt::format("is {}, expected a section, e.g. <ParameterList name=\"{}\">", base::describe(*entry), name));
   return nullptr;
 }
@@ -72,7 +99,7 @@ bool Section::is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry
   if (spec.choices.empty() || !entry.isType<std::string>()) return true;
   const auto& value = Teuchos::getValue<std::string>(entry);
   if (std::count(spec.choices.begin(), spec.choices.end(), value)) return true;
-  fail(spec.name, fmt::format("is \"{}\", must be one of {}.{}", value, quoted_list(spec.choices),
+  fail(spec.name, fmt::format("is \"{}\", must be one of {}{}", value, quoted_list(spec.choices),
                               did_you_mean(value, spec.choices)));
   return false;
 }
@@ -81,28 +108,29 @@ void Section::document(const Spec& spec, const std::string& type, const Teuchos:
   const auto* entry = defaults.getEntryPtr(spec.name);
   std::string value = spec.required ? "required" : entry ? value_text(*entry) : "absent";
   if (value.empty()) value = "\"\"";
-  const bool numeric = type.find("double") != type.npos || type.find("int") != type.npos;
-  std::string allowed = !spec.choices.empty() ? quoted_list(spec.choices) : numeric ? spec.bounds.text() : "any";
-  if (spec.bounds.size()) allowed += ", " + spec.bounds.length_text();
-  rows_ += fmt::format("| {} | {} | {} | {} | {} | {} |\n", spec.name, type, cell(spec.unit), cell(value),
-                       cell(allowed), cell(spec.meaning));
+  specification_.entries.push_back(
+      {spec.name, type, spec.unit, value, spec.meaning, spec.bounds, spec.required, spec.choices});
+}
+
+std::vector<std::string> Section::unknown_names() const {
+  std::vector<std::string> names;
+  for (const auto& named_entry : *input_)
+    if (!std::count(names_.begin(), names_.end(), named_entry.first)) names.push_back(named_entry.first);
+  return names;
+}
+
+bool Section::complete() const {
+  return mode_ == Mode::read && errors_->size() == n_errors_before_ && unknown_names().empty();
 }
 
 void Section::finish(const std::string& meaning) {
-  if (mode_ == Mode::read) {
-    for (const auto& named_entry : *input_) {
-      const std::string& name = named_entry.first;
-      if (std::count(names_.begin(), names_.end(), name)) continue;
-      std::string help = did_you_mean(name, names_);
-      if (help.empty()) help = names_.empty() ? " Nothing is allowed here" : " Allowed are " + quoted_list(names_);
-      fail(name, "unknown." + help);
-    }
-  } else if (mode_ == Mode::document) {
-    std::string text = fmt::format("## {}\n\n", path_);
-    if (!meaning.empty()) text += meaning + "\n\n";
-    if (!rows_.empty())
-      text += "| name | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n" + rows_ + "\n";
-    rows_ = text;
+  specification_.meaning = meaning;
+  if (mode_ != Mode::read) return;
+  for (const auto& name : unknown_names()) {
+    if (is_unreadable(*input_->getEntryPtr(name)) && name[0] == '<') continue;  // it has no name
+    std::string help = did_you_mean(name, names_);
+    if (help.empty()) help = names_.empty() ? "; nothing is allowed here" : "; allowed are " + quoted_list(names_);
+    fail(name, "unknown" + help);
   }
 }
 

@@ -12,6 +12,8 @@
 #include "base/bounds.hpp"
 #include "base/check.hpp"
 #include "base/codec.hpp"
+#include "base/specification.hpp"
+#include "base/value.hpp"
 
 namespace sprekk::base {
 
@@ -19,7 +21,8 @@ namespace sprekk::base {
 ///
 /// Targets of entries are double, int, long long, bool, std::string, Expression, vectors of double, int, string and
 /// Expression, and std::optional of those, which stay empty if the entry is absent. An entry's default is what the
-/// target holds when describe() is called. Units are text, "-" for none.
+/// target holds when describe() is called. Units are those that value_in() knows, "-" for none; an array of expressions
+/// may have one for each element, "m, Pa".
 class Section {
  public:
   /// An entry that may be left out.
@@ -73,15 +76,21 @@ class Section {
   /// The same of something further inside: `what` opens with its path, e.g. `Bulk > "material": is ...`.
   void fail_inside(const std::string& what);
 
-  /// Whether everything of this section, so far, was read without an error: so that describe() can compare entries.
-  bool complete() const { return mode_ == Mode::read && errors_->size() == n_errors_before_; }
+  /// The tables that the expressions of all later entries may call, and with which they are compiled. Without this call
+  /// expressions are not compiled.
+  void expressions_call(const Tables& tables);
+
+  /// Whether this section was read without an error and has no name that is not yet described: so that describe() can
+  /// compare entries after the last of them. A misspelt entry is not also told as a missing one.
+  bool complete() const;
 
   template <class S>
-  static S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root);
+  static S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+                std::vector<std::string> errors);
   template <class S>
   static Teuchos::ParameterList effective(S& target, const std::string& root);
   template <class S>
-  static std::string reference(const std::string& root);
+  static SectionSpecification specification(const std::string& root);
 
  private:
   enum class Mode { read, write, document };
@@ -106,10 +115,13 @@ class Section {
   std::string place(const std::string& entry) const;                 ///< `file: path > "entry"`
   const Teuchos::ParameterEntry* find(const Spec& spec);             ///< reports a required entry that is missing
   const Teuchos::ParameterList* find_list(const std::string& name);  ///< null if absent; reports an entry of that name
-  bool is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry);  ///< reports a text that is not
-  /// Adds the row of an entry, whose default is in `defaults`, if there is one.
+  bool is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry);        ///< reports a text that is not
+  void refuse_units(const Teuchos::ParameterList& list, const std::string& path);  ///< of a list that is handed on
+  bool is_unreadable(const Teuchos::ParameterEntry& entry);                        ///< reports what is in place of it
+  /// Adds the specification of an entry, whose default is in `defaults`, if there is one.
   void document(const Spec& spec, const std::string& type, const Teuchos::ParameterList& defaults);
-  void finish(const std::string& meaning);  ///< reports names that are unknown; completes the documentation
+  std::vector<std::string> unknown_names() const;
+  void finish(const std::string& meaning);  ///< reports names that are unknown; completes the specification
   void throw_errors() const;
 
   Mode mode_;
@@ -120,17 +132,19 @@ class Section {
   const Teuchos::ParameterList* input_ = nullptr;
   std::vector<std::string>* errors_ = nullptr;
   std::size_t n_errors_before_ = 0;
+  std::shared_ptr<const Tables> tables_;
   // writing
   Teuchos::ParameterList* output_ = nullptr;
   // documenting
-  std::string rows_, inner_sections_;
+  SectionSpecification specification_;
 };
 
 /// An S filled from `list`; `file` and `root` open the paths in messages. Throws one Error with a line for each thing
-/// that is wrong. The same on all ranks if the list is.
+/// that is wrong, after `errors` that are known before. The same on all ranks if the list is.
 template <class S>
-S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root) {
-  return Section::read<S>(list, file, root);
+S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+       std::vector<std::string> errors = {}) {
+  return Section::read<S>(list, file, root, std::move(errors));
 }
 
 /// All parameters with their values, defaults included; read() turns it back into an equal S. Every required entry of
@@ -140,11 +154,10 @@ Teuchos::ParameterList effective(S& target, const std::string& root) {
   return Section::effective(target, root);
 }
 
-/// Markdown: for every section that S{} can have a table with one row for each entry. Sections named by the user are
-/// described once, as NAME.
+/// All entries and sections that S{} can have.
 template <class S>
-std::string reference(const std::string& root) {
-  return Section::reference<S>(root);
+SectionSpecification specification(const std::string& root) {
+  return Section::specification<S>(root);
 }
 
 template <class T>
@@ -152,7 +165,8 @@ void Section::visit(T& target, const Spec& spec) {
   names_.push_back(spec.name);
   if (mode_ == Mode::read) {
     const auto* entry = find(spec);
-    if (entry && is_a_choice(spec, *entry)) decode(*entry, {place(spec.name), spec.bounds, *errors_}, target);
+    if (entry && is_a_choice(spec, *entry))
+      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, *errors_}, target);
   } else if (mode_ == Mode::write) {
     encode(*output_, spec.name, target);
   } else {
@@ -168,9 +182,10 @@ void Section::descend(S& target, const std::string& name, const Teuchos::Paramet
   Section inner = child(name);
   inner.input_ = input;
   inner.output_ = output;
+  inner.specification_.name = name;
   target.describe(inner);
   inner.finish(meaning);
-  inner_sections_ += inner.rows_ + inner.inner_sections_;
+  if (mode_ == Mode::document) specification_.sections.push_back(std::move(inner.specification_));
 }
 
 template <class S>
@@ -202,7 +217,9 @@ void Section::named_sections(std::map<std::string, S>& target, const std::string
   Section middle = child(name);
   if (mode_ == Mode::document) {
     S any_of_them{};
-    middle.descend(any_of_them, "NAME", nullptr, nullptr, meaning);
+    middle.specification_.name = name;
+    middle.descend(any_of_them, "", nullptr, nullptr, meaning);
+    specification_.sections.push_back(std::move(middle.specification_));
   } else if (mode_ == Mode::write) {
     auto& output = output_->sublist(name);
     for (auto& [key, value] : target) middle.descend(value, key, nullptr, &output.sublist(key), meaning);
@@ -213,16 +230,16 @@ void Section::named_sections(std::map<std::string, S>& target, const std::string
       if (const auto* list = middle.find_list(key)) middle.descend(target[key], key, list, nullptr, meaning);
     }
   }
-  inner_sections_ += middle.inner_sections_;
 }
 
 template <class S>
-S Section::read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root) {
-  std::vector<std::string> errors;
+S Section::read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+                std::vector<std::string> errors) {
   Section section(Mode::read, root);
   section.file_ = file;
   section.input_ = &list;
   section.errors_ = &errors;
+  section.n_errors_before_ = errors.size();
   S target{};
   target.describe(section);
   section.finish("");
@@ -240,12 +257,13 @@ Teuchos::ParameterList Section::effective(S& target, const std::string& root) {
 }
 
 template <class S>
-std::string Section::reference(const std::string& root) {
+SectionSpecification Section::specification(const std::string& root) {
   Section section(Mode::document, root);
+  section.specification_.name = root;
   S target{};
   target.describe(section);
   section.finish("");
-  return section.rows_ + section.inner_sections_;
+  return section.specification_;
 }
 
 }  // namespace sprekk::base

@@ -5,6 +5,7 @@
 
 #include "base/check.hpp"
 #include "base/parameters.hpp"
+#include "base/text.hpp"
 
 namespace sprekk::base {
 
@@ -17,8 +18,8 @@ void Table::describe(Section& section) {
 
 std::string Table::defect() const {
   if (arguments.size() != values.size())
-    return fmt::format("has {} arguments but {} values", arguments.size(), values.size());
-  if (arguments.size() < 2) return fmt::format("has {} points, needs at least 2", arguments.size());
+    return fmt::format("has {} but {}", counted(arguments.size(), "argument"), counted(values.size(), "value"));
+  if (arguments.size() < 2) return fmt::format("has {}, needs at least 2", counted(arguments.size(), "point"));
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (!std::isfinite(arguments[i]) || !std::isfinite(values[i]))
       return fmt::format("point {} is ({}, {}), must be finite", i, arguments[i], values[i]);

@@ -125,6 +125,48 @@ std::string quoted_list(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string xml_escaped(const std::string& text) {
+  std::string result;
+  for (char c : text) switch (c) {
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  return result;
+}
+
+std::string counted(std::size_t n, const std::string& what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+std::optional<std::size_t> where_not_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned lead = byte(i);
+    const int n = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
+    unsigned code = n <= 0 ? lead : lead & (0x3fu >> n);
+    for (int k = 1; k <= n; ++k) {
+      if (byte(i + k) >> 6 != 2) return i;
+      code = code << 6 | (byte(i + k) & 0x3f);
+    }
+    constexpr unsigned least[] = {0, 0x80, 0x800, 0x10000};
+    if (n < 0 || code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return i;
+    i += n + 1;
+  }
+  return std::nullopt;
+}
+
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed) {
   const std::string wanted = without_separators(name);
   std::size_t smallest = std::min(std::clamp<std::size_t>(wanted.size() / 3, 1, 3) + 1, wanted.size());
@@ -133,7 +175,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
     const auto distance = edit_distance(wanted, without_separators(candidate));
     if (distance >= smallest) continue;
     smallest = distance;
-    nearest = fmt::format(" Did you mean \"{}\"?", candidate);
+    nearest = fmt::format(". Did you mean \"{}\"?", candidate);
   }
   return nearest;
 }

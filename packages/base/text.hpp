@@ -28,7 +28,16 @@ std::string number_text(Real value);
 /// `"a", "b", "c"`
 std::string quoted_list(const std::vector<std::string>& names);
 
-/// ` Did you mean "..."?` for the nearest of `allowed`, case, blanks, "-" and "_" aside; empty if none is near.
+/// As an attribute of XML: with &lt; &gt; &amp; &quot; for < > & ".
+std::string xml_escaped(const std::string& text);
+
+/// "1 value", "2 values"
+std::string counted(std::size_t n, const std::string& what);
+
+/// Where `text` stops being UTF-8; nothing if it is UTF-8 from end to end.
+std::optional<std::size_t> where_not_utf8(std::string_view text);
+
+/// `. Did you mean "..."?` for the nearest of `allowed`, case, blanks, "-" and "_" aside; empty if none is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed);
 
 }  // namespace sprekk::base

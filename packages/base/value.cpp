@@ -5,6 +5,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "base/units.hpp"
 
 namespace sprekk::base {
 
@@ -18,10 +19,12 @@ void for_each_type(const Use& use) {
   use(int(), "int");
   use((long long)(0), "long long");
   use(double(), "double");
+  use(Quantity(), "double");
   use(bool(), "bool");
   use(std::string(), "string");
   use(Array<int>(), "Array(int)");
   use(Array<double>(), "Array(double)");
+  use(Array<Quantity>(), "Array(double)");
   use(Array<std::string>(), "Array(string)");
 }
 
@@ -36,10 +39,13 @@ void parse(const std::string& text, int& value) {
   value = static_cast<int>(wide);
   SPREKK_CHECK(value == wide, "is \"{}\", too large for an int; type=\"long long\" holds it", text);
 }
-void parse(const std::string& text, double& value) {
+void parse(const std::string& text, Quantity& value) {
   const auto number = parse_number(text);
-  SPREKK_CHECK(number, "is \"{}\", not a number that a double holds", text);
-  value = *number;
+  const auto quantity = number ? Quantity{*number, ""} : parse_quantity(text);
+  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds", text);
+  const std::string defect = number ? "" : defect_of_unit(quantity->unit);
+  SPREKK_CHECK(defect.empty(), "is \"{}\", not a number: {}", text, defect);
+  value = *quantity;
 }
 void parse(const std::string& text, bool& value) {
   const auto boolean = parse_boolean(text);
@@ -61,6 +67,7 @@ void parse(const std::string& text, Array<T>& value) {
 std::string write(long long value) { return std::to_string(value); }
 std::string write(int value) { return std::to_string(value); }
 std::string write(double value) { return number_text(value); }
+std::string write(const Quantity& value) { return quantity_text(value); }
 std::string write(bool value) { return value ? "true" : "false"; }
 std::string write(const std::string& value) { return value; }
 /// With quotes where a list's element needs them. Text with both kinds of quotes cannot be an element.
@@ -77,6 +84,21 @@ std::string write(const Array<T>& value) {
   return "{" + text + "}";
 }
 
+template <class T>
+void set(Teuchos::ParameterList& list, const std::string& name, const T& value) {
+  list.set(name, value);
+}
+/// Without units, a double or an array of them.
+void set(Teuchos::ParameterList& list, const std::string& name, const Quantity& value) {
+  value.unit.empty() ? list.set(name, value.value) : list.set(name, value);
+}
+void set(Teuchos::ParameterList& list, const std::string& name, const Array<Quantity>& values) {
+  Array<double> numbers;
+  for (const auto& value : values)
+    if (value.unit.empty()) numbers.push_back(value.value);
+  numbers.size() == values.size() ? list.set(name, numbers) : list.set(name, values);
+}
+
 }  // namespace
 
 void set_from_text(Teuchos::ParameterList& list, const std::string& name, const std::string& type,
@@ -84,14 +106,17 @@ void set_from_text(Teuchos::ParameterList& list, const std::string& name, const 
   bool known = false;
   std::vector<std::string> types;
   for_each_type([&](auto value, const char* candidate) {
-    types.push_back(candidate);
-    if (type != candidate) return;
-    parse(text, value);
-    list.set(name, value);
-    known = true;
+    using T = decltype(value);
+    if constexpr (!std::is_same_v<T, double> && !std::is_same_v<T, Array<double>>) {  // they are read as quantities
+      types.push_back(candidate);
+      if (type != candidate) return;
+      parse(text, value);
+      set(list, name, value);
+      known = true;
+    }
   });
-  SPREKK_CHECK(known, "has the unknown type \"{}\".{} Types are {}", type, did_you_mean(type, types),
-               quoted_list(types));
+  SPREKK_CHECK(known, "has the unknown type \"{}\"; types are {}{}", type, quoted_list(types),
+               did_you_mean(type, types));
 }
 
 std::string type_of(const Teuchos::ParameterEntry& entry) {
@@ -111,6 +136,17 @@ std::string value_text(const Teuchos::ParameterEntry& entry) {
   return text;
 }
 
+std::vector<std::string> unreadable(const Teuchos::ParameterList& list) {
+  std::vector<std::string> messages;
+  for (const auto& named_entry : list) {
+    const auto& entry = named_entry.second;
+    if (entry.isType<Unreadable>()) messages.push_back(Teuchos::getValue<Unreadable>(entry).message);
+    if (!entry.isList()) continue;
+    for (auto& message : unreadable(list.sublist(named_entry.first))) messages.push_back(std::move(message));
+  }
+  return messages;
+}
+
 std::string describe(const Teuchos::ParameterEntry& entry) {
   if (entry.isList()) return "a section";
   const std::string type = type_of(entry);
@@ -118,6 +154,7 @@ std::string describe(const Teuchos::ParameterEntry& entry) {
   const std::string text = value_text(entry);
   if (type == "string") return fmt::format("the string \"{}\"", text);
   if (type == "bool") return "the boolean " + text;
+  if (entry.isType<Quantity>()) return fmt::format("\"{}\"", text);
   if (type == "double") return "the number " + text;
   return (type[0] == 'A' ? "the array " : "the integer ") + text;
 }

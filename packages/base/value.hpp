@@ -2,12 +2,25 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <ostream>
 #include <string>
+#include <vector>
 
 namespace sprekk::base {
 
+/// What stands in a list in place of something that could not be read.
+struct Unreadable {
+  std::string message;
+};
+inline bool operator==(const Unreadable& a, const Unreadable& b) { return a.message == b.message; }
+inline std::ostream& operator<<(std::ostream& out, const Unreadable& entry) { return out << entry.message; }
+
+/// The messages of all Unreadable entries of a list and its sublists.
+std::vector<std::string> unreadable(const Teuchos::ParameterList& list);
+
 /// Sets list[name] to the value that `text` is in `type`, one of int, long long, double, bool, string, Array(int),
-/// Array(double), Array(string). Throws an Error "is "1.0abc", not a number ..." without a place.
+/// Array(double), Array(string). A double with a unit becomes a Quantity, an array of doubles an Array<Quantity> if one
+/// of them has a unit. Throws an Error "is "1.0abc", not a number ..." without a place.
 void set_from_text(Teuchos::ParameterList& list, const std::string& name, const std::string& type,
                    const std::string& text);
 

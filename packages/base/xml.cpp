@@ -3,14 +3,12 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_StringInputSource.hpp>
 #include <Teuchos_XMLObject.hpp>
+#include <fmt/ranges.h>
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <sstream>
+#include <cstdlib>
 
 #include "base/check.hpp"
+#include "base/file.hpp"
 #include "base/text.hpp"
 #include "base/value.hpp"
 
@@ -21,15 +19,22 @@ using Teuchos::XMLObject;
 
 namespace {
 
-std::string read_file(const std::string& path) {
-  SPREKK_CHECK(std::filesystem::exists(path), "{}: there is no such file", path);
-  SPREKK_CHECK(!std::filesystem::is_directory(path), "{}: is a folder, expected an XML file", path);
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  SPREKK_CHECK(file && text, "{}: cannot be read", path);
-  SPREKK_CHECK(text.str().size() < std::size_t(std::numeric_limits<int>::max()), "{}: is too large", path);
-  return text.str();
+constexpr std::size_t largest_file = std::size_t(64) << 20;  // bytes
+
+/// Refuses what the XML parser would take amiss: text that is not UTF-8, and references to characters beyond ASCII.
+void check_characters(const std::string& text, const std::string& file) {
+  const auto line = [&](std::size_t at) { return 1 + std::count(text.begin(), text.begin() + at, '\n'); };
+  const auto bad = where_not_utf8(text);
+  SPREKK_CHECK(!bad, "{}: line {}: byte 0x{:02x} is not UTF-8; save the file in this encoding", file, line(*bad),
+               static_cast<unsigned char>(text[*bad]));
+  SPREKK_CHECK(text.find('\0') == text.npos, "{}: line {}: has a byte 0; is this an XML file?", file,
+               line(text.find('\0')));
+  for (auto at = text.find("&#"); at != text.npos; at = text.find("&#", at + 2)) {
+    const bool hexadecimal = text.compare(at + 2, 1, "x") == 0;
+    const long code = std::strtol(text.c_str() + at + 2 + hexadecimal, nullptr, hexadecimal ? 16 : 10);
+    SPREKK_CHECK(code < 128, "{}: line {}: has the character reference {}; write the character itself", file, line(at),
+                 text.substr(at, text.find(';', at) + 1 - at).substr(0, 12));
+  }
 }
 
 /// What a Teuchos exception says, without the source line and the test that threw it, on one printable line.
@@ -52,67 +57,71 @@ std::string reason(const std::string& what) {
 void check_depth(const std::string& text, const std::string& file) {
   constexpr int limit = 1000;
   int depth = 0;
-  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] == '<' && std::isalpha(static_cast<unsigned char>(text[i + 1]))) ++depth;
-    if ((text[i] == '<' && text[i + 1] == '/') || (text[i] == '/' && text[i + 1] == '>')) --depth;
+  for (auto at = text.find('<'); at < text.size(); at = text.find('<', at)) {
+    const auto begin = at++;
+    if (text.compare(begin, 4, "<!--") == 0) {
+      at = text.find("-->", at);
+      continue;
+    }
+    for (char quote = 0; at < text.size() && (quote || text[at] != '>'); ++at)
+      if (quote ? text[at] == quote : text[at] == '"' || text[at] == '\'') quote = quote ? 0 : text[at];
+    const char first = text[begin + 1];
+    const bool opens = first != '/' && first != '!' && first != '?' && text[at - 1] != '/';
+    depth += opens ? 1 : first == '/' ? -1 : 0;
     SPREKK_CHECK(depth <= limit, "{}: has more than {} elements inside of each other", file, limit);
   }
 }
 
-/// Converts the children of an XML element; every message opens with `place`.
+/// Converts the children of an XML element. What cannot be read becomes an Unreadable, whose message opens with
+/// `place`; what has no name gets one that opens with "<".
 class Converter {
  public:
   static void fill(ParameterList& list, const XMLObject& element, const std::string& place) {
-    for (int i = 0; i < element.numContentLines(); ++i)
-      SPREKK_CHECK(trimmed(element.getContentLine(i)).empty(), "{}: has the text \"{}\", expected elements only", place,
-                   std::string(trimmed(element.getContentLine(i))));
-    for (int i = 0; i < element.numChildren(); ++i) add(list, element.getChild(i), place);
+    for (int i = 0; i < element.numContentLines(); ++i) {
+      const std::string text(trimmed(element.getContentLine(i)));
+      if (!text.empty())
+        refuse(list, fmt::format("<text {}>", i),
+               fmt::format("{}: has the text \"{}\", expected elements only", place, text));
+    }
+    for (int i = 0; i < element.numChildren(); ++i) {
+      const auto& child = element.getChild(i);
+      if (!is_known(child))
+        refuse(list, fmt::format("<child {}>", i),
+               fmt::format("{}: has an element <{}>, expected <Parameter> or <ParameterList>", place, child.getTag()));
+      else if (!child.hasAttribute("name"))
+        refuse(list, fmt::format("<child {}>", i), fmt::format("{}: has a <{}> without a name", place, child.getTag()));
+      else
+        add(list, child, place);
+    }
   }
 
  private:
+  static bool is_known(const XMLObject& child) {
+    return child.getTag() == "Parameter" || child.getTag() == "ParameterList";
+  }
+
+  static void refuse(ParameterList& list, const std::string& name, const std::string& message) {
+    list.remove(name, false);
+    list.set(name, Unreadable{message});
+  }
+
   static void add(ParameterList& list, const XMLObject& child, const std::string& place) {
-    const std::string& tag = child.getTag();
-    SPREKK_CHECK(tag == "Parameter" || tag == "ParameterList",
-                 "{}: has an element <{}>, expected <Parameter> or <ParameterList>", place, tag);
-    SPREKK_CHECK(child.hasAttribute("name"), "{}: has a <{}> without a name", place, tag);
-    const std::string name = child.getAttribute("name");
-    SPREKK_CHECK(!list.isParameter(name), "{} > \"{}\": occurs twice", place, name);
-    if (tag == "ParameterList") return fill(list.sublist(name), child, place + " > " + name);
-    const std::string entry = fmt::format("{} > \"{}\"", place, name);
-    SPREKK_CHECK(child.numChildren() == 0, "{}: a <Parameter> cannot have elements inside", entry);
-    for (const char* attribute : {"type", "value"})
-      SPREKK_CHECK(child.hasAttribute(attribute), "{}: has no {}=\"...\"", entry, attribute);
+    const std::string name = child.getAttribute("name"), entry = fmt::format("{} > \"{}\"", place, name);
+    if (list.isParameter(name)) return refuse(list, name, entry + ": occurs twice");
+    if (child.getTag() == "ParameterList") return fill(list.sublist(name), child, place + " > " + name);
     try {
+      SPREKK_CHECK(child.numChildren() == 0, "a <Parameter> cannot have elements inside");
+      for (const char* attribute : {"type", "value"})
+        SPREKK_CHECK(child.hasAttribute(attribute), "has no {}=\"...\"", attribute);
       set_from_text(list, name, child.getAttribute("type"), child.getAttribute("value"));
     } catch (const Error& error) {
-      throw Error(entry + ": " + error.what());
+      refuse(list, name, entry + ": " + error.what());
     }
   }
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (char c : text) switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
-
 void write_list(std::string& text, const ParameterList& list, const std::string& name, const std::string& indent) {
-  text += fmt::format("{}<ParameterList name=\"{}\">\n", indent, escaped(name));
+  text += fmt::format("{}<ParameterList name=\"{}\">\n", indent, xml_escaped(name));
   for (const auto& named_entry : list) {
     const auto& key = named_entry.first;
     const auto& entry = named_entry.second;
@@ -122,8 +131,8 @@ void write_list(std::string& text, const ParameterList& list, const std::string&
     }
     const std::string type = type_of(entry);
     SPREKK_CHECK(!type.empty(), "{} > \"{}\": is {}, which XML cannot carry", list.name(), key, describe(entry));
-    text += fmt::format("{}  <Parameter name=\"{}\" type=\"{}\" value=\"{}\"/>\n", indent, escaped(key), type,
-                        escaped(value_text(entry)));
+    text += fmt::format("{}  <Parameter name=\"{}\" type=\"{}\" value=\"{}\"/>\n", indent, xml_escaped(key), type,
+                        xml_escaped(value_text(entry)));
   }
   text += indent + "</ParameterList>\n";
 }
@@ -157,10 +166,11 @@ void set_value(ParameterList& list, const std::string& name, const std::string& 
 
 }  // namespace
 
-ParameterList parse_xml(const std::string& text, const std::string& file, const std::string& root) {
+ParameterList parse_xml(const std::string& text, const std::string& file, const std::string& root, Defects defects) {
   const std::string byte_order_mark = "\xEF\xBB\xBF";
   const bool marked = text.compare(0, 3, byte_order_mark) == 0;
   SPREKK_CHECK(!trimmed(text).empty(), "{}: is empty", file);
+  check_characters(text, file);
   check_depth(text, file);
   XMLObject element;
   try {
@@ -175,20 +185,22 @@ ParameterList parse_xml(const std::string& text, const std::string& file, const 
                root);
   ParameterList list(root);
   Converter::fill(list, element, file + ": " + root);
+  const auto errors = unreadable(list);
+  SPREKK_CHECK(errors.empty() || defects == Defects::keep, "{}", fmt::join(errors, "\n"));
   return list;
 }
 
-ParameterList read_xml(const Comm& comm, const std::string& path, const std::string& root) {
+ParameterList read_xml(const Comm& comm, const std::string& path, const std::string& root, Defects defects) {
   std::string text;
   collectively(comm, [&] {
-    if (comm.getRank() == 0) text = read_file(path);
+    if (comm.getRank() == 0) text = read_file(path, "an XML file", largest_file, {});
   });
   int length = static_cast<int>(text.size());
   Teuchos::broadcast(comm, 0, 1, &length);
   text.resize(length);
   Teuchos::broadcast(comm, 0, length, text.data());
   ParameterList list;
-  collectively(comm, [&] { list = parse_xml(text, path, root); });
+  collectively(comm, [&] { list = parse_xml(text, path, root, defects); });
   return list;
 }
 
@@ -196,16 +208,6 @@ std::string to_xml(const ParameterList& list) {
   std::string text;
   write_list(text, list, list.name(), "");
   return text;
-}
-
-void write_xml(const Comm& comm, const ParameterList& list, const std::string& path) {
-  collectively(comm, [&] {
-    if (comm.getRank() != 0) return;
-    const std::string text = to_xml(list);
-    std::ofstream file(path);
-    file << text << std::flush;
-    SPREKK_CHECK(file, "{}: cannot be written", path);
-  });
 }
 
 void apply_override(ParameterList& list, const std::string& text) {
@@ -226,6 +228,16 @@ void apply_override(ParameterList& list, const std::string& text) {
   SPREKK_CHECK(!section->isSublist(path), "override \"{}\": \"{}\" is a section, expected the name of an entry in it",
                text, path);
   set_value(*section, path, value);
+}
+
+std::vector<std::string> apply_overrides(ParameterList& list, const std::vector<std::string>& texts) {
+  std::vector<std::string> errors;
+  for (const auto& text : texts) try {
+      apply_override(list, text);
+    } catch (const Error& error) {
+      errors.push_back(error.what());
+    }
+  return errors;
 }
 
 }  // namespace sprekk::base

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "array.hpp"
+#include "base/value.hpp"
 #include "base/xml.hpp"
 #include "message.hpp"
 
@@ -152,7 +153,7 @@ TEST(Parameters, unknown_names_get_the_nearest_name_or_all) {
             "xml/slip.xml: Sprekk > Materials > joint > \"friction coeficient\": unknown. "
             "Did you mean \"friction coefficient\"?");
   EXPECT_EQ(errors_with({"Time"}, "dilatancy", 0.5),
-            "xml/slip.xml: Sprekk > Time > \"dilatancy\": unknown. Allowed are \"end\", \"steps\", \"seed\"");
+            "xml/slip.xml: Sprekk > Time > \"dilatancy\": unknown; allowed are \"end\", \"steps\", \"seed\"");
   EXPECT_EQ(errors_with({}, "Mehs", ParameterList()),
             "xml/slip.xml: Sprekk > \"Mehs\": unknown. Did you mean \"Mesh\"?");
   EXPECT_EQ(errors_with({"Mesh", "Inner"}, "a", 1).substr(0, 46), "xml/slip.xml: Sprekk > Mesh > \"Inner\": unknown");
@@ -224,13 +225,13 @@ TEST(Parameters, required_ones_must_be_there) {
   list.sublist("Materials").sublist("joint");
   EXPECT_EQ(errors_of(list),
             "xml/slip.xml: Sprekk > Materials > joint > \"tangential stiffness\" (Pa/m): missing; "
-            "it is required. K_t of the elastic part");
+            "it is required: K_t of the elastic part");
 }
 
 TEST(Parameters, required_ones_are_missing_in_a_section_that_is_missing) {
   const auto errors = [](const ParameterList& list) { return message_of([&] { read<Loads>(list, "f", "R"); }); };
   ParameterList list;
-  EXPECT_EQ(errors(list), "f: R > Load > \"magnitude\" (Pa): missing; it is required. size of the load");
+  EXPECT_EQ(errors(list), "f: R > Load > \"magnitude\" (Pa): missing; it is required: size of the load");
   list.set("Load", 3);
   EXPECT_EQ(errors(list), "f: R > \"Load\": is the integer 3, expected a section, e.g. <ParameterList name=\"Load\">");
 }
@@ -240,7 +241,7 @@ TEST(Parameters, contradictions_are_reported_by_describe) {
             "xml/slip.xml: Sprekk > Mesh > \"size\": must be as long as \"cells\"");
   EXPECT_EQ(errors_with({"Time"}, "steps", 3000), "xml/slip.xml: Sprekk > Time: steps are too many for this end");
   EXPECT_EQ(errors_with({"Tables", "ramp"}, "values", array<double>({1})),
-            "xml/slip.xml: Sprekk > Tables > ramp: has 2 arguments but 1 values");
+            "xml/slip.xml: Sprekk > Tables > ramp: has 2 arguments but 1 value");
 }
 
 TEST(Parameters, all_errors_are_reported_at_once) {
@@ -253,6 +254,49 @@ TEST(Parameters, all_errors_are_reported_at_once) {
   for (const char* part : {"\"end\": is -1", "\"steps\": is the string", "\"tangential stiffness\" (Pa/m): missing",
                            "\"friction angle\": is 100", "\"solvr\": unknown"})
     EXPECT_CONTAINS(errors, part);
+}
+
+struct Loaded {
+  Tables tables;
+  Expression force = 1;
+  std::vector<Expression> moved;
+  ParameterList solver;
+  void describe(Section& s) {
+    s.named_sections(tables, "Tables", "functions");
+    s.expressions_call(tables);
+    s.required(force, "force", "N", positive(), "on the top");
+    s.entry(moved, "moved", "m", any().or_word("free"), "of the side");
+    s.passthrough(solver, "solver", "as it is");
+  }
+};
+
+TEST(Parameters, expressions_are_compiled_with_the_tables) {
+  ParameterList list;
+  list.set("force", "2*f(t)").set("moved", array<std::string>({"free", "x"}));
+  list.sublist("Tables").sublist("f").set("arguments", array<double>({0, 1})).set("values", array<int>({0, 4}));
+  const auto loaded = read<Loaded>(list, "f", "R");
+  EXPECT_EQ(loaded.force({}, 0.25), 2);
+  EXPECT_EQ(loaded.moved[0].text(), "free");
+  EXPECT_EQ(loaded.moved[1]({7, 0, 0}, 0), 7);
+}
+
+TEST(Parameters, all_expressions_that_are_wrong_are_told_and_no_follow_ups) {
+  ParameterList list;
+  list.set("force", "2*f(t) +").set("moved", array<std::string>({"fre", "ramp(x)", "g(t)", "free", "hh(t)"}));
+  list.sublist("solver").set("a", Unreadable{"f: R > solver > \"a\": is broken"});
+  auto& tables = list.sublist("Tables");
+  tables.sublist("ramp").set("arguments", array<double>({0, 1})).set("values", array<double>({0}));
+  tables.sublist("f").set("arguments", array<double>({0, 1})).set("values", array<int>({0, 4}));
+  tables.sublist("g").set("arguments", Unreadable{"f: R > Tables > g > \"arguments\": is broken"});
+  tables.sublist("sin").set("arguments", array<double>({0, 1})).set("values", array<int>({0, 4}));
+  const std::string errors = message_of([&] { read<Loaded>(list, "f", "R", {"known before"}); });
+  EXPECT_EQ(errors.substr(0, 13), "known before\n");
+  for (const char* part : {"Tables > ramp: has 2 arguments but 1 value", "Tables > g > \"arguments\": is broken",
+                           "Tables > g > \"values\": missing", "must not be named \"sin\"",
+                           "\"force\": in \"2*f(t) +\"", "\"moved\"[0]: in \"fre\": unknown name",
+                           "\"moved\"[4]: in \"hh(t)\": unknown name", "solver > \"a\": is broken"})
+    EXPECT_CONTAINS(errors, part);
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 8) << errors;
 }
 
 TEST(Parameters, expressions_remember_where_they_stand) {
@@ -281,7 +325,7 @@ TEST(Parameters, the_echo_is_complete_and_reads_back) {
 }
 
 TEST(Parameters, the_reference_names_everything) {
-  const std::string text = reference<Scene>("Sprekk");
+  const std::string text = to_markdown(specification<Scene>("Sprekk"), "Sprekk");
   for (const char* part :
        {"## Sprekk > Materials > NAME\n\none section per material\n\n| name | type | unit | default | allowed | "
         "meaning |",

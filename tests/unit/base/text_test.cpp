@@ -50,15 +50,15 @@ TEST(Text, numbers_survive_being_written) {
 
 TEST(Text, near_names_are_suggested_and_far_ones_are_not) {
   const Strings names = {"friction coefficient", "tangential stiffness", "normal stiffness", "end"};
-  EXPECT_EQ(did_you_mean("friction coeficient", names), " Did you mean \"friction coefficient\"?");
-  EXPECT_EQ(did_you_mean("Friction_Coefficient", names), " Did you mean \"friction coefficient\"?");
-  EXPECT_EQ(did_you_mean("normal stifness", names), " Did you mean \"normal stiffness\"?");
-  EXPECT_EQ(did_you_mean("edn", names), " Did you mean \"end\"?");
+  EXPECT_EQ(did_you_mean("friction coeficient", names), ". Did you mean \"friction coefficient\"?");
+  EXPECT_EQ(did_you_mean("Friction_Coefficient", names), ". Did you mean \"friction coefficient\"?");
+  EXPECT_EQ(did_you_mean("normal stifness", names), ". Did you mean \"normal stiffness\"?");
+  EXPECT_EQ(did_you_mean("edn", names), ". Did you mean \"end\"?");
   EXPECT_EQ(did_you_mean("cohesion", names), "");
   EXPECT_EQ(did_you_mean("abc", names), "");
   EXPECT_EQ(did_you_mean("", names), "");
   EXPECT_EQ(did_you_mean("q", {"t"}), "");
-  EXPECT_EQ(did_you_mean("T", {"t"}), " Did you mean \"t\"?");
+  EXPECT_EQ(did_you_mean("T", {"t"}), ". Did you mean \"t\"?");
   EXPECT_EQ(did_you_mean("end", {}), "");
 }
 

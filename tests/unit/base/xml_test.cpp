@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "array.hpp"
+#include "base/value.hpp"
 #include "message.hpp"
 
 namespace sprekk::base {
@@ -44,7 +45,7 @@ TEST(Xml, values_have_their_types) {
 
 TEST(Xml, values_that_are_not_of_their_type_are_refused) {
   const std::string place = "scene.xml: Sprekk > S > \"a b\": ";
-  EXPECT_EQ(refusal(parameter("double", "1.0abc")), place + "is \"1.0abc\", not a number that a double holds");
+  EXPECT_EQ(refusal(parameter("double", "1.0abc")), place + "is \"1.0abc\", not a number: unknown unit \"abc\"");
   EXPECT_EQ(refusal(parameter("int", "99999999999")),
             place + "is \"99999999999\", too large for an int; type=\"long long\" holds it");
   const std::vector<std::array<const char*, 2>> wrong = {{"double", "abc"},
@@ -70,9 +71,9 @@ TEST(Xml, values_that_are_not_of_their_type_are_refused) {
     EXPECT_EQ(message.substr(0, place.size()), place);
     EXPECT_CONTAINS(message, ", not ");
   }
-  EXPECT_CONTAINS(refusal(parameter("dobule", "1")),
-                  place + "has the unknown type \"dobule\". Did you mean \"double\"?");
-  EXPECT_CONTAINS(refusal(parameter("TwoDArray(double)", "1x1:{1}")), "Types are \"int\", ");
+  const std::string message = refusal(parameter("dobule", "1"));
+  EXPECT_CONTAINS(message, place + "has the unknown type \"dobule\"; types are \"int\", ");
+  EXPECT_CONTAINS(message, ". Did you mean \"double\"?");
 }
 
 TEST(Xml, structure_that_is_not_a_parameter_list_is_refused) {
@@ -95,6 +96,33 @@ TEST(Xml, structure_that_is_not_a_parameter_list_is_refused) {
          " > \"a\": a <Parameter> cannot have elements inside");
 }
 
+TEST(Xml, all_defects_are_told_or_kept_in_their_places) {
+  const std::string text = scene(
+      "<foo/><Parameter name=\"a\" type=\"int\" value=\"x\"/><Parameter name=\"b\" type=\"int\" value=\"1\"/>"
+      "<ParameterList name=\"S\">text<Parameter name=\"c\" value=\"1\"/></ParameterList><ParameterList name=\"b\"/>");
+  const std::vector<std::string> errors = {
+      "scene.xml: Sprekk: has an element <foo>, expected <Parameter> or <ParameterList>",
+      "scene.xml: Sprekk > \"a\": is \"x\", not an integer", "scene.xml: Sprekk > \"b\": occurs twice",
+      "scene.xml: Sprekk > S: has the text \"text\", expected elements only",
+      "scene.xml: Sprekk > S > \"c\": has no type=\"...\""};
+  const std::string refused = refusal(text);
+  for (const auto& error : errors) EXPECT_CONTAINS(refused, error);
+  EXPECT_EQ(std::count(refused.begin(), refused.end(), '\n'), 4);
+  const auto list = parse_xml(text, "scene.xml", "Sprekk", Defects::keep);
+  EXPECT_EQ(unreadable(list).size(), errors.size());
+  EXPECT_EQ(list.get<Unreadable>("b").message, errors[2]);
+  EXPECT_TRUE(list.sublist("S").isType<Unreadable>("c"));
+}
+
+TEST(Xml, processing_instructions_are_passed_over) {
+  EXPECT_EQ(parse("<?xml version=\"1.0\"?>\n<?xml-model href=\"sprekk.rng\" "
+                  "schematypens=\"http://relaxng.org/ns/structure/1.0\"?>\n<!-- c -->" +
+                  parameter("int", "3"))
+                .sublist("S")
+                .get<int>("a b"),
+            3);
+}
+
 TEST(Xml, the_outermost_list_must_be_the_right_one) {
   EXPECT_EQ(refusal("<Parameters name=\"Sprekk\"/>"),
             "scene.xml: the outermost element is <Parameters>, must be <ParameterList>");
@@ -114,20 +142,25 @@ TEST(Xml, text_that_is_not_well_formed_is_refused_with_its_line) {
       "\x7f"
       "ELF\x00\x01\x02\xff\xfe",
       9);
-  for (const std::string& text :
-       {elf, std::string(300, '<'), std::string(5, '\0'), "no xml" + scene(""), scene("") + "x", scene("") + scene(""),
-        scene("<!-- "), scene("&foo;"), scene("<a b></a>")})
+  EXPECT_EQ(refusal(elf), "scene.xml: line 1: byte 0xff is not UTF-8; save the file in this encoding");
+  for (const std::string& text : {std::string(300, '<'), "no xml" + scene(""), scene("") + "x", scene("") + scene(""),
+                                  scene("<!-- "), scene("&foo;"), scene("<a b></a>")})
     EXPECT_CONTAINS(refusal(text), "scene.xml: not well-formed XML: ");
 }
 
 TEST(Xml, nesting_is_limited) {
-  const auto nested = [](int depth) {
+  const auto nested = [](int depth, const std::string& name) {
     std::string text;
-    for (int i = 0; i < depth; ++i) text = "<ParameterList name=\"a\">" + text + "</ParameterList>";
+    for (int i = 0; i < depth; ++i) text = "<ParameterList name=\"" + name + "\">" + text + "</ParameterList>";
     return scene(text);
   };
-  EXPECT_EQ(parse(nested(500)).numParams(), 1);
-  EXPECT_EQ(refusal(nested(5000)), "scene.xml: has more than 1000 elements inside of each other");
+  for (const char* name : {"a", "/>"}) {
+    EXPECT_EQ(parse(nested(500, name)).numParams(), 1);
+    EXPECT_EQ(refusal(nested(5000, name)), "scene.xml: has more than 1000 elements inside of each other");
+  }
+  std::string siblings;
+  for (int i = 0; i < 2000; ++i) siblings += "<!-- <a> --><ParameterList name='" + std::to_string(i) + "'/>";
+  EXPECT_EQ(parse(scene(siblings)).numParams(), 2000);
 }
 
 TEST(Xml, every_truncated_file_is_refused) {
@@ -180,10 +213,10 @@ TEST(Xml, what_is_written_reads_back_the_same) {
   EXPECT_CONTAINS(message_of([&] { to_xml(pointer); }), "Sprekk > \"p\": is of type");
 }
 
-TEST(Xml, files_are_written_and_read_by_all_ranks) {
+TEST(Xml, files_are_read_by_all_ranks) {
   const auto comm = Tpetra::getDefaultComm();
   const std::string path = fmt::format("{}/sprekk_xml_test_{}.xml", testing::TempDir(), comm->getSize());
-  write_xml(*comm, all_types(), path);
+  if (comm->getRank() == 0) std::ofstream(path) << to_xml(all_types());
   EXPECT_EQ(to_xml(read_xml(*comm, path, "Sprekk")), to_xml(all_types()));
   EXPECT_CONTAINS(message_of([&] { read_xml(*comm, path, "Other"); }), path + ": the outermost list");
   comm->barrier();
@@ -194,12 +227,36 @@ TEST(Xml, files_are_written_and_read_by_all_ranks) {
   if (comm->getRank() == 0) std::remove(path.c_str());
 }
 
-TEST(Xml, files_that_cannot_be_read_or_written_are_an_error_on_all_ranks) {
+TEST(Xml, characters_that_the_parser_takes_amiss_are_refused) {
+  const auto with = [](const std::string& name) {
+    return refusal("<ParameterList name=\"Sprekk\">\n<ParameterList name=\"" + name + "\"/></ParameterList>");
+  };
+  EXPECT_NO_THROW(
+      parse_xml(scene("<ParameterList name='r\xc3\xb8ck &#65;&#x42; \xe2\x82\xac \xf0\x9f\xaa\xa8'/>"), "f", "Sprekk"));
+  EXPECT_EQ(with("r\xf8"
+                 "ck"),
+            "scene.xml: line 2: byte 0xf8 is not UTF-8; save the file in this encoding");
+  for (const char* bad : {"\xc3", "\x80", "\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xe2\x82"})
+    EXPECT_CONTAINS(with(bad), "scene.xml: line 2: byte 0x");
+  EXPECT_CONTAINS(with("r&#248;ck"), "scene.xml: line 2: has the character reference &#248;");
+  EXPECT_CONTAINS(with("r&#xf8;ck"), "has the character reference &#xf8;");
+  EXPECT_CONTAINS(with(std::string("a\0b", 3)), "scene.xml: line 2: has a byte 0");
+}
+
+TEST(Xml, files_that_cannot_be_read_are_an_error_on_all_ranks) {
   const auto comm = Tpetra::getDefaultComm();
   EXPECT_EQ(message_of([&] { read_xml(*comm, "no/such.xml", "Sprekk"); }), "no/such.xml: there is no such file");
   EXPECT_EQ(message_of([&] { read_xml(*comm, "/", "Sprekk"); }), "/: is a folder, expected an XML file");
-  EXPECT_EQ(message_of([&] { write_xml(*comm, all_types(), "no/such/folder.xml"); }),
-            "no/such/folder.xml: cannot be written");
+  EXPECT_EQ(message_of([&] { read_xml(*comm, "/dev/zero", "Sprekk"); }),
+            "/dev/zero: is a device, pipe or socket, expected an XML file");
+  const std::string path = fmt::format("{}/sprekk_xml_test_{}.xml", testing::TempDir(), comm->getSize());
+  if (comm->getRank() == 0) {
+    std::ofstream file(path);
+    std::filesystem::resize_file(path, std::uintmax_t(1) << 40);
+  }
+  EXPECT_EQ(message_of([&] { read_xml(*comm, path, "Sprekk"); }),
+            path + ": has 1099511627776 bytes; an XML file may have 67108864");
+  if (comm->getRank() == 0) std::remove(path.c_str());
 }
 
 ParameterList overridden(const std::string& text) {

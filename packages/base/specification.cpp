@@ -1,0 +1,48 @@
+#include "base/specification.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+
+namespace sprekk::base {
+
+namespace {
+
+/// For a cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  return escaped;
+}
+
+std::string row(const EntrySpecification& entry) {
+  const bool numeric = entry.type.find("double") != std::string::npos || entry.type.find("int") != std::string::npos;
+  std::string allowed = !entry.choices.empty() ? quoted_list(entry.choices)
+                        : numeric              ? entry.bounds.text()
+                                               : std::string("any");
+  if (entry.bounds.size()) allowed += ", " + entry.bounds.length_text();
+  return fmt::format("| {} | {} | {} | {} | {} | {} |\n", entry.name, entry.type, cell(entry.unit), cell(entry.value),
+                     cell(allowed), cell(entry.meaning));
+}
+
+}  // namespace
+
+std::string to_markdown(const SectionSpecification& section, const std::string& path) {
+  std::string rows, inner;
+  for (const auto& entry : section.entries) rows += row(entry);
+  for (const auto& child : section.sections) {
+    if (child.open)
+      rows += fmt::format("| {} | section | - | as it is | any | {} |\n", child.name, cell(child.meaning));
+    else
+      inner += to_markdown(child, fmt::format("{} > {}", path, child.name.empty() ? "NAME" : child.name));
+  }
+  // a list of sections alone needs no heading of its own
+  if (section.meaning.empty() && rows.empty()) return inner;
+  std::string text = fmt::format("## {}\n\n", path);
+  if (!section.meaning.empty()) text += section.meaning + "\n\n";
+  if (!rows.empty())
+    text += "| name | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n" + rows + "\n";
+  return text + inner;
+}
+
+}  // namespace sprekk::base

@@ -1,0 +1,234 @@
+#include "base/units.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <ostream>
+#include <vector>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+
+namespace sprekk::base {
+
+namespace {
+
+/// factor 10^ten m^a kg^b s^c rad^d with the powers a, b, c, d.
+struct Unit {
+  std::array<int, 4> powers;
+  int ten;
+  Real factor;
+};
+
+struct Symbol {
+  const char* name;
+  bool takes_prefix;
+  Unit unit;
+};
+
+constexpr Real degree = 3.14159265358979323846 / 180, day = 86400;
+constexpr Unit length{{1, 0, 0, 0}, 0, 1}, mass{{0, 1, 0, 0}, 0, 1}, force{{1, 1, -2, 0}, 0, 1};
+constexpr Unit time_in(Real seconds) { return {{0, 0, 1, 0}, 0, seconds}; }
+constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1}, 0, radians}; }
+constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0}, ten, 1}; }
+
+constexpr std::array<Symbol, 20> symbols{{{"m", true, length},
+                                          {"g", true, {mass.powers, -3, 1}},
+                                          {"s", true, time_in(1)},
+                                          {"N", true, force},
+                                          {"Pa", true, pressure_in(0)},
+                                          {"bar", true, pressure_in(5)},
+                                          {"rad", true, angle_in(1)},
+                                          {"degree", false, angle_in(degree)},
+                                          {"degrees", false, angle_in(degree)},
+                                          {"deg", false, angle_in(degree)},
+                                          {"\u00b0", false, angle_in(degree)},
+                                          {"min", false, time_in(60)},
+                                          {"h", false, time_in(3600)},
+                                          {"hour", false, time_in(3600)},
+                                          {"hours", false, time_in(3600)},
+                                          {"d", false, time_in(day)},
+                                          {"day", false, time_in(day)},
+                                          {"days", false, time_in(day)},
+                                          {"year", false, time_in(365.25 * day)},
+                                          {"years", false, time_in(365.25 * day)}}};
+
+struct Prefix {
+  const char* name;
+  int ten;
+};
+constexpr std::array<Prefix, 10> prefixes{{{"", 0},
+                                           {"G", 9},
+                                           {"M", 6},
+                                           {"k", 3},
+                                           {"c", -2},
+                                           {"m", -3},
+                                           {"u", -6},
+                                           {"\u00b5", -6},
+                                           {"\u03bc", -6},
+                                           {"n", -9}}};
+
+/// What a user is offered in place of the first symbol of a unit.
+constexpr std::array<std::array<const char*, 5>, 7> offered{{{"Pa", "kPa", "MPa", "GPa", "bar"},
+                                                             {"m", "km", "cm", "mm", "um"},
+                                                             {"s", "min", "h", "day", "year"},
+                                                             {"min", "s", "h", "day", nullptr},
+                                                             {"N", "kN", "MN", nullptr, nullptr},
+                                                             {"kg", "g", nullptr, nullptr, nullptr},
+                                                             {"degree", "rad", nullptr, nullptr, nullptr}}};
+
+bool opens_symbol(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;
+}
+
+/// Calls use(name, unit) for every symbol with every prefix that it takes.
+template <class Use>
+void for_each_symbol(const Use& use) {
+  for (const auto& symbol : symbols)
+    for (const auto& prefix : prefixes) {
+      if (prefix.ten != 0 && !symbol.takes_prefix) continue;
+      Unit unit = symbol.unit;
+      unit.ten += prefix.ten;
+      use(std::string(prefix.name) + symbol.name, unit);
+    }
+}
+
+Unit unit_called(const std::string& name) {
+  std::optional<Unit> found;
+  std::vector<std::string> names;
+  for_each_symbol([&](const std::string& candidate, const Unit& unit) {
+    names.push_back(candidate);
+    if (candidate == name && !found) found = unit;
+  });
+  SPREKK_CHECK(found, "unknown unit \"{}\"{}", name, did_you_mean(name, names));
+  return *found;
+}
+
+/// a b^power
+Unit product(Unit a, const Unit& b, int power) {
+  for (std::size_t i = 0; i < a.powers.size(); ++i) a.powers[i] += power * b.powers[i];
+  a.ten += power * b.ten;
+  a.factor *= std::pow(b.factor, power);
+  return a;
+}
+
+/// Reads a whole text as a unit; throws an Error.
+class UnitParser {
+ public:
+  explicit UnitParser(const std::string& text) : text_(text) {}
+
+  Unit parse() {
+    constexpr std::size_t longest = 40;  // the parser descends into parentheses
+    if (text_.size() > longest) fail();
+    const Unit unit = factors();
+    if (at_ != text_.size()) fail();
+    return unit;
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw Error(fmt::format("\"{}\" is no unit like \"kg/m^3\"", text_)); }
+
+  bool take(char c) {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+    if (at_ == text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+
+  Unit factors() {
+    const Unit first = base();
+    Unit unit = product({{0, 0, 0, 0}, 0, 1}, first, exponent());
+    for (;;) {
+      const int sign = take('*') ? 1 : take('/') ? -1 : 0;
+      if (sign == 0) return unit;
+      const Unit next = base();
+      unit = product(unit, next, sign * exponent());
+    }
+  }
+
+  Unit base() {
+    if (take('(')) {
+      const Unit inside = factors();
+      if (!take(')')) fail();
+      return inside;
+    }
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && opens_symbol(text_[at_])) ++at_;
+    if (begin == at_) fail();
+    return unit_called(text_.substr(begin, at_ - begin));
+  }
+
+  int exponent() {
+    if (!take('^')) return 1;
+    const int sign = take('-') ? -1 : 1;
+    if (at_ == text_.size() || text_[at_] < '1' || text_[at_] > '9') fail();
+    return sign * (text_[at_++] - '0');
+  }
+
+  const std::string& text_;
+  std::size_t at_ = 0;
+};
+
+/// value 10^ten, rounded once, as if the exponent were written behind the number.
+Real shifted(Real value, int ten) {
+  std::string digits = number_text(value);
+  if (const auto e = digits.find('e'); e != digits.npos) {
+    ten += std::stoi(digits.substr(e + 1));
+    digits.resize(e);
+  }
+  const auto result = parse_number(fmt::format("{}e{}", digits, ten));
+  SPREKK_CHECK(result, "is {}e{}, which a double does not hold", digits, ten);
+  return *result;
+}
+
+std::vector<std::string> offers(const std::string& unit) {
+  std::vector<std::string> names;
+  for (const auto& row : offered) {
+    const std::string first = row[0];
+    const bool opens = unit.compare(0, first.size(), first) == 0;
+    if (!opens || (unit.size() > first.size() && opens_symbol(unit[first.size()]))) continue;
+    for (const char* name : row)
+      if (name) names.push_back(name + unit.substr(first.size()));
+  }
+  return names;
+}
+
+}  // namespace
+
+std::optional<Quantity> parse_quantity(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Real value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  const auto unit = trimmed(text.substr(end - text.data()));
+  if (unit.empty() || !opens_symbol(unit[0])) return std::nullopt;
+  return Quantity{value, std::string(unit)};
+}
+
+std::string quantity_text(const Quantity& quantity) {
+  return number_text(quantity.value) + (quantity.unit.empty() ? "" : " " + quantity.unit);
+}
+
+std::ostream& operator<<(std::ostream& out, const Quantity& quantity) { return out << quantity_text(quantity); }
+
+std::string defect_of_unit(const std::string& unit) {
+  try {
+    UnitParser(unit).parse();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Real value_in(const std::string& unit, const Quantity& quantity) {
+  if (quantity.unit.empty()) return quantity.value;
+  const Unit from = UnitParser(quantity.unit).parse();
+  SPREKK_CHECK(unit != "-", "has the unit \"{}\", must be a number without a unit", quantity.unit);
+  const Unit to = UnitParser(unit).parse();
+  SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and what else measures the same",
+               quantity.unit, quoted_list(offers(unit)));
+  return shifted(quantity.value, from.ten - to.ten) * (from.factor / to.factor);
+}
+
+}  // namespace sprekk::base
