@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "base/parameters.hpp"
+#include "base/text.hpp"
 #include "mesh/periodic.hpp"
 #include "mesh/raise_order.hpp"
 #include "mesh/renumber.hpp"
@@ -13,6 +16,8 @@
 
 namespace sprekk::mesh {
 namespace {
+
+constexpr Real most_blocks = 1e9;  // beyond it, one rank's memory cannot hold them
 
 using Lattice = std::array<int, 3>;  ///< a point of the structured mesh; the last component is 0 in 2D
 using Corners = std::vector<int>;    ///< corners of a square or cube, bit i set: upper in direction i
@@ -42,6 +47,12 @@ std::vector<Corners> cells_of_block(Shape shape, bool odd) {
   }
 }
 
+/// Where a fracture lies.
+struct Rectangle {
+  Lattice lower, upper;
+  int normal;
+};
+
 class BoxBuilder {
  public:
   explicit BoxBuilder(const BoxMesh& box) : box_(box), shape_(shape_of(box.cell)), dim_(dimension(shape_)) {
@@ -51,6 +62,18 @@ class BoxBuilder {
     mesh_.shape = shape_;
     mesh_.region_names = {"bulk"};
     mesh_.boundary_names.assign(boundary_names.begin(), boundary_names.begin() + 2 * dim_);
+  }
+
+  /// What is wrong with each of the fractures.
+  std::vector<std::string> defects() const {
+    std::vector<std::string> errors;
+    for (const auto& [name, fracture] : box_.fractures) try {
+        rectangle(name, fracture);
+        orientation(name, fracture);
+      } catch (const Error& error) {
+        errors.push_back(error.what());
+      }
+    return errors;
   }
 
   GlobalMesh build() {
@@ -83,8 +106,8 @@ class BoxBuilder {
   GlobalMesh mesh_;
 
   void check_length(const std::string& entry, std::size_t length) const {
-    SPREKK_CHECK(static_cast<int>(length) == dim_, "box mesh: {}: has {} components; cell \"{}\" needs {}", entry,
-                 length, box_.cell, dim_);
+    SPREKK_CHECK(static_cast<int>(length) == dim_, "box mesh: {}: has {}; cell \"{}\" needs {}", entry,
+                 base::counted(length, "component"), box_.cell, dim_);
   }
 
   void check() const {
@@ -97,6 +120,9 @@ class BoxBuilder {
                    box_.upper_corner[i], "xyz"[i], box_.lower_corner[i]);
       SPREKK_CHECK(box_.cells[i] > 0, "box mesh: cells: {} in direction {}; must be positive", box_.cells[i], "xyz"[i]);
     }
+    const Real blocks = std::accumulate(box_.cells.begin(), box_.cells.end(), Real{1}, std::multiplies<Real>());
+    SPREKK_CHECK(blocks <= most_blocks, "box mesh: cells: {{{}}} makes {:.3g} {}, may make {:.0g}",
+                 fmt::join(box_.cells, ", "), blocks, dim_ == 2 ? "squares" : "cubes", most_blocks);
   }
 
   Real block_size(int i) const { return (box_.upper_corner[i] - box_.lower_corner[i]) / n_blocks_[i]; }
@@ -217,7 +243,7 @@ class BoxBuilder {
     return static_cast<int>(index);
   }
 
-  void mark(const std::string& name, const BoxMesh::Fracture& fracture, std::vector<MarkedFace>& marked) const {
+  Rectangle rectangle(const std::string& name, const BoxMesh::Fracture& fracture) const {
     check_length(fmt::format("fracture \"{}\": lower corner", name), fracture.lower_corner.size());
     check_length(fmt::format("fracture \"{}\": upper corner", name), fracture.upper_corner.size());
     Lattice lower{}, upper{};
@@ -234,6 +260,11 @@ class BoxBuilder {
     SPREKK_CHECK(lower[normal] > 0 && lower[normal] < n_blocks_[normal],
                  "fracture \"{}\": has no interior face: {} = {} is the {} boundary", name, "xyz"[normal],
                  fracture.lower_corner[normal], boundary_names[2 * normal + (lower[normal] > 0)]);
+    return {lower, upper, normal};
+  }
+
+  void mark(const std::string& name, const BoxMesh::Fracture& fracture, std::vector<MarkedFace>& marked) const {
+    const auto [lower, upper, normal] = rectangle(name, fracture);
     const int index = static_cast<int>(mesh_.fracture_names.size());
     for_faces(lower, upper, normal, [&](GlobalIndex cell, int face) { marked.push_back({index, cell, face}); });
   }
@@ -248,6 +279,15 @@ class BoxBuilder {
     return result;
   }
 };
+
+/// What is wrong with a box, as far as it can be told without making the mesh.
+std::vector<std::string> defects(const BoxMesh& box) {
+  try {
+    return BoxBuilder(box).defects();
+  } catch (const Error& error) {
+    return {error.what()};
+  }
+}
 
 }  // namespace
 
@@ -284,6 +324,8 @@ void BoxMesh::describe(base::Section& s) {
           "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; without it the order is regular");
+  if (!s.complete()) return;
+  for (const auto& defect : defects(*this)) s.fail(defect);
 }
 
 GlobalMesh make_box(const BoxMesh& box) {

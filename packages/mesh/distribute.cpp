@@ -47,6 +47,7 @@ class Distributor {
       : global_(global), part_(part), nodes_per_cell_(n_nodes(global.shape)) {
     check(n_ranks);
     node_owner_ = node_owners(n_ranks);
+    report_ = report(global, part, n_ranks);
   }
 
   Mesh build(int rank) {
@@ -59,6 +60,7 @@ class Distributor {
     mesh_.n_global_nodes = global_.n_nodes();
     mesh_.n_global_cells = global_.n_cells();
     mesh_.n_global_fracture_faces = static_cast<GlobalIndex>(global_.fracture_faces.size());
+    mesh_.partition = report_;
     cells_ = number(local_cells(), part_, rank_);
     nodes_ = number(nodes_of([&](GlobalIndex cell) { return cells_.local_of[cell] >= 0; }), node_owner_, rank_);
     fill_nodes();
@@ -74,6 +76,7 @@ class Distributor {
   const int nodes_per_cell_;
   int rank_ = 0;
   std::vector<int> node_owner_;
+  PartitionReport report_;
   Numbering cells_, nodes_;
   Mesh mesh_;
 
@@ -212,11 +215,11 @@ template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
          cell_owner, coordinates, cells, cell_region, fracture_faces, boundary_faces, region_names, boundary_names,
-         fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces] = mesh;
+         fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, partition] = mesh;
   const auto put_all = [&](auto&... members) { (put(members), ...); };
   put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
           cell_owner, coordinates, cells, cell_region, fracture_faces, boundary_faces, region_names, boundary_names,
-          fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces);
+          fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, partition);
 }
 
 class Packer {

@@ -46,6 +46,15 @@ struct GlobalMesh {
   GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(coordinates.size()) / dim(); }
 };
 
+/// How good a partition is.
+struct PartitionReport {
+  std::array<GlobalIndex, 2> cells, fracture_faces;  ///< fewest and most in a part; faces count at their minus cell
+  double cell_imbalance;                             ///< most cells in a part / mean over all parts; 1 is perfect
+  double fracture_face_imbalance;                    ///< the same of fracture faces; 1 where there are none
+  GlobalIndex edge_cut;         ///< pairs of cells that share a face, or a fracture face, and are in different parts
+  GlobalIndex separated_faces;  ///< fracture faces whose two cells are in different parts
+};
+
 /// One rank's part. Owned entities come first in every list, ghosts follow; "n_" counts both, "n_owned_" the first
 /// part.
 ///
@@ -87,6 +96,7 @@ struct Mesh {
   std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
   std::vector<std::string> region_names, boundary_names, fracture_names;
   GlobalIndex n_global_nodes = 0, n_global_cells = 0, n_global_fracture_faces = 0;
+  PartitionReport partition{};  ///< of the whole mesh
 
   int dim() const { return dimension(shape); }
   int nodes_per_cell() const { return mesh::n_nodes(shape); }

@@ -18,19 +18,24 @@ class Parser {
  public:
   Parser(std::string_view text, const std::string& file) : in_(text, file), file_(file) {}
 
-  MshFile parse() {
+  /// The first section, which the file must have.
+  void read_start() {
     SPREKK_CHECK(!in_.at_end(), "{}: is empty, expected a gmsh mesh", file_);
-    for (std::string section; !in_.at_end();) {
+    const auto header = in_.line();
+    if (header == "$NOD" || header == "$NOE") in_.fail("is gmsh's format 1; Sprekk reads 2.2 and 4.1");
+    if (header != "$MeshFormat")
+      in_.fail(fmt::format("found \"{}\", expected $MeshFormat; is this a gmsh mesh?", printable(header)));
+    read_section("MeshFormat");
+  }
+
+  MshFile parse() {
+    read_start();
+    while (!in_.at_end()) {
       const auto header = in_.line();
       if (header.empty() || header[0] != '$')
         in_.fail(fmt::format("found \"{}\", expected the start of a section like $Nodes", printable(header)));
-      const bool is_first = section.empty();
-      section = header.substr(1);
-      if (!is_first && section == "MeshFormat") in_.fail("$MeshFormat occurs twice");
-      if (is_first && (section == "NOD" || section == "NOE")) in_.fail("is gmsh's format 1; Sprekk reads 2.2 and 4.1");
-      if (is_first && section != "MeshFormat")
-        in_.fail(fmt::format("found \"{}\", expected $MeshFormat; is this a gmsh mesh?", printable(header)));
-      read_section(section);
+      if (header == "$MeshFormat") in_.fail("$MeshFormat occurs twice");
+      read_section(std::string(header.substr(1)));
     }
     SPREKK_CHECK(!mesh_.points.empty(), "{}: has no nodes in a section $Nodes", file_);
     SPREKK_CHECK(!mesh_.elements.empty(), "{}: has no elements in a section $Elements", file_);
@@ -96,6 +101,8 @@ class Parser {
       if (quoted.size() < 3 || quoted.front() != '"' || quoted.back() != '"')
         in_.fail(
             fmt::format("physical group {}: its name is {}, expected a name in quotes", number, printable(quoted)));
+      if (base::where_not_utf8(quoted))
+        in_.fail(fmt::format("physical group {}: its name {} is not UTF-8", number, printable(quoted)));
       mesh_.group_names[{static_cast<int>(dim), static_cast<int>(number)}] = quoted.substr(1, quoted.size() - 2);
     }
   }
@@ -260,6 +267,8 @@ std::string MshFile::group_name(int dim, int number) const {
   const auto found = group_names.find({dim, number});
   return found == group_names.end() ? std::to_string(number) : found->second;
 }
+
+void check_msh_start(std::string_view start, const std::string& file) { Parser(start, file).read_start(); }
 
 MshFile parse_msh_file(std::string_view text, const std::string& file) { return Parser(text, file).parse(); }
 

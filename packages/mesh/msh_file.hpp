@@ -51,4 +51,7 @@ struct MshFile {
 /// number of the node or element, if something is missing, is not a number, or cannot be. Not collective.
 MshFile parse_msh_file(std::string_view text, const std::string& file);
 
+/// Throws an Error unless the file that starts so says that it is of gmsh, in a version that Sprekk reads.
+void check_msh_start(std::string_view start, const std::string& file);
+
 }  // namespace sprekk::mesh

@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <limits>
 #include <set>
-#include <sstream>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/check.hpp"
+#include "base/file.hpp"
 #include "base/text.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/msh_file.hpp"
+#include "mesh/raise_order.hpp"
 
 namespace sprekk::mesh {
 namespace {
@@ -45,6 +46,7 @@ class Builder {
     check_faces();
     name_fractures();
     add_faces();
+    set_order();
     std::vector<Orientation> orientations;
     for (const auto& [name, orientation] : options_.fractures) orientations.push_back(orientation);
     try {
@@ -91,6 +93,9 @@ class Builder {
 
   void add_cells() {
     const int dim = mesh_.dim();
+    std::unordered_set<GlobalIndex> tags;
+    for (const auto* cell : cell_)
+      if (!tags.insert(cell->tag).second) fail("element {} occurs twice", cell->tag);
     const auto order = nodes_in_msh(mesh_.shape);
     const auto has_region = [&](const Element* cell) { return !msh_.group_sets[cell->groups].empty(); };
     const bool has_regions = std::any_of(cell_.begin(), cell_.end(), has_region);
@@ -191,18 +196,15 @@ class Builder {
     }
   }
 
-  /// Neighbours lie on opposite sides of the face that they share and have the same nodes there; free faces coincide
-  /// with no other.
+  /// Neighbours lie on opposite sides of the face that they share and have the same nodes there; free faces lie on no
+  /// other.
   void check_faces() const {
     const int n = n_faces(mesh_.shape);
     const auto local = [&](GlobalIndex face) { return static_cast<int>(face % n); };
-    std::unordered_map<Key, GlobalIndex, Hash> free_faces;
+    std::vector<GlobalIndex> free_faces;
     for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour_.size()); ++face) {
       const GlobalIndex other = neighbour_[face];
-      if (other < 0) {
-        check_free(face, free_faces);
-        continue;
-      }
+      if (other < 0) free_faces.push_back(face);
       if (other < face) continue;
       if (dot(area_vector(mesh_, face / n, local(face)), area_vector(mesh_, other / n, local(other))) >= 0)
         fail("elements {} and {} lie on the same side of the face that they share at {}; cells must not overlap",
@@ -214,20 +216,55 @@ class Builder {
         fail("elements {} and {} have the same corners but not the same nodes on their common face at {}",
              cell_at(face).tag, cell_at(other).tag, text(centre(face)));
     }
+    check_free(free_faces);
   }
 
-  void check_free(GlobalIndex face, std::unordered_map<Key, GlobalIndex, Hash>& free_faces) const {
-    const Vector x = centre(face);
-    const Vector offset = x - point(mesh_, 0);
-    Key key{};
-    for (int i = 0; i < 3; ++i) key[i] = std::llround(offset[i] / (1e-8 * size_));
-    const auto [known, is_new] = free_faces.emplace(key, face);
-    if (is_new) return;
-    fail(
-        "elements {} and {} touch at {} without sharing nodes; join them (gmsh: Coherence, BooleanFragments), also "
-        "where a "
-        "fracture is to be, as Sprekk opens it",
-        cell_at(known->second).tag, cell_at(face).tag, text(x));
+  /// The centre of no free face lies on another: there two parts of the mesh touch that do not share their nodes, or
+  /// one has nodes in the middle of the other's faces. Candidates are found along an oblique direction.
+  void check_free(const std::vector<GlobalIndex>& faces) const {
+    const Vector along{0.6127, 0.5431, 0.5741};  // along no axis, in which many faces would be level
+    std::vector<std::pair<Real, GlobalIndex>> centres;
+    for (GlobalIndex face : faces) centres.emplace_back(dot(along, centre(face)), face);
+    std::sort(centres.begin(), centres.end());
+    for (GlobalIndex face : faces) {
+      const auto corners = corner_points(face);
+      Real lowest = dot(along, corners[0]), highest = lowest;
+      for (const auto& x : corners)
+        lowest = std::min(lowest, dot(along, x)), highest = std::max(highest, dot(along, x));
+      auto other = std::lower_bound(centres.begin(), centres.end(), std::pair(lowest - 1e-8 * size_, GlobalIndex{-1}));
+      for (; other != centres.end() && other->first <= highest + 1e-8 * size_; ++other) {
+        const Vector x = centre(other->second);
+        if (other->second == face || !lies_on(face, corners, x)) continue;
+        fail(
+            "elements {} and {} touch at {} without sharing nodes; join them (gmsh: Coherence, BooleanFragments), also "
+            "where a fracture is to be, as Sprekk opens it",
+            cell_at(std::min(face, other->second)).tag, cell_at(std::max(face, other->second)).tag, text(x));
+      }
+    }
+  }
+
+  std::vector<Vector> corner_points(GlobalIndex face) const {
+    const int n = n_faces(mesh_.shape);
+    const auto nodes = nodes_of_face(mesh_, face / n, static_cast<int>(face % n));
+    std::vector<Vector> points;
+    for (int k = 0; k < n_face_corners(mesh_.shape); ++k) points.push_back(point(mesh_, nodes[k]));
+    return points;
+  }
+
+  /// Whether x lies on a face, its edges included.
+  bool lies_on(GlobalIndex face, const std::vector<Vector>& corners, const Vector& x) const {
+    const Real tolerance = 1e-8 * size_;
+    const Vector area = area_vector(mesh_, face / n_faces(mesh_.shape), static_cast<int>(face % n_faces(mesh_.shape)));
+    const Vector normal = (1 / norm(area)) * area;
+    if (std::abs(dot(normal, x - centre(face))) > tolerance) return false;
+    const std::size_t n = corners.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector edge = corners[(k + 1) % n] - corners[k], from = x - corners[k];
+      // 2D: between both ends; 3D: on the inner side of every edge
+      if (n == 2 ? dot(edge, from) < -tolerance * norm(edge) : dot(cross(edge, from), normal) < -tolerance * norm(edge))
+        return false;
+    }
+    return true;
   }
 
   /// Takes the fractures' names over, each of which must be a group of faces.
@@ -245,7 +282,7 @@ class Builder {
           fail("fracture \"{}\": the physical group has dimension {}{}", name, key.first,
                key.first == dim ? " and no elements (gmsh drops groups where it saves all elements)"
                                 : fmt::format("; a fracture in this mesh has dimension {}", dim));
-      fail("fracture \"{}\": unknown; the physical groups of dimension {} are {}.{}", name, dim,
+      fail("fracture \"{}\": unknown; the physical groups of dimension {} are {}{}", name, dim,
            names.empty() ? "none" : base::quoted_list(names), base::did_you_mean(name, names));
     }
   }
@@ -319,6 +356,12 @@ class Builder {
            where(), fractures[known->second], name);
     marked_.push_back({index, cell, local_face});
   }
+
+  void set_order() {
+    const int have = order(mesh_.shape), wanted = options_.order.value_or(have);
+    if (wanted < have) fail("has cells of order {}; order {} was asked for", have, wanted);
+    if (wanted > have) mesh_ = raise_order(std::move(mesh_));
+  }
 };
 
 }  // namespace
@@ -328,13 +371,9 @@ GlobalMesh parse_msh(std::string_view text, const std::string& file, const MshOp
 }
 
 GlobalMesh read_msh(const std::string& path, const MshOptions& options) {
-  SPREKK_CHECK(std::filesystem::exists(path), "{}: there is no such file", path);
-  SPREKK_CHECK(!std::filesystem::is_directory(path), "{}: is a folder, expected a gmsh mesh", path);
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  SPREKK_CHECK(file && text, "{}: cannot be read", path);
-  return parse_msh(text.str(), path, options);
+  const auto text = base::read_file(path, "a gmsh mesh", std::numeric_limits<std::size_t>::max(),
+                                    [&](std::string_view start) { check_msh_start(start, path); });
+  return parse_msh(text, path, options);
 }
 
 }  // namespace sprekk::mesh

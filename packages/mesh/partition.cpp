@@ -141,8 +141,16 @@ std::vector<int> partition(const GlobalMesh& mesh, int n_parts) {
 }
 
 PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int n_parts) {
+  std::vector<idx_t> n_cells(n_parts, 0), n_faces(n_parts, 0);
+  for (int p : part) ++n_cells[p];
+  for (const auto& face : mesh.fracture_faces) ++n_faces[part[face.cell[minus]]];
+  const auto range = [](const std::vector<idx_t>& loads) {
+    const auto [least, most] = std::minmax_element(loads.begin(), loads.end());
+    return std::array<GlobalIndex, 2>{*least, *most};
+  };
+  PartitionReport result{range(n_cells), range(n_faces), imbalance(n_cells), imbalance(n_faces), 0, 0};
+  if (n_parts == 1) return result;
   const Graph graph = cell_graph(mesh);
-  PartitionReport result{imbalance(loads(graph, part, n_parts, 0)), imbalance(loads(graph, part, n_parts, 1)), 0, 0};
   for (std::size_t cell = 0; cell < part.size(); ++cell)
     for (idx_t k = graph.offsets[cell]; k < graph.offsets[cell + 1]; ++k)
       if (static_cast<idx_t>(cell) < graph.neighbours[k] && part[cell] != part[graph.neighbours[k]]) ++result.edge_cut;

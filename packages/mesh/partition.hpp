@@ -13,15 +13,7 @@ namespace sprekk::mesh {
 /// minus cell. No part is empty unless there are fewer cells than parts. Throws an Error if METIS fails.
 std::vector<int> partition(const GlobalMesh& mesh, int n_parts);
 
-/// How good a partition is.
-struct PartitionReport {
-  double cell_imbalance;           ///< most cells in a part / mean over all parts; 1 is perfect
-  double fracture_face_imbalance;  ///< the same of fracture faces, at their minus cell; 1 where there are none
-  GlobalIndex edge_cut;            ///< pairs of cells that share a face, or a fracture face, and are in different parts
-  GlobalIndex separated_faces;     ///< fracture faces whose two cells are in different parts
-};
-
-/// `part` is in [0, n_parts) for each cell.
+/// How good a partition is. `part` is in [0, n_parts) for each cell.
 PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int n_parts);
 
 }  // namespace sprekk::mesh

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/renumber.hpp"
+#include "mesh/union_find.hpp"
 
 namespace sprekk::mesh {
 namespace {
@@ -17,7 +18,7 @@ using BoundaryFace = GlobalMesh::BoundaryFace;
 
 std::vector<BoundaryFace> faces_of(const GlobalMesh& mesh, const std::string& boundary) {
   const auto found = std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), boundary);
-  SPREKK_CHECK(found != mesh.boundary_names.end(), "periodic: \"{}\" is no boundary of the mesh, must be one of {}.{}",
+  SPREKK_CHECK(found != mesh.boundary_names.end(), "periodic: \"{}\" is no boundary of the mesh, must be one of {}{}",
                boundary, base::quoted_list(mesh.boundary_names), base::did_you_mean(boundary, mesh.boundary_names));
   const int number = static_cast<int>(found - mesh.boundary_names.begin());
   std::vector<BoundaryFace> faces;
@@ -32,25 +33,8 @@ Vector mean_centre(const GlobalMesh& mesh, const std::vector<BoundaryFace>& face
   return (1.0 / static_cast<Real>(std::max<std::size_t>(faces.size(), 1))) * sum;
 }
 
-/// Finds, with union-find, the lowest node of each set of nodes that share their unknowns.
-class Ties {
- public:
-  explicit Ties(GlobalIndex n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), GlobalIndex{0}); }
-  GlobalIndex find(GlobalIndex node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-  void tie(GlobalIndex a, GlobalIndex b) {
-    const auto [low, high] = std::minmax({find(a), find(b)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<GlobalIndex> parent_;
-};
-
 /// Ties the nodes of the faces `second` to those of `first`.
-void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>& names, Ties& ties) {
+void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>& names, UnionFind& ties) {
   const auto first = faces_of(mesh, names.first), second = faces_of(mesh, names.second);
   SPREKK_CHECK(first.size() == second.size() && !first.empty(),
                "periodic: boundaries \"{}\" and \"{}\" have {} and {} faces; they must match", names.first,
@@ -86,7 +70,7 @@ void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>
                                       [&](GlobalIndex node) { return norm(point(mesh, node) - x) < 1000 * tolerance; });
       SPREKK_CHECK(match != others.begin() + n, "periodic: the node of \"{}\" at ({}, {}, {}) has no partner on \"{}\"",
                    names.second, x[0] + shift[0], x[1] + shift[1], x[2] + shift[2], names.first);
-      ties.tie(nodes[k], *match);
+      ties.join(nodes[k], *match);
     }
   }
 }
@@ -95,7 +79,7 @@ void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>
 
 GlobalMesh tie_periodic(const GlobalMesh& mesh, const std::vector<std::pair<std::string, std::string>>& pairs) {
   if (pairs.empty()) return mesh;
-  Ties ties(mesh.n_nodes());
+  UnionFind ties(mesh.n_nodes());
   for (const auto& pair : pairs) tie_faces(mesh, pair, ties);
   std::vector<GlobalIndex> new_node(mesh.n_nodes()), same_cell(mesh.n_cells()), tied;
   std::iota(same_cell.begin(), same_cell.end(), GlobalIndex{0});

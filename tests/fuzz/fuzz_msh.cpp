@@ -1,13 +1,10 @@
 // fuzz_msh FOLDER COUNT [FIRST]: reads the gmsh meshes of a folder, damaged in COUNT ways. Each must give a sound mesh
-// or an Error. A failure names the number of the way, which is FIRST to repeat it alone.
+// or an Error.
 #include <cmath>
-#include <cstdlib>
-#include <iostream>
 
-#include "base/check.hpp"
+#include "fuzz.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
-#include "mutate.hpp"
 
 namespace {
 
@@ -38,34 +35,10 @@ std::string defect(const mesh::GlobalMesh& mesh) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "usage: fuzz_msh FOLDER COUNT [FIRST]\n";
-    return 2;
-  }
-  const auto texts = fuzz::contents(argv[1], ".msh");
-  const long first = argc > 3 ? std::atol(argv[3]) : 0, count = std::atol(argv[2]);
-  if (texts.empty() || count <= 0) {
-    std::cerr << "fuzz_msh: nothing to do\n";
-    return 2;
-  }
-  long n_meshes = 0;
-  for (long i = first; i < first + count; ++i) {
-    const auto& text = texts[i % texts.size()];
+  return fuzz::run(argc, argv, "fuzz_msh", ".msh", [](const std::string& text, const std::string& damaged) {
     mesh::MshOptions options;
     for (const char* name : {"f1", "f2", "f3"})
       if (text.find('"' + std::string(name) + '"') != text.npos) options.fractures[name] = {};
-    try {
-      const auto what = defect(mesh::parse_msh(fuzz::Mutator(i).damaged(text), "damaged.msh", options));
-      if (!what.empty()) {
-        std::cerr << "fuzz_msh: way " << i << ": " << what << '\n';
-        return 1;
-      }
-      ++n_meshes;
-    } catch (const Error&) {
-    } catch (const std::exception& error) {
-      std::cerr << "fuzz_msh: way " << i << ": not an Error: " << error.what() << '\n';
-      return 1;
-    }
-  }
-  std::cout << count << " damaged meshes: " << n_meshes << " read, " << count - n_meshes << " refused\n";
+    return defect(mesh::parse_msh(damaged, "damaged.msh", options));
+  });
 }

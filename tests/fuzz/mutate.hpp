@@ -122,10 +122,10 @@ class Mutator {
   }
 };
 
-/// The content of all files in a folder with this ending, in the order of their names.
+/// The content of all files in a folder and those in it with this ending, in the order of their names.
 inline std::vector<std::string> contents(const std::string& folder, const std::string& ending) {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.path().extension() == ending) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   std::vector<std::string> result;

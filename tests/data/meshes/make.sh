@@ -39,3 +39,21 @@ mesh planes patches 2 3 -order 1 -format msh41
 mesh planes_order2 patches 2 3 -order 2 -format msh41
 mesh triple patches 3 3 -order 1 -format msh22
 mesh triple_order2 patches 3 3 -order 2 -format msh22 -bin
+for lines in 1 2 3 4 5 6 7 8; do
+  mesh cut_lines${lines}_triangle cut_lines 1 2 -setnumber lines $lines -format msh22
+  mesh cut_lines${lines}_quadrilateral cut_lines 2 2 -setnumber lines $lines -format msh41
+done
+for lines in 6 7; do
+  mesh cut_lines${lines}_tetrahedron cut_lines 3 3 -setnumber lines $lines -format msh41 -bin
+  mesh cut_lines${lines}_hexahedron cut_lines 4 3 -setnumber lines $lines -format msh22 -bin
+done
+for plane in 1 2 3; do
+  mesh cut_plane${plane}_tetrahedron cut_plane 1 3 -setnumber plane $plane -format msh22 -bin
+done
+mesh cut_plane1_hexahedron cut_plane 2 3 -setnumber plane 1 -format msh41
+mesh cut_plane2_hexahedron cut_plane 3 3 -setnumber plane 2 -format msh41 -bin
+mesh cut_plane3_hexahedron cut_plane 2 3 -setnumber plane 3 -format msh22
+mesh free_sides_triangle free_sides 1 2 -format msh41 -bin
+mesh free_sides_quadrilateral free_sides 2 2 -format msh22 -bin
+mesh free_sides_tetrahedron free_sides 3 3 -format msh22 -bin
+mesh free_sides_hexahedron free_sides 4 3 -format msh41 -bin

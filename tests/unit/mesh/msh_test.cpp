@@ -113,6 +113,28 @@ TEST(Msh, CopiesAreasAndNodes) {
   }
 }
 
+/// A file of order 1 that is raised splits as the file of order 2 does.
+TEST(Msh, OrderRaised) {
+  for (const auto& c : cases) {
+    const std::string name = c.name, suffix = "_order2";
+    if (name.size() < suffix.size() || name.substr(name.size() - suffix.size()) != suffix) continue;
+    SCOPED_TRACE(name);
+    auto options = fractures(c.n_fractures);
+    options.order = 2;
+    const auto raised = read_msh(path_of(name.substr(0, name.size() - suffix.size())), options);
+    EXPECT_EQ(order(raised.shape), 2);
+    check(c, raised);
+    check(c, read_msh(path_of(name), options));
+    options.order = 1;
+    try {
+      read_msh(path_of(name), options);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("has cells of order 2; order 1 was asked for"), std::string::npos);
+    }
+  }
+}
+
 TEST(Msh, CopiesAreWhatFracturesAdd) {
   for (const char* name : {"x_order1_v41", "cubes_order2", "triple_order2"}) {
     const int n = std::string(name) == "triple_order2" ? 3 : 2;

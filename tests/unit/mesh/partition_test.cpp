@@ -99,6 +99,8 @@ TEST(Partition, ReportCounts) {
   const auto result = report(mesh, {0, 0, 1, 1, 0, 0, 0, 2}, 3);
   EXPECT_DOUBLE_EQ(result.cell_imbalance, 5 / (8 / 3.0));
   EXPECT_DOUBLE_EQ(result.fracture_face_imbalance, 2 / (4 / 3.0));
+  EXPECT_EQ(result.cells, (std::array<GlobalIndex, 2>{1, 5}));
+  EXPECT_EQ(result.fracture_faces, (std::array<GlobalIndex, 2>{0, 2}));
   EXPECT_EQ(result.edge_cut, 1 + 1 + 2);
   EXPECT_EQ(result.separated_faces, 2);
   const auto whole = report(make_box(unit_steps("triangle", {2, 2})), std::vector<int>(8, 0), 1);

@@ -1,0 +1,24 @@
+#include "mesh/bodies.hpp"
+
+#include "mesh/facets.hpp"
+#include "mesh/union_find.hpp"
+
+namespace sprekk::mesh {
+
+Bodies find_bodies(const GlobalMesh& mesh) {
+  UnionFind sets(mesh.n_cells());
+  const auto across = face_neighbours(mesh);
+  for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(across.size()); ++face)
+    if (across[face] > face) sets.join(face / n_faces(mesh.shape), across[face] / n_faces(mesh.shape));
+  for (const auto& face : mesh.fracture_faces) sets.join(face.cell[minus], face.cell[plus]);
+  Bodies bodies;
+  for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
+    const GlobalIndex lowest = sets.find(cell);
+    bodies.of_cell.push_back(lowest == cell ? bodies.n() : bodies.of_cell[lowest]);
+    if (lowest == cell) bodies.n_cells.push_back(0);
+    ++bodies.n_cells[bodies.of_cell[cell]];
+  }
+  return bodies;
+}
+
+}  // namespace sprekk::mesh

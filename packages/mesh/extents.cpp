@@ -1,0 +1,52 @@
+#include "mesh/extents.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <limits>
+
+namespace sprekk::mesh {
+namespace {
+
+/// Bounding boxes around the nodes of all ranks.
+class Boxes {
+ public:
+  explicit Boxes(std::size_t n) : corners_(6 * n, -std::numeric_limits<Real>::max()) {}
+
+  void add(const Mesh& mesh, LocalIndex node, int box = 0) {
+    for (int i = 0; i < mesh.dim(); ++i) {
+      const Real x = mesh.coordinates[node * mesh.dim() + i];
+      Real* corner = &corners_[6 * box + 2 * i];
+      corner[0] = std::max(corner[0], x);
+      corner[1] = std::max(corner[1], -x);
+    }
+  }
+
+  std::vector<Vector> extents(const Mesh& mesh) const {
+    std::vector<Real> all(corners_.size());
+    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, static_cast<int>(all.size()), corners_.data(), all.data());
+    std::vector<Vector> result(all.size() / 6);
+    for (std::size_t box = 0; box < result.size(); ++box)
+      for (int i = 0; i < mesh.dim(); ++i) result[box][i] = all[6 * box + 2 * i] + all[6 * box + 2 * i + 1];
+    return result;
+  }
+
+ private:
+  std::vector<Real> corners_;  // [box * 6 + 2 * direction]: largest x, largest -x
+};
+
+}  // namespace
+
+Vector domain_extents(const Mesh& mesh) {
+  Boxes boxes(1);
+  for (LocalIndex node = 0; node < mesh.n_nodes(); ++node) boxes.add(mesh, node);
+  return boxes.extents(mesh)[0];
+}
+
+std::vector<Vector> fracture_extents(const Mesh& mesh) {
+  Boxes boxes(mesh.fracture_names.size());
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    for (int k = 0; k < n_face_nodes(mesh.shape); ++k)
+      boxes.add(mesh, mesh.fracture_faces[f].nodes[minus][k], mesh.fracture_faces[f].fracture);
+  return boxes.extents(mesh);
+}
+
+}  // namespace sprekk::mesh

@@ -1,0 +1,16 @@
+// How large the domain and its fractures are.
+#pragma once
+
+#include <vector>
+
+#include "mesh/facets.hpp"
+
+namespace sprekk::mesh {
+
+/// Size of the domain's bounding box in each direction, m; in 2D the third is zero. Collective.
+Vector domain_extents(const Mesh& mesh);
+
+/// The same of each fracture. Collective.
+std::vector<Vector> fracture_extents(const Mesh& mesh);
+
+}  // namespace sprekk::mesh
