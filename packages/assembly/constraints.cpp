@@ -3,7 +3,9 @@
 #include "base/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 namespace sprekk::assembly {
 
@@ -53,15 +55,21 @@ void Constraints::evaluate(Real t) {
     values(entry.unknown) = value(entry, t);
     largest_ = std::max(largest_, std::abs(values(entry.unknown)));
   }
+  std::map<std::array<int, 3>, std::string> conflicts;  // one of each pair of conditions and component
   for (const auto& [number, entry] : repeated_) {
     const Real first = values(entry.unknown), second = value(entry, t);
-    SPREKK_CHECK(
-        std::abs(first - second) <= 1e-12 * largest_,
-        "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
-        "where they meet they must agree or leave the component free",
-        conditions_[entries_[number].condition].name, conditions_[entry.condition].name, first, second,
-        "xyz"[entry.component], conditions_[entry.condition].field, entry.x[0], entry.x[1], entry.x[2], t);
+    if (std::abs(first - second) <= 1e-12 * largest_) continue;
+    conflicts.try_emplace(
+        {entries_[number].condition, entry.condition, entry.component},
+        fmt::format(
+            "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
+            "where they meet they must agree or leave the component free",
+            conditions_[entries_[number].condition].name, conditions_[entry.condition].name, first, second,
+            "xyz"[entry.component], conditions_[entry.condition].field, entry.x[0], entry.x[1], entry.x[2], t));
   }
+  std::string message;
+  for (const auto& [place, conflict] : conflicts) message += (message.empty() ? "" : "\n") + conflict;
+  SPREKK_CHECK(conflicts.empty(), "{}", message);
   Kokkos::deep_copy(values_, values);
 }
 

@@ -55,7 +55,7 @@ void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& v
 /// Values at the nodes of a face, in the order of face_nodes(shape).
 using FaceValues = std::array<Real, mesh::max_face_nodes>;
 
-/// Calls visit(N, area, x) at quadrature points of a face of a cell (exact for degree 4 on affine faces): values of the
+/// Calls visit(N, area, x) at quadrature points of a face of a cell (exact for degree 5 on affine faces): values of the
 /// face's node functions, area that the point stands for, place.
 template <Shape shape, class Visit>
 void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const Visit& visit) {
@@ -68,8 +68,8 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
     for (int k = 0; k < n; ++k)
       for (int i = 0; i < dim; ++i) {
         x[i] += N[k] * X[nodes[k]][i];
-        s[i] += dN[0][k] * X[nodes[k]][i];
-        t[i] += dN[1][k] * X[nodes[k]][i];
+        s[i] += dN[0][k] * (X[nodes[k]][i] - X[nodes[0]][i]);
+        t[i] += dN[1][k] * (X[nodes[k]][i] - X[nodes[0]][i]);
       }
     const Real cx = s[1] * t[2] - s[2] * t[1], cy = s[2] * t[0] - s[0] * t[2], cz = s[0] * t[1] - s[1] * t[0];
     const Real stretch = dim == 2 ? std::hypot(s[0], s[1]) : std::sqrt(cx * cx + cy * cy + cz * cz);
@@ -88,8 +88,9 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
     constexpr Shape face = mesh::order(shape) == 1 ? corners : mesh::quadratic(corners);
     using Face = ReferenceCell<face>;
     Real xi[2], N[n], dN[n][2];
-    for (int q = 0; q < BubbleQuadrature<face>::n; ++q) {
-      const Real weight = BubbleQuadrature<face>::at(q, xi);
+    using Rule = Quadrature<face, 4>;  // as exact for a bubble of the cell behind as the rule in that cell
+    for (int q = 0; q < Rule::n; ++q) {
+      const Real weight = Rule::at(q, xi);
       Face::shape_functions(xi, N);
       Face::gradients(xi, dN);
       FaceValues values{};

@@ -18,7 +18,8 @@ namespace sprekk::assembly {
 enum class Quantity {
   length,  ///< displacement scale, m
   stress,  ///< traction scale, Pa
-  force    ///< traction scale times the area of a typical face, N
+  force,   ///< traction scale times the area of a typical face, N
+  volume   ///< displacement scale times that area, m^3
 };
 
 /// A field that a module adds to the problem. It becomes a block of the same name.
@@ -108,6 +109,8 @@ class Module {
   /// Adds the derivative of residual() to the blocks of owned rows. Local: sends nothing.
   virtual void jacobian(const State& state, fields::BlockMatrix& J) const = 0;
 
+  /// Its forces may hold bodies that boundary conditions leave free to move, which is an error without it.
+  virtual bool holds_bodies() const { return false; }
   /// The largest prescribed stress at time t, Pa, on this rank: boundary traction, weight of the domain.
   virtual Real load(Real t) const { return 0; }
   /// The residual at x = 0 is the same at all times.

@@ -83,8 +83,7 @@ using StiffnessQuadrature =
 /// Exact for products of bubble gradients, and for loads of degree 2 against bubbles, on affine cells.
 template <Shape shape>
 using BubbleQuadrature =
-    Quadrature<shape,
-               mesh::linear(shape) == Shape::tetrahedron || (!is_simplex(shape) && mesh::order(shape) == 2) ? 4 : 3>;
+    Quadrature<shape, mesh::linear(shape) == Shape::tetrahedron || mesh::order(shape) == 2 ? 4 : 3>;
 
 /// Lagrange functions of order 1 or 2 and face bubbles. Simplices: in barycentric coordinates l, corners l (order 1) or
 /// l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with nodes -1[,
@@ -242,12 +241,13 @@ struct CellPoint {
   Real inverse[dim][dim];  ///< d xi / d x
   Real volume;             ///< |det(dx/dxi)|, to be multiplied by the quadrature weight
 
-  /// X: node coordinates [node][component], dN: reference gradients of the shape functions.
+  /// X: node coordinates [node][component], dN: reference gradients of the shape functions. They add up to zero, so
+  /// that X may be taken from the first node: no cancellation far from the origin.
   KOKKOS_INLINE_FUNCTION CellPoint(const Real (&X)[Cell::n_nodes][dim], const Real (&dN)[Cell::n_nodes][dim]) {
     Real J[dim][dim] = {};
-    for (int a = 0; a < Cell::n_nodes; ++a)
+    for (int a = 1; a < Cell::n_nodes; ++a)
       for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) J[i][j] += X[a][i] * dN[a][j];
+        for (int j = 0; j < dim; ++j) J[i][j] += (X[a][i] - X[0][i]) * dN[a][j];
     const Real det = invert(J);
     volume = det < 0 ? -det : det;
   }

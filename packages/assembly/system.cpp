@@ -2,6 +2,7 @@
 #include "assembly/system.hpp"
 
 #include "base/check.hpp"
+#include "mesh/extents.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -43,6 +44,12 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
 
 namespace {
 
+void check_unique(std::vector<std::string> names, const char* what) {
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  SPREKK_CHECK(twice == names.end(), "modules declare the {} \"{}\" twice", what, *twice);
+}
+
 /// Node coordinates of this rank's owned nodes, [node, component].
 RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout& layout) {
   const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
@@ -77,16 +84,9 @@ RCP<MultiVector> rigid_body_modes(const fields::Layout& layout, const MultiVecto
 
 /// Area of the face of a typical cell: the domain's bounding box shared out among the cells.
 Real typical_face_area(const mesh::Mesh& mesh) {
+  const auto size = mesh::domain_extents(mesh);
   const int dim = mesh.dim();
-  std::vector<Real> corner(2 * dim, -std::numeric_limits<Real>::max()), all(2 * dim);
-  for (LocalIndex n = 0; n < mesh.n_nodes(); ++n)
-    for (int i = 0; i < dim; ++i) {
-      corner[i] = std::max(corner[i], mesh.coordinates[n * dim + i]);
-      corner[dim + i] = std::max(corner[dim + i], -mesh.coordinates[n * dim + i]);
-    }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 2 * dim, corner.data(), all.data());
-  Real volume = 1;
-  for (int i = 0; i < dim; ++i) volume *= all[i] + all[dim + i];
+  const Real volume = size[0] * size[1] * (dim == 3 ? size[2] : 1);
   return std::pow(volume / static_cast<Real>(mesh.n_global_cells), (dim - 1.0) / dim);
 }
 
@@ -97,6 +97,12 @@ void System::declare_fields() {
     declarations_.push_back(module->declare());
     for (const auto& unknown : declarations_.back().unknowns) unknowns_.push_back(unknown);
   }
+  std::vector<std::string> fields, histories;
+  for (const auto& unknown : unknowns_) fields.push_back(unknown.field.name);
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    for (const auto& history : declarations_[m].history) histories.push_back(history_name(m, history));
+  check_unique(fields, "field");
+  check_unique(histories, "history");
   for (const auto& unknown : unknowns_) layouts_.emplace_back(unknown.field, *mesh_);
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     const auto& layout = layouts_[b];
@@ -212,6 +218,25 @@ BlockVector System::initial() const {
   BlockVector x;
   for (const auto& block : blocks_) x.push_back(rcp(new Vector(block.map)));
   return x;
+}
+
+std::vector<std::pair<fields::Field, View<Real**>>> System::histories() const {
+  std::vector<std::pair<fields::Field, View<Real**>>> all;
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    for (std::size_t h = 0; h < history_[m].size(); ++h) {
+      const auto& declared = declarations_[m].history[h];
+      all.push_back({{history_name(m, declared), declared.entity, declared.n_components, ""}, history_[m][h]});
+    }
+  return all;
+}
+
+std::string System::history_name(std::size_t module, const History& history) const {
+  return modules_[module]->name() + ": " + history.name;
+}
+
+void System::resume(Real t, Real dt, const Scales& scales) {
+  scales_ = scales;
+  set_time(t, dt);
 }
 
 }  // namespace sprekk::assembly

@@ -46,6 +46,13 @@ class System : public fields::BlockProblem {
   /// component]; an unknown held by two conditions counts for the first. Collective.
   std::vector<std::pair<std::string, std::vector<Real>>> reactions(const fields::BlockVector& x);
 
+  /// What the modules keep, as "MODULE: HISTORY"; the values, [owned entity, component], may be written.
+  std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
+  /// Goes on from a state that was committed at time t, at the end of a step dt, under loads of these scales. Throws
+  /// like set_time. Collective.
+  void resume(Real t, Real dt, const Scales& scales);
+  Real dt() const { return dt_; }
+
   const mesh::Mesh& mesh() const { return *mesh_; }
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
   const std::vector<fields::Layout>& layouts() const { return layouts_; }
@@ -67,6 +74,7 @@ class System : public fields::BlockProblem {
   void set_merit_weights();
   void find_exchanges();
   State state(int module) const;
+  std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
   void update_scales(Real t);

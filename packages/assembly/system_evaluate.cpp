@@ -71,7 +71,8 @@ void System::update_scales(Real t) {
   const auto scale = [&](Quantity q) {
     return q == Quantity::length   ? scales_.length
            : q == Quantity::stress ? scales_.stress
-                                   : scales_.stress * face_area_;
+           : q == Quantity::force  ? scales_.stress * face_area_
+                                   : scales_.length * face_area_;
   };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     blocks_[b].kinematic_scale = scale(unknowns_[b].value);

@@ -38,6 +38,10 @@ RCP<const Map> make_map(const Field& field, const mesh::Mesh& mesh, LocalIndex n
 
 }  // namespace
 
+RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh) {
+  return make_map(field, mesh, n_entities(mesh, field.entity, false));
+}
+
 Layout::Layout(const Field& field, const mesh::Mesh& mesh)
     : field_(field),
       n_owned_entities_(n_entities(mesh, field.entity, false)),

@@ -101,26 +101,32 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t           open,  y > 0
 ///                                                            R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Faces that just touch (y = 0) are closed and stick. p_old is the plastic jump at the end of the last step.
+/// Faces that just touch (y = 0) are closed and stick. p_old is the plastic jump at the end of the last step. Where p
+/// is zero to rounding its direction is noise; |p| then grows along z, as it does when sliding begins.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1],
                                                      T (&R)[dim]) {
-  T p[dim - 1], step[dim - 1];
+  T p[dim - 1], step[dim - 1], z[dim - 1];
   for (int i = 0; i < dim - 1; ++i) {
     p[i] = w[i + 1] - law.elastic.compliance * lambda[i + 1];
     step[i] = c.tangential * (p[i] - p_old[i]);
+    z[i] = lambda[i + 1] + step[i];
   }
-  const T penetration = c.normal * (w[0] - law.gap(norm(p), lambda[0]));
+  const T size = norm(z);
+  T distance = norm(p);
+  if (size > 0 && c.tangential * distance <= 1e-13 * size) {
+    distance = 0;
+    for (int i = 0; i < dim - 1; ++i) distance += p[i] * z[i] / size;
+  }
+  const T penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
   const T y = lambda[0] + penetration;
   if (y > 0) {
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
   R[0] = -penetration;
-  T z[dim - 1];
-  for (int i = 0; i < dim - 1; ++i) z[i] = lambda[i + 1] + step[i];
-  const T size = norm(z), b = law.friction.bound(y);
+  const T b = law.friction.bound(y);
   if (size <= b) {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -step[i];
     return ContactState::stick;

@@ -1,12 +1,10 @@
 #include "physics/bulk_momentum.hpp"
 
 #include "assembly/assembler.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
+#include "mesh/extents.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sprekk::physics {
 
@@ -108,7 +106,8 @@ class BulkMomentum final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    size_ = domain_size();
+    const auto extents = mesh::domain_extents(*mesh_);
+    size_ = *std::max_element(extents.begin(), extents.end());
     View<laws::Elasticity*> material("material", parameters_.elasticity.size());
     const auto host = Kokkos::create_mirror_view(material);
     std::copy(parameters_.elasticity.begin(), parameters_.elasticity.end(), host.data());
@@ -183,21 +182,6 @@ class BulkMomentum final : public assembly::Module {
   }
 
  private:
-  /// Largest extent of the whole domain, m. Collective.
-  Real domain_size() const {
-    Real here[2 * dim], all[2 * dim], size = 0;
-    std::fill_n(here, 2 * dim, -std::numeric_limits<Real>::max());
-    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
-      for (int i = 0; i < dim; ++i) {
-        const Real x = mesh_->coordinates[node * dim + i];
-        here[i] = std::max(here[i], x);
-        here[dim + i] = std::max(here[dim + i], -x);
-      }
-    Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, 2 * dim, here, all);
-    for (int i = 0; i < dim; ++i) size = std::max(size, all[i] + all[dim + i]);
-    return size;
-  }
-
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }

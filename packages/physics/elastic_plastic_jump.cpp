@@ -1,9 +1,9 @@
 #include "physics/elastic_plastic_jump.hpp"
 
 #include "assembly/assembler.hpp"
+#include "mesh/extents.hpp"
 
 #include <Sacado.hpp>
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -179,8 +179,7 @@ class ElasticPlasticJump final : public assembly::Module {
   int elasticity_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
   }
-  std::vector<Real> fracture_lengths() const;  ///< [fracture], diagonal of the box around it
-  ConstView<Real**> initial_jump() const;      ///< w_0 [face, dim]
+  ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
 
   ElasticPlasticJumpParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
@@ -189,32 +188,6 @@ class ElasticPlasticJump final : public assembly::Module {
   std::unique_ptr<assembly::Assembler<Op>> faces_;
   View<Real*> merit_weight_;  // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
 };
-
-template <Shape shape>
-std::vector<Real> ElasticPlasticJump<shape>::fracture_lengths() const {
-  const std::size_t n_fractures = mesh_->fracture_names.size();
-  std::vector<Real> here(n_fractures * 2 * dim, -std::numeric_limits<Real>::max()), all(here.size()),
-      lengths(n_fractures, 0);
-  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-    const auto& face = mesh_->fracture_faces[f];
-    for (int k = 0; k < n; ++k)
-      for (int i = 0; i < dim; ++i) {
-        const Real x = mesh_->coordinates[face.nodes[0][k] * dim + i];
-        Real* corner = &here[(face.fracture * dim + i) * 2];
-        corner[0] = std::max(corner[0], x);
-        corner[1] = std::max(corner[1], -x);
-      }
-  }
-  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), all.data());
-  for (std::size_t k = 0; k < n_fractures; ++k) {
-    for (int i = 0; i < dim; ++i) {
-      const Real extent = all[(k * dim + i) * 2] + all[(k * dim + i) * 2 + 1];
-      lengths[k] += extent * extent;
-    }
-    lengths[k] = std::sqrt(lengths[k]);
-  }
-  return lengths;
-}
 
 template <Shape shape>
 ConstView<Real**> ElasticPlasticJump<shape>::initial_jump() const {
@@ -255,7 +228,7 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
   const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
-  const auto lengths = fracture_lengths();
+  const auto extents = mesh::fracture_extents(*mesh_);
   for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
   for (LocalIndex f = 0; f < n_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];
@@ -271,7 +244,7 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
       assembly::for_each_cell_point<shape>(
           *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
-    augmentation_h(f) = laws::augmentation(law_h(joint_of(f)), modulus / lengths[face.fracture]);
+    augmentation_h(f) = laws::augmentation(law_h(joint_of(f)), modulus / mesh::norm(extents[face.fracture]));
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
   }
   Kokkos::deep_copy(frame, frame_h);

@@ -1,4 +1,4 @@
-// The joint law in series with a block of rock: verification cases A1 to A3.
+// The joint law in series with a block of rock: every contact regime, cyclic shear, shear that turns.
 #include "laws/joint.hpp"
 
 #include <vector>
@@ -14,7 +14,7 @@ struct Regime {
   ClosedForm exact;
 };
 
-/// Verification case A1, closed form: a quadratic in the normal force N in each regime.
+/// Closed form: a quadratic in the normal force N in each regime.
 const std::vector<Regime> case_a1 = {
     {"open", 0.2, 0.2, 0, {ContactState::open, 0, 0, 0.2, 0.2}},
     {"stick", 0.05, -0.1, 0, {ContactState::stick, 0.033333333333333, -0.234281365494, 0, -0.021906211502}},
@@ -103,7 +103,7 @@ TEST(SeriesBlock, PullOpensAndAllJumpIsPlastic) {
   EXPECT_NEAR(plastic[0], 1, 1e-14);
 }
 
-/// Verification case A2: cyclic shear at the normal force N = 0.3; slip starts at an elastic displacement of 0.27.
+/// Cyclic shear at the normal force N = 0.3; slip starts at an elastic displacement of 0.27.
 TEST(CyclicShear, FollowsTheHysteresisLoop) {
   const Real d_t[] = {0.1, 0.5, 0.5, 0.3, -0.5, -0.2, 0.5, 0.5};
   const Real lambda_t[] = {0.2 / 3, 0.18, 0.18, 0.14 / 3, -0.18, 0.02, 0.18, 0.18};
@@ -168,7 +168,7 @@ TEST(CyclicShear, DoesNotDriftOverAThousandCycles) {
   EXPECT_NEAR(block.lambda[1], -0.18, 1e-9);
 }
 
-/// Verification case A3 (i): shear that turns by a right angle; implicit Euler is the radial return.
+/// Shear that turns by a right angle; implicit Euler is the radial return.
 TEST(RotatingShear, CornerPath) {
   const struct {
     int steps;
@@ -188,7 +188,7 @@ TEST(RotatingShear, CornerPath) {
   }
 }
 
-/// Verification case A3 (ii): the plastic jump of steady circling, -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)), turn D a
+/// The plastic jump of steady circling, -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)), turn D a
 /// step.
 TEST(RotatingShear, Circle) {
   const Real pi = 3.14159265358979323846, R = 0.5, S = 0.27;

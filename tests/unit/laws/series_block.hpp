@@ -101,7 +101,8 @@ struct SeriesBlock {
   }
 };
 
-/// The parameters R1 of the verification cases: with k_n = 3 and k_s = 1 the series stiffness in shear is K_s = 2/3.
+/// K_t = 2, mu = 0.6, theta = 10 degrees, g0 = 0.01, Du = 0.1, K_n = 5. With k_n = 3 and k_s = 1 the series stiffness
+/// in shear is K_s = 2/3.
 inline Joint reference_joint() {
   Joint joint;
   joint.elastic.compliance = 1 / 2.0;
