@@ -2,6 +2,9 @@
 
 #include "base/check.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -28,6 +31,14 @@ void write_file(const std::string& path, const std::string& content) {
   if (error == 0 && std::rename(beside.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) std::remove(beside.c_str());
   SPREKK_CHECK(error == 0, "{}: cannot be written: {}", path, std::generic_category().message(error));
+}
+
+void bring_to_disk(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY);
+  const bool done = file >= 0 && ::fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  SPREKK_CHECK(done, "{}: cannot be brought to the disk: {}", path, std::generic_category().message(error));
 }
 
 void make_directory(const Comm& comm, const std::string& path) {

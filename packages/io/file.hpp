@@ -11,6 +11,10 @@ namespace sprekk::io {
 /// Error: the path and the system's reason; the file beside is removed and an earlier `path` stays as it was.
 void write_file(const std::string& path, const std::string& content);
 
+/// Returns when a file's content, or a directory's names, would outlive a failure of power. Not collective; Error: the
+/// path and the system's reason.
+void bring_to_disk(const std::string& path);
+
 /// Makes the directory with its parents; one that exists is fine. Collective, with the same error on every rank.
 void make_directory(const Comm& comm, const std::string& path);
 

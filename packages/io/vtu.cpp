@@ -1,6 +1,7 @@
 #include "io/vtu.hpp"
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "io/file.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -68,32 +69,11 @@ class PieceBuilder {
   Piece piece_;
 };
 
-std::string xml_escaped(const std::string& text) {
-  std::string escaped;
-  for (char c : text) switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  return escaped;
-}
-
 /// VTK's view of an array that stays ours. VTK has no const arrays, the writer only reads; it does not escape names.
 template <class Array, class T>
 vtkNew<Array> borrowed(const std::vector<T>& values, int n_components, const std::string& name) {
   vtkNew<Array> array;
-  array->SetName(xml_escaped(name).c_str());
+  array->SetName(base::xml_escaped(name).c_str());
   array->SetNumberOfComponents(n_components);
   array->SetArray(const_cast<T*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
   return array;
@@ -130,7 +110,7 @@ std::string declarations(const std::vector<DataArray>& arrays) {
   std::string text;
   for (const auto& a : arrays)
     text += fmt::format("      <PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
-                        xml_escaped(a.name), a.n_components);
+                        base::xml_escaped(a.name), a.n_components);
   return text;
 }
 
@@ -200,9 +180,20 @@ DataArray nodal_data_array(const Piece& piece, std::string name, int n_component
   return data_array(std::move(name), n_components, std::move(values));
 }
 
-VtuSeries::VtuSeries(RCP<const Comm> comm, std::string directory, std::string name)
-    : comm_(std::move(comm)), directory_(std::move(directory)), name_(std::move(name)) {
+VtuSeries::VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times)
+    : comm_(std::move(comm)), directory_(std::move(directory)), name_(std::move(name)), times_(std::move(times)) {
   make_directory(*comm_, directory_ + '/' + name_);
+  base::collectively(*comm_, [&] {
+    if (comm_->getRank() == 0 && !times_.empty()) write_list();
+  });
+}
+
+void VtuSeries::write_list() const {
+  std::string steps;
+  for (std::size_t i = 0; i < times_.size(); ++i)
+    steps += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}_{:04}.pvtu\"/>\n", times_[i],
+                         base::xml_escaped(name_), i);
+  write_file(fmt::format("{}/{}.pvd", directory_, name_), vtk_file("Collection", ">\n" + steps));
 }
 
 void VtuSeries::write(Real time, const Piece& piece) {
@@ -220,14 +211,11 @@ void VtuSeries::write(Real time, const Piece& piece) {
   try {
     base::collectively(*comm_, [&] {
       if (comm_->getRank() != 0) return;
-      std::string pieces, steps;
+      std::string pieces;
       for (int r = 0; r < comm_->getSize(); ++r)
-        pieces += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(piece_file(r)));
+        pieces += fmt::format("    <Piece Source=\"{}\"/>\n", base::xml_escaped(piece_file(r)));
       write_file(fmt::format("{}/{}.pvtu", directory_, step), vtk_file("PUnstructuredGrid", declared_here + pieces));
-      for (std::size_t i = 0; i < times_.size(); ++i)
-        steps += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}_{:04}.pvtu\"/>\n", times_[i],
-                             xml_escaped(name_), i);
-      write_file(fmt::format("{}/{}.pvd", directory_, name_), vtk_file("Collection", ">\n" + steps));
+      write_list();
     });
   } catch (...) {
     times_.pop_back();

@@ -49,14 +49,19 @@ DataArray nodal_data_array(const Piece& piece, std::string name, int n_component
 /// DIRECTORY/NAME/; DIRECTORY/NAME.pvd lists all steps and is complete after every write.
 class VtuSeries {
  public:
-  /// Makes the directories. Collective; Error on every rank, naming the path.
-  VtuSeries(RCP<const Comm> comm, std::string directory, std::string name);
+  /// Makes the directories. The series goes on after the steps at `times`, which are there already. Collective; Error
+  /// on every rank, naming the path.
+  VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times = {});
 
   /// Adds the step at `time`, second. Collective. Error on every rank when an array has the wrong size or is not the
   /// same on all ranks, or when a file cannot be written; the series then stands as before the call.
   void write(Real time, const Piece& piece);
 
+  const std::vector<Real>& times() const { return times_; }
+
  private:
+  void write_list() const;  ///< NAME.pvd; not collective
+
   RCP<const Comm> comm_;
   std::string directory_, name_;
   std::vector<Real> times_;

@@ -1,6 +1,10 @@
 #include "model/model.hpp"
 
+#include "assembly/free_motion.hpp"
+#include "base/text.hpp"
 #include "mesh/distribute.hpp"
+#include "mesh/extents.hpp"
+#include "model/fingerprint.hpp"
 #include "physics/bulk_momentum.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "physics/interface_traction_balance.hpp"
@@ -85,11 +89,13 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   if (force.gravity.empty()) return force;
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
     force.density_of_cell.push_back(
-        scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density(centre(mesh, cell), 0));
+        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(centre(mesh, cell), 0));
   return force;
 }
 
-std::vector<assembly::DirichletCondition> dirichlet_conditions(const Scene& scene, const mesh::Mesh& mesh) {
+/// By the numbers of a global mesh or a part of it, which are the same.
+template <class Mesh>
+std::vector<assembly::DirichletCondition> dirichlet_conditions(const Scene& scene, const Mesh& mesh) {
   std::vector<assembly::DirichletCondition> conditions;
   for (const auto& [name, given] : scene.boundary_conditions) {
     if (given.displacement.empty()) continue;
@@ -103,22 +109,49 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(const Scene& scen
 }
 
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  Real here = 0, modulus = 0, length = 0;
+  Real here = 0, modulus = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
     if (cell > 0 && material.is_uniform() && mesh.cell_region[cell] == mesh.cell_region[cell - 1]) continue;
     here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  std::vector<Real> corner(2 * mesh.dim(), -std::numeric_limits<Real>::max()), all(corner.size());
-  for (std::size_t k = 0; k < mesh.coordinates.size(); ++k) {
-    const std::size_t i = k % mesh.dim();
-    corner[2 * i] = std::max(corner[2 * i], mesh.coordinates[k]);
-    corner[2 * i + 1] = std::max(corner[2 * i + 1], -mesh.coordinates[k]);
+  const auto extents = mesh::domain_extents(mesh);
+  return {modulus, *std::max_element(extents.begin(), extents.end())};
+}
+
+/// The scene's mesh, if the scene fits to it.
+mesh::GlobalMesh checked_mesh(const Scene& scene) {
+  auto mesh = scene.make_mesh();
+  const auto misfits = scene.misfits({mesh.dim(), mesh.region_names, mesh.boundary_names, mesh.fracture_names});
+  const std::string place = scene.origin + ": Sprekk > ";
+  SPREKK_CHECK(misfits.empty(), "{}{}", place, fmt::join(misfits, "\n" + place));
+  return mesh;
+}
+
+/// The element of that name, or an Error that lists those there are.
+template <class T, class Name>
+T& named(std::vector<T>& all, const std::string& name, const Name& name_of, const char* what) {
+  std::vector<std::string> names;
+  for (auto& element : all) {
+    names.push_back(name_of(element));
+    if (names.back() == name) return element;
   }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 2 * mesh.dim(), corner.data(), all.data());
-  for (int i = 0; i < mesh.dim(); ++i) length = std::max(length, all[2 * i] + all[2 * i + 1]);
-  return {modulus, length};
+  throw Error(fmt::format("there is no {} \"{}\", but {}{}", what, name, base::quoted_list(names),
+                          base::did_you_mean(name, names)));
+}
+
+/// The name of a block's unknowns in a checkpoint.
+std::string key_of(const fields::Block& block) { return "unknowns: " + block.name; }
+
+/// A vector's values by entity and component.
+View<Real**> entries(fields::Vector& vector, int n_components) {
+  const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
+}
+
+void redistribute(const fields::Vector& from, fields::Vector& to) {
+  to.doImport(from, fields::Import(from.getMap(), to.getMap()), Tpetra::REPLACE);
 }
 
 }  // namespace
@@ -142,30 +175,95 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   return modules;
 }
 
-Model::Model(const Scene& scene, RCP<const Comm> comm)
-    : scene_(scene), timers_(rcp(new base::Timers)), time_(scene.time.start) {
+Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
+    : scene_(prepared(scene)), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   RCP<const mesh::Mesh> mesh;
+  std::string unheld;  // by the scene; known where the whole mesh is
   {
     const auto scope = timers_->scope("mesh");
-    mesh = mesh::make_distributed([&] { return scene_.make_mesh(); }, comm);
+    const auto make = [&] {
+      auto whole = checked_mesh(scene_);
+      unheld = assembly::unheld(whole, dirichlet_conditions(scene_, whole));
+      return whole;
+    };
+    mesh = mesh::make_distributed(make, comm);
   }
-  const auto misfits = scene_.misfits({mesh->dim(), mesh->region_names, mesh->boundary_names, mesh->fracture_names});
-  SPREKK_CHECK(misfits.empty(), "Sprekk > {}", fmt::join(misfits, "\nSprekk > "));
   std::vector<std::unique_ptr<assembly::Module>> modules;
-  base::collectively(*comm, [&] { modules = make_modules(scene_, *mesh); });
+  base::collectively(*comm, [&] {
+    modules = make_modules(scene_, *mesh);
+    if (more_modules)
+      for (auto& module : more_modules(*mesh)) modules.push_back(std::move(module));
+    const bool held = std::any_of(modules.begin(), modules.end(), [](const auto& m) { return m->holds_bodies(); });
+    SPREKK_CHECK(unheld.empty() || held, "{}", unheld);
+  });
   system_ = std::make_unique<assembly::System>(mesh, std::move(modules), dirichlet_conditions(scene_, *mesh),
                                                reference(scene_, *mesh), timers_);
   x_ = system_->initial();
+  start_solver();
+}
+
+void Model::start_solver() {
   const auto scope = timers_->scope("set-up of the solver");
+  stepper_.reset();
+  newton_.reset();
   newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);
   stepper_ = std::make_unique<solve::TimeStepper>(*system_, *newton_, scene_.time.stepping);
 }
 
 solve::StepReport Model::step_to(Real t) {
+  SPREKK_CHECK(t > time_, "a step to t = {} is no step forward: the model is at t = {}", t, time_);
   const auto scope = timers_->scope("time steps");
-  const auto report = stepper_->advance(x_, time_, t);
-  time_ = report.time;
-  return report;
+  return stepper_->advance(x_, time_, t);
+}
+
+FieldView Model::field(const std::string& name) {
+  std::vector<FieldView> all;
+  for (std::size_t b = 0; b < x_.size(); ++b) {
+    const auto& field = system_->layouts()[b].field();
+    all.push_back({field, entries(*x_[b], field.n_components)});
+  }
+  for (const auto& [field, values] : system_->histories()) all.push_back({field, values});
+  return named(
+      all, name, [](const FieldView& f) { return f.field.name; }, "field");
+}
+
+assembly::OutputField Model::output(const std::string& name) {
+  auto all = system_->outputs(x_);
+  return named(
+      all, name, [](const assembly::OutputField& f) { return f.name; }, "output");
+}
+
+io::Checkpoint Model::save() {
+  io::Checkpoint checkpoint;
+  for (std::size_t b = 0; b < x_.size(); ++b)
+    checkpoint.vectors[key_of(system_->blocks()[b])] = rcp(new fields::Vector(*x_[b], Teuchos::Copy));
+  for (const auto& [field, values] : system_->histories()) {
+    const auto vector = rcp(new fields::Vector(fields::owned_map(field, mesh())));
+    Kokkos::deep_copy(entries(*vector, field.n_components), values);
+    checkpoint.vectors[field.name] = vector;
+  }
+  const auto& scales = system_->scales();
+  checkpoint.content = {{"time", time_},
+                        {"dt", system_->dt()},
+                        {"scales", {{"stress", scales.stress}, {"length", scales.length}}},
+                        {"scene", fingerprint(scene_, *system_)}};
+  start_solver();
+  return checkpoint;
+}
+
+void Model::restore(const io::Checkpoint& checkpoint) {
+  const auto& content = checkpoint.content;
+  check_fingerprint(content.at("scene"), fingerprint(scene_, *system_));
+  for (std::size_t b = 0; b < x_.size(); ++b)
+    redistribute(*checkpoint.vectors.at(key_of(system_->blocks()[b])), *x_[b]);
+  for (const auto& [field, values] : system_->histories()) {
+    fields::Vector vector(fields::owned_map(field, mesh()));
+    redistribute(*checkpoint.vectors.at(field.name), vector);
+    Kokkos::deep_copy(values, entries(vector, field.n_components));
+  }
+  time_ = content.at("time");
+  system_->resume(time_, content.at("dt"), {content.at("scales").at("stress"), content.at("scales").at("length")});
+  start_solver();
 }
 
 }  // namespace sprekk::model

@@ -4,25 +4,52 @@
 #include "assembly/system.hpp"
 #include "base/log.hpp"
 #include "base/timer.hpp"
+#include "io/checkpoints.hpp"
 #include "model/scene.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/time_stepping.hpp"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace sprekk::model {
 
+/// Modules of a host for a rank's part of the mesh; called on every rank, must not communicate.
+using ModuleFactory = std::function<std::vector<std::unique_ptr<assembly::Module>>(const mesh::Mesh&)>;
+
+/// A field in place, on the entities that this rank owns: entity i is the node with mesh().node_id[i], the cell with
+/// mesh().cell_id[i] or mesh().fracture_faces[i]. What a host writes counts at once.
+struct FieldView {
+  fields::Field field;
+  View<Real**> values;  ///< [owned entity, component], in device memory
+};
+
 /// A scene brought to life on a communicator: mesh, modules, solver and the present state. Several can live in one
 /// process. All members are collective unless they return stored data.
 class Model {
  public:
-  Model(const Scene& scene, RCP<const Comm> comm);
+  /// Prepares the scene (see prepared()) and builds its system; `more_modules` are appended to the scene's own. Errors
+  /// are the same on every rank.
+  Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules = {});
 
-  /// Goes from time() to t in one step, in substeps where Newton needs them. If the report is not converged, the state
-  /// is the last that did, at report.time.
+  /// Goes from time() to t in one step, in substeps where Newton needs them. If the report is not converged, or an
+  /// Error is thrown, the state is the last that did, at time().
   solve::StepReport step_to(Real t);
+
+  /// The unknowns of a field, by its name, which are the start of the next step's iteration; or a history, by "MODULE:
+  /// HISTORY", which the next step depends on. Valid until the model's next member call. Error: there is no such field.
+  /// Stored data.
+  FieldView field(const std::string& name);
+  /// One of the outputs of the present state. Error: there is no such output.
+  assembly::OutputField output(const std::string& name);
+
+  /// All that the next step depends on. The solver starts anew, as it does in restore(): so the steps that follow have
+  /// the same bits after either, on the same number of ranks.
+  io::Checkpoint save();
+  /// Goes back to what save() gave on any number of ranks. Error: it is of another scene; the message says in what.
+  void restore(const io::Checkpoint& checkpoint);
 
   Real time() const { return time_; }
   const Scene& scene() const { return scene_; }
@@ -35,6 +62,8 @@ class Model {
   base::Timers& timers() { return *timers_; }
 
  private:
+  void start_solver();
+
   Scene scene_;
   RCP<base::Timers> timers_;
   std::unique_ptr<assembly::System> system_;

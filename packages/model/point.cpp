@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
+#include "model/material_library.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -15,6 +16,11 @@ namespace sprekk::model {
 
 namespace {
 
+constexpr const char* axes[] = {"n", "t1", "t2"};
+
+/// "n", then "t" in 2D, "t1" and "t2" in 3D.
+const char* axis(std::size_t dim, std::size_t i) { return dim == 2 && i == 1 ? "t" : axes[i]; }
+
 /// Newton's method on R(w, lambda) = 0 and one control equation per component; unknowns w, lambda.
 template <int dim>
 class PointDriver {
@@ -23,53 +29,122 @@ class PointDriver {
       : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
-    c_ = laws::augmentation(law_, typical_stiffness());
   }
 
   PointState step(Real t) {
-    Real d[dim];
-    for (int i = 0; i < dim; ++i) d[i] = point_.path[i]({0, 0, 0}, t);
+    for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
     Real old[2 * dim];
     std::copy_n(x_, 2 * dim, old);
-    Real length = 0, stress = 0;  // sizes that the step is judged by
-    for (int i = 0; i < dim; ++i) {
-      const Real size = std::max(std::abs(d[i]), std::abs(x_[dim + i]));
-      (point_.control[i] == "traction" ? stress : length) =
-          std::max(point_.control[i] == "traction" ? stress : length, size);
-    }
-    length = std::max({length, stress / c_.normal, std::abs(x_[0])});
-    stress = std::max(stress, length * std::min(c_.normal, c_.tangential));
-    for (int iteration = 0; iteration < 50; ++iteration) {
-      Real f[2 * dim], J[4 * dim * dim];
-      const auto state = evaluate(d, f, J);
-      if (size_of(f, length, stress) <= 1e-14) return accept(t, state);
-      int info = 0, pivots[2 * dim];
-      Teuchos::LAPACK<int, Real>().GESV(2 * dim, 1, J, 2 * dim, pivots, f, 2 * dim, &info);
-      Real change = 0;
-      for (int i = 0; i < 2 * dim; ++i) {
-        SPREKK_CHECK(info == 0 && std::isfinite(f[i]),
-                     "point: t = {}: the prescribed jump or traction leaves the state of the joint undetermined", t);
-        x_[i] -= f[i];
-        change = std::max(change, std::abs(f[i]) / (i < dim ? length : stress));
+    std::string reason;
+    for (Start start : {Start{false, false}, {true, false}, {true, true}}) {
+      for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
+        for (int i = 0; i < 2 * dim; ++i)
+          x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? d_[i] : 0;
+        const std::string failure = solve(factor, start.damped);
+        if (failure.empty()) return accept(t);
+        if (reason.empty()) reason = failure;
       }
-      if (change <= 1e-15 && iteration > 0) return accept(t, evaluate(d, f, J));
     }
-    std::copy_n(old, 2 * dim, x_);
-    throw Error(fmt::format("point: t = {}: no state found that obeys the joint law and the prescribed values", t));
+    std::string prescribed;
+    for (int i = 0; i < dim; ++i)
+      prescribed += fmt::format("{}{} {} = {}", i ? ", " : "", control(i), axis(dim, i), d_[i]);
+    throw Error(fmt::format("point: t = {}: no state found for {}: {}", t, prescribed, reason));
   }
 
  private:
+  /// Where Newton's method starts, the last state or one without traction, and whether its steps are damped. These and
+  /// the factor on the typical stiffness steer the iteration, not the solution.
+  struct Start {
+    bool damped, released;
+  };
+
+  const std::string& control(int i) const { return point_.control[i]; }
+
+  /// The stiffness of the column, else of the joint, else what the prescribed values suggest.
   Real typical_stiffness() const {
-    Real k = 0;
-    for (int i = 0; i < dim; ++i)
-      if (point_.control[i] == "column") k = std::max(k, stiffness_[i]);
+    Real k = 0, length = 0, stress = 0;
+    for (int i = 0; i < dim; ++i) {
+      if (control(i) == "column") k = std::max(k, stiffness_[i]);
+      Real& size = control(i) == "traction" ? stress : length;
+      size = std::max(size, std::abs(d_[i]));
+    }
     if (k == 0 && law_.elastic.compliance > 0) k = 1 / law_.elastic.compliance;
     if (k == 0 && law_.gap.closure.maximum > 0) k = law_.gap.closure.stiffness;
+    if (k == 0 && length > 0) k = stress / length;
     return k == 0 ? 1 : k;
   }
 
+  /// Sizes of jump and traction at x, which changes are judged by; c is a typical stiffness.
+  void scales(Real c, Real (&scale)[2 * dim]) const {
+    Real length = 1e-300;
+    for (int i = 0; i < dim; ++i)
+      length = std::max({length, std::abs(x_[i]), std::abs(x_[dim + i]) / c,
+                         control(i) == "traction" ? std::abs(d_[i]) / c : std::abs(d_[i])});
+    for (int i = 0; i < dim; ++i) {
+      scale[i] = length;
+      scale[dim + i] = std::max((i == 0 ? c_.normal : c_.tangential) * length, std::abs(x_[dim + i]));
+    }
+  }
+
+  /// Moves x to the state at the prescribed values; returns why there is none, or nothing. The constants of the
+  /// projection are those of the typical stiffness times the factor; a damped step is halved until the residual falls.
+  std::string solve(Real factor, bool damped) {
+    const Real c = typical_stiffness();
+    c_ = laws::augmentation(law_, c * factor);
+    for (int i = 0; i < dim; ++i) {
+      if (control(i) == "jump") x_[i] = d_[i];
+      if (control(i) == "traction") x_[dim + i] = d_[i];
+    }
+    Real f[2 * dim], J[4 * dim * dim], scale[2 * dim];
+    for (int iteration = 0; iteration < 50; ++iteration) {
+      const auto state = evaluate(f, J);
+      scales(c, scale);
+      const Real size = size_of(f, scale);
+      int info = 0, pivots[2 * dim];
+      Teuchos::LAPACK<int, Real>().GESV(2 * dim, 1, J, 2 * dim, pivots, f, 2 * dim, &info);
+      Real change = 0, x[2 * dim], step[2 * dim];
+      std::copy_n(x_, 2 * dim, x);
+      std::copy_n(f, 2 * dim, step);
+      for (int i = 0; i < 2 * dim; ++i) {
+        if (info != 0 || !(std::abs(step[i]) < 1e10 * scale[i])) return undetermined(state);
+        change = std::max(change, std::abs(step[i]) / scale[i]);
+      }
+      for (Real length = 1; length > 0.01; length /= 2) {
+        for (int i = 0; i < 2 * dim; ++i) x_[i] = x[i] - length * step[i];
+        if (!damped || change <= 1e-12) break;
+        evaluate(f, J);
+        if (size_of(f, scale) < size) break;
+      }
+      if (change <= 1e-12) return {};
+    }
+    return "Newton's method does not converge";
+  }
+
+  /// The residual, each of its entries in its unit over that unit's size.
+  Real size_of(const Real (&f)[2 * dim], const Real (&scale)[2 * dim]) const {
+    Real square = 0;
+    for (int i = 0; i < dim; ++i) {
+      const Real control_scale = control(i) == "jump" ? scale[i] : scale[dim + i];
+      square += std::pow(f[i] / scale[dim + i], 2) + std::pow(f[dim + i] / control_scale, 2);
+    }
+    return std::sqrt(square);
+  }
+
+  /// Why the equations of a contact state do not determine jump and traction.
+  std::string undetermined(laws::ContactState state) const {
+    const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
+    if (state == laws::ContactState::open) return "an open joint bears no traction, its jump has no bound";
+    if (state == laws::ContactState::slip && pulled)
+      return "the shear traction exceeds the friction bound, the joint slides without bound";
+    if (control(0) == "jump" && law_.gap.closure.maximum == 0)
+      return "the faces touch and do not close, the normal jump does not determine the normal traction";
+    if (state == laws::ContactState::stick && law_.elastic.compliance == 0)
+      return "a rigid joint sticks, the jump does not determine the shear traction";
+    return "the prescribed values do not determine jump and traction";
+  }
+
   /// f and its column-major Jacobian J at x.
-  laws::ContactState evaluate(const Real (&d)[dim], Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
+  laws::ContactState evaluate(Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
     using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
     Fad w[dim], lambda[dim], R[dim];
     for (int i = 0; i < dim; ++i) {
@@ -78,30 +153,22 @@ class PointDriver {
     }
     const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R);
     for (int i = 0; i < dim; ++i) {
-      const Fad control = point_.control[i] == "jump"       ? Fad(w[i] - d[i])
-                          : point_.control[i] == "traction" ? Fad(lambda[i] - d[i])
-                                                            : Fad(lambda[i] - stiffness_[i] * (d[i] - w[i]));
+      const Fad controlled = control(i) == "jump"       ? Fad(w[i] - d_[i])
+                             : control(i) == "traction" ? Fad(lambda[i] - d_[i])
+                                                        : Fad(lambda[i] - stiffness_[i] * (d_[i] - w[i]));
       f[i] = R[i].val();
-      f[dim + i] = control.val();
+      f[dim + i] = controlled.val();
       for (int j = 0; j < 2 * dim; ++j) {
         J[j * 2 * dim + i] = R[i].dx(j);
-        J[j * 2 * dim + dim + i] = control.dx(j);
+        J[j * 2 * dim + dim + i] = controlled.dx(j);
       }
     }
     return state;
   }
 
-  /// Largest residual, each in the unit that it has.
-  Real size_of(const Real (&f)[2 * dim], Real length, Real stress) const {
-    Real size = 0;
-    for (int i = 0; i < dim; ++i) {
-      size = std::max(size, std::abs(f[i]) / std::max(stress, 1e-300));
-      size = std::max(size, std::abs(f[dim + i]) / std::max(point_.control[i] == "jump" ? length : stress, 1e-300));
-    }
-    return size;
-  }
-
-  PointState accept(Real t, laws::ContactState state) {
+  PointState accept(Real t) {
+    Real f[2 * dim], J[4 * dim * dim];
+    const auto state = evaluate(f, J);
     Real w[dim], lambda[dim], elastic[dim], plastic[dim];
     std::copy_n(x_, dim, w);
     std::copy_n(x_ + dim, dim, lambda);
@@ -116,7 +183,7 @@ class PointDriver {
   const PointPath& point_;
   laws::Joint law_;
   laws::Augmentation c_;
-  Real stiffness_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
+  Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
 };
 
 template <int dim>
@@ -130,10 +197,12 @@ std::vector<PointState> drive(const PointScene& scene) {
 }  // namespace
 
 void PointPath::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of a joint material");
+  s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
   s.required(control, "control", "-", "per component n, t[, t2] what is prescribed: jump, traction, or column");
+  std::string units;  // of the components
+  for (const auto& what : control) units += (units.empty() ? "" : ", ") + std::string(what == "traction" ? "Pa" : "m");
   s.required(
-      path, "path", "m or Pa",
+      path, "path", units.empty() ? "m or Pa" : units,
       "per component the jump, the traction, or the displacement of the column's end: values or expressions of t");
   s.entry(normal_stiffness, "column normal stiffness", "Pa/m", base::at_least(0),
           "k of a column in lambda_n = k (d_n - w_n)");
@@ -157,24 +226,21 @@ void PointPath::describe(base::Section& s) {
 }
 
 void PointScene::describe(base::Section& s) {
-  s.named_sections(materials, "Materials", "joints, by names of your choice");
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name");
+  s.expressions_call(tables);
+  s.named_sections(materials, "Materials", "joints, by names of your choice");
   s.section(time, "Time", "steps");
   s.section(point, "Point", "what drives the point");
   if (!s.complete()) return;
-  const auto found = materials.find(point.material);
-  if (found == materials.end() || found->second.type != "joint")
-    s.fail_inside(fmt::format("Point > \"material\": is \"{}\", must be the name of a joint material", point.material));
+  add_library_materials(materials, {point.material});
+  const std::string wrong = wrong_material(point.material, "joint", materials);
+  if (!wrong.empty()) s.fail_inside("Point > \"material\": " + wrong);
 }
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
-  auto list = base::read_xml(comm, path, "Sprekk");
-  for (const auto& text : overrides) base::apply_override(list, text);
-  auto scene = base::read<PointScene>(list, path, "Sprekk");
-  const auto tables = std::make_shared<const base::Tables>(scene.tables);
-  for (auto& [name, material] : scene.materials) material.compile(tables);
-  for (auto& expression : scene.point.path) expression.compile(tables);
-  return scene;
+  auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
+  const auto errors = base::apply_overrides(list, overrides);
+  return base::read<PointScene>(list, path, "Sprekk", errors);
 }
 
 std::vector<PointState> drive_point(const PointScene& scene) {
@@ -182,11 +248,10 @@ std::vector<PointState> drive_point(const PointScene& scene) {
 }
 
 void write_csv(std::ostream& out, const std::vector<PointState>& states) {
-  const char* axes[] = {"n", "t1", "t2"};
   out << "t,state";
   const std::size_t dim = states.empty() ? 0 : states.front().jump.size();
   for (const char* name : {"jump", "elastic_jump", "plastic_jump", "traction"})
-    for (std::size_t i = 0; i < dim; ++i) out << ',' << name << '_' << (dim == 2 && i == 1 ? "t" : axes[i]);
+    for (std::size_t i = 0; i < dim; ++i) out << ',' << name << '_' << axis(dim, i);
   out << '\n';
   for (const auto& s : states) {
     out << fmt::format("{:.17g},{}", s.t, static_cast<int>(s.contact));

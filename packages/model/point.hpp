@@ -35,8 +35,8 @@ struct PointState {
   std::vector<Real> jump, elastic, plastic, traction;  ///< n, t[, t2]
 };
 
-/// Implicit Euler along the path, one state per step. Throws an Error if a step has no solution that Newton's method
-/// finds, for instance a jump that a rigid joint cannot have.
+/// Implicit Euler along the path, one state per step. Throws an Error, with the prescribed values and the reason, where
+/// these determine no state: a jump that a rigid joint cannot have, a shear traction above the friction bound.
 std::vector<PointState> drive_point(const PointScene& scene);
 
 /// Writes the states as CSV: t, contact state (0 open, 1 stick, 2 slip), then jump, elastic jump, plastic jump and

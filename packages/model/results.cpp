@@ -6,6 +6,7 @@
 #include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace sprekk::model {
 
@@ -63,6 +64,20 @@ std::array<long long, 3> contact_counts(const Comm& comm, const std::vector<Outp
 }
 
 }  // namespace
+
+void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace) {
+  const std::string path = directory + "/results.json";
+  std::error_code unknown;
+  int wanted = !only_replace || std::filesystem::exists(path, unknown);
+  Teuchos::broadcast(comm, 0, 1, &wanted);
+  if (!wanted) return;
+  try {
+    io::make_directory(comm, directory);
+    io::write_json(comm, path,
+                   {{"status", "failed"}, {"reason", reason}, {"ranks", comm.getSize()}, {"steps", json::array()}});
+  } catch (const Error&) {  // the reason is told in any case
+  }
+}
 
 json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
   json summary = json::object();
@@ -138,14 +153,19 @@ json block_summary(const assembly::System& system) {
   return summary;
 }
 
-Results::Results(Model& model, std::string directory) : model_(model), directory_(std::move(directory)) {
+Results::Results(Model& model, std::string directory, const json& earlier)
+    : model_(model), directory_(std::move(directory)) {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
   Scene scene = model_.scene();
-  base::write_xml(*comm, base::effective(scene, "Sprekk"), directory_ + "/effective_input.xml");
+  base::collectively(*comm, [&] {
+    const auto list = base::effective(scene, "Sprekk");
+    if (comm->getRank() == 0) io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
+  });
   if (model_.scene().output.vtu) {
-    bulk_.emplace(comm, directory_, "bulk");
-    if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures");
+    const auto written = earlier.is_null() ? std::vector<Real>() : earlier.at("written").get<std::vector<Real>>();
+    bulk_.emplace(comm, directory_, "bulk", written);
+    if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures", written);
   }
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
@@ -154,11 +174,31 @@ Results::Results(Model& model, std::string directory) : model_(model), directory
                    {"nodes", mesh.n_global_nodes},
                    {"cells", mesh.n_global_cells},
                    {"fracture_faces", mesh.n_global_fracture_faces}};
+  const auto& partition = mesh.partition;
+  const auto share = [](const std::array<GlobalIndex, 2>& range, double imbalance) {
+    return json{{"min", range[0]}, {"max", range[1]}, {"imbalance", imbalance}};
+  };
+  json_["partition"] = {{"cells", share(partition.cells, partition.cell_imbalance)},
+                        {"fracture_faces", share(partition.fracture_faces, partition.fracture_face_imbalance)},
+                        {"cut_edges", partition.edge_cut},
+                        {"separated_fracture_faces", partition.separated_faces}};
   const auto& solver = model_.newton().linear().solver();
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
   json_["steps"] = json::array();
+  if (!earlier.is_null()) {
+    json_["steps"] = earlier.at("steps");
+    json_["restarts"] = earlier.at("restarts");
+    json_["restarts"].push_back(model_.time());
+    n_steps_ = static_cast<int>(json_["steps"].size());
+  }
   write_json();
+}
+
+json Results::save() const {
+  return {{"steps", json_.at("steps")},
+          {"restarts", json_.value("restarts", json::array())},
+          {"written", bulk_ ? bulk_->times() : std::vector<Real>()}};
 }
 
 std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {

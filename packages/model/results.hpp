@@ -17,7 +17,12 @@ namespace sprekk::model {
 /// are collective; Errors name the path, on every rank.
 class Results {
  public:
-  Results(Model& model, std::string directory);
+  /// `earlier` is what save() gave: its steps stay, and those that were written after it go.
+  Results(Model& model, std::string directory, const nlohmann::json& earlier = {});
+
+  /// What these results are so far, besides the files of fields. Stored data.
+  nlohmann::json save() const;
+  int n_steps() const { return n_steps_; }
 
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
   /// fracture faces are open, stick and slip.
@@ -36,6 +41,10 @@ class Results {
   int n_steps_ = 0;
   std::chrono::steady_clock::time_point last_write_;
 };
+
+/// Leaves a results.json that says why a run never began, or with `only_replace` only in place of one that is there;
+/// silent if it cannot be written. Collective.
+void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace);
 
 /// Area, fractions of states, means over the area and maxima of one step, by the names of the fractures. Collective.
 nlohmann::json fracture_summary(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs);

@@ -2,9 +2,12 @@
 
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
-#include "model/results.hpp"
+#include "model/checkpointing.hpp"
+#include "model/point.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -34,6 +37,14 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// The ends of the steps that are still to be taken from t; what rounding leaves of one is not.
+std::vector<Real> times_after(const Time& time, Real t) {
+  auto times = time.times();
+  const auto is_ahead = [&](Real end) { return end - t > 1e-14 * std::max(std::abs(end), std::abs(time.start)); };
+  times.erase(times.begin(), std::find_if(times.begin(), times.end(), is_ahead));
+  return times;
+}
+
 /// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
 template <class Work>
 auto naming_file(const std::string& file, const Work& work) {
@@ -46,33 +57,66 @@ auto naming_file(const std::string& file, const Work& work) {
   }
 }
 
+/// Calls work(); an Error, of an expression or a full disk and the same on every rank, also ends the results.
+template <class Work>
+auto or_finished(Results& results, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    try {
+      results.finish("failed", error.what());
+    } catch (const Error&) {  // the disk is full: the first message counts
+    }
+    throw;
+  }
+}
+
 }  // namespace
 
 bool run(const RunOptions& options, RCP<const Comm> comm) {
   base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
-  const Scene scene = read_scene(*comm, options.scene, options.overrides);
-  const auto made = naming_file(options.scene, [&] { return std::make_unique<Model>(scene, comm); });
+  const std::string directory =
+      options.output.empty() ? "output/" + std::filesystem::path(options.scene).stem().string() : options.output;
+  bool has_scene = false;
+  // So that results of an earlier run do not pass for those of this one; what a restart was to go on from stays.
+  const auto or_told = [&](const auto& work) {
+    try {
+      return naming_file(options.scene, work);
+    } catch (const Error& error) {
+      if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
+      throw;
+    }
+  };
+  const Scene scene = or_told([&] { return read_scene(*comm, options.scene, options.overrides); });
+  has_scene = true;
+  const auto made = or_told([&] { return std::make_unique<Model>(scene, comm); });
   Model& model = *made;
   log.info("{}: {} cells, {} nodes, {} fracture faces, {} ranks", options.scene, model.mesh().n_global_cells,
            model.mesh().n_global_nodes, model.mesh().n_global_fracture_faces, comm->getSize());
+  const auto& partition = model.mesh().partition;
+  if (comm->getSize() > 1)
+    log.info("partition: {} to {} cells per rank (largest/mean {:.3f}), {} to {} fracture faces ({:.3f}); {} cut edges",
+             partition.cells[0], partition.cells[1], partition.cell_imbalance, partition.fracture_faces[0],
+             partition.fracture_faces[1], partition.fracture_face_imbalance, partition.edge_cut);
   log.info("linear solver: {}", model.newton().linear().solver().describe());
-  const std::string directory =
-      options.output.empty() ? "output/" + std::filesystem::path(options.scene).stem().string() : options.output;
-  Results results(model, directory);
-  const auto times = scene.time.times();
+  Checkpointing checkpoints(model, directory, log);
+  if (!options.restart) checkpoints.start_anew();
+  const auto earlier =
+      options.restart ? naming_file(options.scene, [&] { return checkpoints.restore(); }) : nlohmann::json();
+  Results results(model, directory, earlier);
+  const auto times = times_after(scene.time, model.time());
+  if (times.empty()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Real begin = model.time();
-    const auto report = [&] {
-      try {
-        return naming_file(options.scene, [&] { return model.step_to(times[k]); });
-      } catch (const Error& error) {  // of an expression; the same on every rank
-        results.finish("failed", error.what());
-        throw;
-      }
-    }();
-    const auto faces = results.add_step(report, k + 1 == times.size() || !report.converged);
-    progress.add(report, times[k] - begin, faces);
+    const bool last = k + 1 == times.size();
+    const auto report = or_finished(results, [&] {
+      const auto step = naming_file(options.scene, [&] { return model.step_to(times[k]); });
+      const auto faces = results.add_step(step, last || !step.converged);
+      progress.add(step, times[k] - begin, faces);
+      if (step.converged) checkpoints.after_step(results, last);
+      return step;
+    });
     if (report.converged) continue;
     results.finish("failed", report.reason);
     log.warning("step to t = {} failed at t = {} after {} cuts: {}", times[k], report.time, report.cuts, report.reason);
@@ -97,6 +141,17 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
   return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
 }
 
-std::string reference() { return base::reference<Scene>("Sprekk"); }
+std::string reference() {
+  auto point = base::specification<PointPath>("Point");
+  point.meaning = "only of scenes for `sprekk point`, beside Materials, Tables and Time: what drives the point";
+  return "# All parameters\n\nPrinted by `./sprekk reference`. A number that has a unit here may be given in any unit "
+         "that "
+         "measures the same.\n\n" +
+         base::to_markdown(base::specification<Scene>("Sprekk"), "Sprekk") + base::to_markdown(point, "Sprekk > Point");
+}
+
+std::string schema() {
+  return base::to_relax_ng({base::specification<Scene>("Sprekk"), base::specification<PointScene>("Sprekk")});
+}
 
 }  // namespace sprekk::model

@@ -12,11 +12,13 @@ struct RunOptions {
   std::string scene;                   ///< path of the XML file
   std::string output;                  ///< directory; empty: output/NAME of the scene, under the current directory
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
+  bool restart = false;                ///< go on from the last checkpoint in the output directory
   bool terminal = false;               ///< print a line per time step
 };
 
-/// Runs the scene and writes its results. Returns true if all steps converged; a step that did not is reported, and
-/// what was computed before is kept. Throws an Error for bad input, the same on every rank. Collective.
+/// Runs the scene, from its beginning or from a checkpoint, and writes its results. Returns true if all steps
+/// converged; a step that did not is reported, and what was computed before is kept. Throws an Error for bad input, the
+/// same on every rank. Collective.
 bool run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().
@@ -28,5 +30,8 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
 
 /// All parameters of a scene, as Markdown.
 std::string reference();
+
+/// A RELAX NG schema of scenes, those of read_point_scene included.
+std::string schema();
 
 }  // namespace sprekk::model

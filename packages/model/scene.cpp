@@ -4,10 +4,13 @@
 #include "base/text.hpp"
 #include "base/xml.hpp"
 #include "mesh/msh_reader.hpp"
+#include "mesh/periodic.hpp"
+#include "model/material_library.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace sprekk::model {
 
@@ -22,10 +25,41 @@ std::vector<std::string> names_of(const std::map<std::string, T>& map) {
   return names;
 }
 
+void check_constant_in_time(base::Section& s, const std::string& entry, const base::Expression& value) {
+  if (!value.constant_in_time())
+    s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
+}
+
 }  // namespace
+
+template <class Visit>
+void Material::for_each(const Visit& visit) const {
+  const Real none = -std::numeric_limits<Real>::infinity(), infinite = -none;
+  const auto optional = [&](const char* name, const std::optional<Value>& value, Real least, bool itself, Real limit) {
+    if (value) visit(name, *value, least, itself, limit);
+  };
+  if (type == "elastic") {
+    optional("Young's modulus", E, 0, false, infinite);
+    optional("Poisson's ratio", nu, -1, false, 0.5);
+    optional("shear modulus", G, 0, false, infinite);
+    optional("Lame's first parameter", lambda, none, false, infinite);
+    optional("bulk modulus", K, 0, false, infinite);
+    optional("density", density, 0, true, infinite);
+  } else {
+    visit("tangential stiffness", tangential_stiffness, 0, false, infinite);
+    optional("friction coefficient", friction_coefficient, 0, true, infinite);
+    optional("friction angle", friction_angle, 0, true, 90);
+    visit("dilation angle", dilation_angle, 0, true, 90);
+    visit("initial gap", initial_gap, none, false, infinite);
+    visit("maximum closure", maximum_closure, 0, true, infinite);
+    visit("initial aperture", initial_aperture, 0, true, infinite);
+    optional("normal stiffness", normal_stiffness, 0, false, infinite);
+  }
+}
 
 void Material::describe(base::Section& s) {
   s.required_choice(type, "type", {"elastic", "joint"}, "elastic: rock; joint: the surface of a fracture");
+  s.entry(source, "source", "-", "where the values come from");
   if (type != "joint") {
     s.entry(E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
     s.entry(nu, "Poisson's ratio", "-", base::greater_than(-1).below(0.5), "nu");
@@ -58,40 +92,7 @@ void Material::describe(base::Section& s) {
         s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
     }
   }
-}
-
-template <class Visit>
-void Material::for_each(const Visit& visit) const {
-  const Real none = -std::numeric_limits<Real>::infinity(), infinite = -none;
-  const auto optional = [&](const char* name, const std::optional<Value>& value, Real least, bool itself, Real limit) {
-    if (value) visit(name, *value, least, itself, limit);
-  };
-  if (type == "elastic") {
-    optional("Young's modulus", E, 0, false, infinite);
-    optional("Poisson's ratio", nu, -1, false, 0.5);
-    optional("shear modulus", G, 0, false, infinite);
-    optional("Lame's first parameter", lambda, none, false, infinite);
-    optional("bulk modulus", K, 0, false, infinite);
-    visit("density", density, 0, true, infinite);
-  } else {
-    visit("tangential stiffness", tangential_stiffness, 0, false, infinite);
-    optional("friction coefficient", friction_coefficient, 0, true, infinite);
-    optional("friction angle", friction_angle, 0, true, 90);
-    visit("dilation angle", dilation_angle, 0, true, 90);
-    visit("initial gap", initial_gap, none, false, infinite);
-    visit("maximum closure", maximum_closure, 0, true, infinite);
-    visit("initial aperture", initial_aperture, 0, true, infinite);
-    optional("normal stiffness", normal_stiffness, 0, false, infinite);
-  }
-}
-
-void Material::compile(const std::shared_ptr<const base::Tables>& tables) {
-  for_each([&](const char* name, const Value& value, Real, bool, Real) {
-    auto& mutable_value = const_cast<Value&>(value);  // for_each serves const members as well
-    mutable_value.compile(tables);
-    SPREKK_CHECK(value.constant_in_time(), "material: \"{}\" is \"{}\"; a material may depend on x, y, z, not on t",
-                 name, value.text());
-  });
+  for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
 }
 
 bool Material::is_uniform() const {
@@ -133,13 +134,14 @@ physics::JointParameters Material::joint(const Point& x) const {
 }
 
 void Bulk::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of an elastic material");
+  s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
   s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
   s.entry(gravity, "gravity", "m/s^2", base::any(),
           "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
   s.entry(initial_stress, "initial stress", "Pa",
           "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values "
           "or expressions of x, y, z");
+  for (const auto& component : initial_stress) check_constant_in_time(s, "initial stress", component);
   s.section(lithostatic_stress, "lithostatic stress",
             "initial stress of rock at rest under gravity along the last coordinate");
   if (s.complete() && lithostatic_stress && !initial_stress.empty())
@@ -153,19 +155,22 @@ void Lithostatic::describe(base::Section& s) {
   s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "horizontal over vertical stress");
 }
 
-void Region::describe(base::Section& s) { s.required(material, "material", "-", "name of an elastic material"); }
+void Region::describe(base::Section& s) {
+  s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
+}
 
-void Fracture::describe(base::Section& s) { s.required(material, "material", "-", "name of a joint material"); }
+void Fracture::describe(base::Section& s) {
+  s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
+}
 
 void BoundaryCondition::describe(base::Section& s) {
   s.required(boundary, "boundary", "-", "name of a boundary of the mesh: west, east, south, north, bottom, top");
   s.entry(region, "region", "-", "name of a region: the condition holds only on faces of its cells");
-  s.entry(displacement, "displacement", "m", "per direction a value, an expression of x, y, z, t, or free");
+  s.entry(displacement, "displacement", "m", base::any().or_word("free"),
+          "per direction a value, an expression of x, y, z, t, or free");
   s.entry(traction, "traction", "Pa",
           "force per area on the body, per direction a value or an expression of x, y, z, t");
   if (s.complete() && displacement.empty() == traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
-  for (const auto& value : traction)
-    if (value.text() == "free") s.fail("traction", "is \"free\" in a component; give 0 for no traction");
 }
 
 void Time::describe(base::Section& s) {
@@ -194,9 +199,16 @@ std::vector<Real> Time::times() const {
   return times;
 }
 
+void CheckpointTimes::describe(base::Section& s) {
+  s.entry(steps, "steps", "-", base::at_least(1), "after every so many steps");
+  s.entry(minutes, "minutes", "min", base::positive(), "when so much time has passed since the last one");
+  if (s.complete() && !steps && !minutes) s.fail("needs \"steps\", \"minutes\", or both");
+}
+
 void Output::describe(base::Section& s) {
   s.entry(vtu, "vtu", "-", "write bulk.pvd and fractures.pvd for ParaView");
   s.entry(every, "every", "-", base::at_least(1), "write them after every so many steps, and after the last");
+  s.section(checkpoints, "checkpoints", "what --restart goes on from; one is also written after the last step");
 }
 
 void MeshFile::Fracture::describe(base::Section& s) {
@@ -207,47 +219,69 @@ void MeshFile::Fracture::describe(base::Section& s) {
 
 void MeshFile::describe(base::Section& s) {
   s.required(path, "path", "-", "file of gmsh, version 2.2 or 4.1; relative to the scene's file");
+  s.entry(
+      order, "order", "-", base::between(1, 2),
+      "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
+      "file");
+  s.entry(
+      periodic, "periodic", "-",
+      "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
+  if (periodic.size() % 2 == 1)
+    s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
   s.named_sections(fractures, "fractures", "the physical groups that are fractures, by their names");
 }
 
 void Scene::describe(base::Section& s) {
+  s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
+  s.expressions_call(tables);
   s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
   if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
-  s.named_sections(materials, "Materials", "rock and joints, by names of your choice");
+  s.named_sections(materials, "Materials",
+                   "rock and joints, by names of your choice; those of the material library need no section");
   s.section(bulk, "Bulk", "the rock");
   s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
   s.named_sections(boundary_conditions, "Boundary conditions",
                    "by names of your choice; boundaries without one are free of traction");
-  s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");
-  if (!s.complete() || mesh_file) return;
-  MeshNames names{static_cast<int>(mesh.lower_corner.size()), names_of(mesh.regions), {}, names_of(mesh.fractures)};
+  const bool complete = s.complete();
+  std::vector<std::string> used = {bulk.material};
+  for (const auto& [name, region] : regions) used.push_back(region.material);
+  for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
+  add_library_materials(materials, used);
+  const auto dim = mesh.lower_corner.size();
+  if (mesh_file || (!complete && dim != 2 && dim != 3)) return;
+  MeshNames names{static_cast<int>(dim), names_of(mesh.regions), {}, names_of(mesh.fractures)};
   names.regions.push_back("bulk");
   names.boundaries = {"west", "east", "south", "north"};
   if (names.dim == 3) names.boundaries.insert(names.boundaries.end(), {"bottom", "top"});
-  for (const auto& misfit : misfits(names)) s.fail_inside(misfit);
+  for (const auto& misfit : misfits(names, complete)) s.fail_inside(misfit);
 }
 
-std::vector<std::string> Scene::misfits(const MeshNames& names) const {
+std::vector<std::string> Scene::misfits(const MeshNames& names, bool complete) const {
   std::vector<std::string> errors;
   const auto known = [&](const std::string& place, const std::string& name, const std::vector<std::string>& allowed) {
+    if (!complete && (name.empty() || allowed.empty())) return false;
     for (const auto& a : allowed)
       if (a == name) return true;
-    errors.push_back(fmt::format("{}: is \"{}\", must be one of {}.{}", place, name, base::quoted_list(allowed),
-                                 base::did_you_mean(name, allowed)));
+    errors.push_back(allowed.empty() ? fmt::format("{}: is \"{}\", but the mesh has none with a name", place, name)
+                                     : fmt::format("{}: is \"{}\", must be one of {}{}", place, name,
+                                                   base::quoted_list(allowed), base::did_you_mean(name, allowed)));
     return false;
   };
   const auto is_material = [&](const std::string& place, const std::string& name, const std::string& type) {
-    std::vector<std::string> allowed;
-    for (const auto& [key, material] : materials)
-      if (material.type == type) allowed.push_back(key);
-    return known(place + " > \"material\"", name, allowed);
+    const auto found = materials.find(name);
+    if (!complete && (name.empty() || materials.empty())) return false;
+    if (!complete && found != materials.end() && found->second.type.empty()) return false;
+    const std::string wrong = wrong_material(name, type, materials);
+    if (!wrong.empty()) errors.push_back(fmt::format("{} > \"material\": {}", place, wrong));
+    return wrong.empty();
   };
   const auto has_length = [&](const std::string& place, std::size_t n, std::size_t wanted) {
-    if (n != 0 && n != wanted) errors.push_back(fmt::format("{}: has {} values, must have {}", place, n, wanted));
+    if (n != 0 && n != wanted)
+      errors.push_back(fmt::format("{}: has {}, must have {}", place, base::counted(n, "value"), wanted));
   };
   const std::size_t dim = names.dim;
   const bool has_rock = is_material("Bulk", bulk.material, "elastic");
@@ -261,20 +295,27 @@ std::vector<std::string> Scene::misfits(const MeshNames& names) const {
     if (known(fmt::format("Fractures > \"{}\"", name), name, names.fractures))
       is_material("Fractures > " + name, fracture.material, "joint");
   for (const auto& name : names.fractures)
-    if (!fractures.count(name))
+    if (!fractures.count(name) && (complete || !fractures.empty()))
       errors.push_back(fmt::format("Fractures: \"{}\" is in the mesh and has no section here", name));
-  bool held = false;
   for (const auto& [name, condition] : boundary_conditions) {
     const std::string place = "Boundary conditions > " + name;
     known(place + " > \"boundary\"", condition.boundary, names.boundaries);
     if (condition.region) known(place + " > \"region\"", *condition.region, names.regions);
     has_length(place + " > \"displacement\"", condition.displacement.size(), dim);
     has_length(place + " > \"traction\"", condition.traction.size(), dim);
-    for (const auto& value : condition.displacement) held = held || value.text() != "free";
   }
-  if (!held) errors.push_back("Boundary conditions: none prescribes a displacement; nothing holds the rock in place");
+  if (complete && !bulk.gravity.empty()) {
+    std::set<std::string> rocks;
+    auto heavy = names.regions;
+    if (bulk.lithostatic_stress) heavy.push_back("bulk");  // whose density it takes
+    for (const auto& name : heavy) rocks.insert(regions.count(name) ? regions.at(name).material : bulk.material);
+    for (const auto& name : rocks)
+      if (const auto rock = materials.find(name);
+          rock != materials.end() && rock->second.type == "elastic" && !rock->second.density)
+        errors.push_back(fmt::format("Materials > {} > \"density\": missing; it is required with \"gravity\"", name));
+  }
   if (bulk.lithostatic_stress && has_rock && bulk.gravity.size() == dim) {
-    if (!material_of("bulk").density.is_constant())
+    if (const auto& density = material_of("bulk").density; density && !density->is_constant())
       errors.push_back(
           "Bulk > lithostatic stress: needs a density that is a number; give an \"initial stress\" instead");
     for (std::size_t i = 0; i + 1 < dim; ++i)
@@ -287,6 +328,7 @@ std::vector<std::string> Scene::misfits(const MeshNames& names) const {
 mesh::GlobalMesh Scene::make_mesh() const {
   if (!mesh_file) return mesh::make_box(mesh);
   mesh::MshOptions options;
+  options.order = mesh_file->order;
   for (const auto& [name, fracture] : mesh_file->fractures) {
     auto& orientation = options.fractures[name];
     orientation.swap_sides = fracture.swap_sides;
@@ -295,7 +337,10 @@ mesh::GlobalMesh Scene::make_mesh() const {
     std::copy_n(fracture.reference_normal->begin(), std::min<std::size_t>(3, fracture.reference_normal->size()),
                 orientation.reference->begin());
   }
-  return mesh::read_msh(mesh_file->path, options);
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (std::size_t i = 0; i + 1 < mesh_file->periodic.size(); i += 2)
+    pairs.emplace_back(mesh_file->periodic[i], mesh_file->periodic[i + 1]);
+  return mesh::tie_periodic(mesh::read_msh(mesh_file->path, options), pairs);
 }
 
 physics::InitialStress Scene::initial_stress() const {
@@ -303,7 +348,7 @@ physics::InitialStress Scene::initial_stress() const {
   const int dim = static_cast<int>(bulk.gravity.size());
   const int up = dim - 1;
   const Real weight =
-      -material_of("bulk").density({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
+      -(*material_of("bulk").density)({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
   std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
     const Real factor = weight * (i == up ? 1 : bulk.lithostatic_stress->horizontal_ratio);
@@ -319,29 +364,29 @@ const Material& Scene::material_of(const std::string& region) const {
   return materials.at(found == regions.end() ? bulk.material : found->second.material);
 }
 
+namespace {
+
+Scene from_list(const Teuchos::ParameterList& list, const std::string& origin,
+                const std::vector<std::string>& errors = {}) {
+  Scene scene = base::read<Scene>(list, origin, "Sprekk", errors);
+  scene.origin = origin;
+  return scene;
+}
+
+}  // namespace
+
+Scene prepared(const Scene& scene) {
+  Scene copy = scene;  // which describe() could change
+  return from_list(base::effective(copy, "Sprekk"), scene.origin);
+}
+
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
-  auto list = base::read_xml(comm, path, "Sprekk");
-  for (const auto& text : overrides) base::apply_override(list, text);
-  Scene scene = base::read<Scene>(list, path, "Sprekk");
+  auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
+  const auto errors = base::apply_overrides(list, overrides);
+  Scene scene = from_list(list, path, errors);
   if (scene.mesh_file)
     scene.mesh_file->path =
         std::filesystem::absolute(std::filesystem::path(path).parent_path() / scene.mesh_file->path).string();
-  const auto tables = std::make_shared<const base::Tables>(scene.tables);
-  const auto compile = [&](std::vector<base::Expression>& values) {
-    for (auto& value : values)
-      if (value.text() != "free") value.compile(tables);
-  };
-  compile(scene.bulk.body_force);
-  compile(scene.bulk.initial_stress);
-  for (const auto& component : scene.bulk.initial_stress)
-    SPREKK_CHECK(component.constant_in_time(),
-                 "{}: Sprekk > Bulk > \"initial stress\": is \"{}\"; it may depend on x, y, z, not on t", path,
-                 component.text());
-  for (auto& [name, material] : scene.materials) material.compile(tables);
-  for (auto& [name, condition] : scene.boundary_conditions) {
-    compile(condition.displacement);
-    compile(condition.traction);
-  }
   return scene;
 }
 

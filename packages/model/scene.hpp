@@ -25,10 +25,11 @@ struct Material {
   using Value = base::Expression;
   using Point = std::array<Real, 3>;
 
-  std::string type;  ///< "elastic" or "joint"
+  std::string type;                   ///< "elastic" or "joint"
+  std::optional<std::string> source;  ///< where the values come from
 
   std::optional<Value> E, nu, G, lambda, K;  ///< exactly two for rock
-  Value density = 0;
+  std::optional<Value> density;              ///< needed with gravity
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint
@@ -36,7 +37,6 @@ struct Material {
   std::optional<Value> normal_stiffness;  ///< needed where there is closure
 
   void describe(base::Section& section);
-  void compile(const std::shared_ptr<const base::Tables>& tables);
   bool is_uniform() const;  ///< no value depends on the place
   /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
   laws::Elasticity elasticity(const Point& x) const;
@@ -72,7 +72,9 @@ struct MeshFile {
     bool swap_sides = false;
     void describe(base::Section& section);
   };
-  std::string path;                           ///< relative to the scene's file
+  std::string path;                           ///< relative to the scene's file; of a host, to the current directory
+  std::optional<int> order;                   ///< of the cells, 1 or 2; absent: as in the file
+  std::vector<std::string> periodic;          ///< boundaries in pairs, see mesh::tie_periodic()
   std::map<std::string, Fracture> fractures;  ///< the physical groups that are fractures
   void describe(base::Section& section);
 };
@@ -104,9 +106,17 @@ struct Time {
   std::vector<Real> times() const;  ///< the ends of all steps
 };
 
+/// When a run writes a checkpoint: whatever comes first, and after the last step.
+struct CheckpointTimes {
+  std::optional<int> steps;
+  std::optional<Real> minutes;  ///< of the wall clock
+  void describe(base::Section& section);
+};
+
 struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
+  std::optional<CheckpointTimes> checkpoints;
   void describe(base::Section& section);
 };
 
@@ -117,6 +127,7 @@ struct MeshNames {
 };
 
 struct Scene {
+  std::string origin = "scene";  ///< opens messages about it: the file that it was read from
   mesh::BoxMesh mesh;
   std::optional<MeshFile> mesh_file;  ///< used instead of `mesh` if it is there
   std::map<std::string, Material> materials;
@@ -135,9 +146,15 @@ struct Scene {
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
 
-  /// What names and lengths do not fit to a mesh, a line each; empty if nothing.
-  std::vector<std::string> misfits(const MeshNames& names) const;
+  /// What names and lengths do not fit to a mesh, a line each; empty if nothing. If the scene is not `complete`,
+  /// because entries could not be read, what they leave empty is no misfit.
+  std::vector<std::string> misfits(const MeshNames& names, bool complete = true) const;
 };
+
+/// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,
+/// expressions made ready. What holds for one that was read does not change. Throws one Error with a line for each
+/// thing that is wrong. Not collective.
+Scene prepared(const Scene& scene);
 
 /// Reads a scene file, applies overrides "Path.To.Entry=value", checks everything that can be checked without running,
 /// and makes the expressions ready. Throws one Error with a line for each thing that is wrong. Collective.

@@ -1,0 +1,182 @@
+#include "io/checkpoints.hpp"
+
+#include "base/check.hpp"
+#include "io/file.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <zlib.h>
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <utility>
+#include <fstream>
+#include <iterator>
+
+namespace sprekk::io {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// Size and checksum, by which a file is known to be the one that was written.
+using Seal = std::array<long long, 2>;
+
+Seal seal_of(const std::string& content) {
+  const auto* bytes = reinterpret_cast<const Bytef*>(content.data());
+  return {static_cast<long long>(content.size()), static_cast<long long>(crc32_z(0, bytes, content.size()))};
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  SPREKK_CHECK(file.good(), "{}: cannot be read", path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_durably(const std::string& path, const std::string& content) {
+  write_file(path, content);
+  bring_to_disk(path);
+}
+
+std::string piece_file(const std::string& folder, int rank) { return fmt::format("{}/piece_{}.h5", folder, rank); }
+
+/// The manifest's text, the same on all ranks.
+std::string read_manifest(const Comm& comm, const std::string& path) {
+  std::string text;
+  base::collectively(comm, [&] {
+    if (comm.getRank() == 0) text = read_file(path);
+  });
+  int length = static_cast<int>(text.size());
+  Teuchos::broadcast(comm, 0, 1, &length);
+  text.resize(length);
+  Teuchos::broadcast(comm, 0, length, text.data());
+  return text;
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(RCP<const Comm> comm, std::string path) : comm_(std::move(comm)), path_(std::move(path)) {}
+
+std::string Checkpoints::folder(long long number) const { return fmt::format("{}/{}", path_, number); }
+
+std::vector<long long> Checkpoints::numbers() const {
+  std::vector<long long> found;
+  base::collectively(*comm_, [&] {
+    if (comm_->getRank() != 0 || !fs::is_directory(path_)) return;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      const std::string name = entry.path().filename();
+      if (!name.empty() && name.size() < 18 && name.find_first_not_of("0123456789") == name.npos)
+        found.push_back(std::stoll(name));
+    }
+    std::sort(found.begin(), found.end());
+  });
+  int n = static_cast<int>(found.size());
+  Teuchos::broadcast(*comm_, 0, 1, &n);
+  found.resize(n);
+  Teuchos::broadcast(*comm_, 0, n, found.data());
+  return found;
+}
+
+void Checkpoints::clear() {
+  last_ = -1;
+  base::collectively(*comm_, [&] {
+    std::error_code none;  // where there is no such directory
+    if (comm_->getRank() == 0 && fs::is_directory(path_, none)) fs::remove_all(path_);
+  });
+}
+
+void Checkpoints::write(const Checkpoint& checkpoint) {
+  const auto before = numbers();
+  const long long number = before.empty() ? 0 : before.back() + 1;
+  if (last_ < 0 && !before.empty()) last_ = before.back();
+  const std::string part = folder(number) + ".part";
+  const bool first = comm_->getRank() == 0;
+  const auto remove_parts = [&] {
+    for (const auto& entry : fs::directory_iterator(path_))
+      if (entry.path().extension() == ".part") fs::remove_all(entry.path());
+  };
+  make_directory(*comm_, path_);
+  try {
+    base::collectively(*comm_, [&] {
+      if (!first) return;
+      remove_parts();  // of runs that were killed
+      fs::create_directory(part);
+    });
+    Seal seal;
+    base::collectively(*comm_, [&] {
+      const auto piece = to_hdf5(checkpoint.vectors);
+      seal = seal_of(piece);
+      write_durably(piece_file(part, comm_->getRank()), piece);
+    });
+    std::vector<Seal> seals(comm_->getSize());
+    Teuchos::gatherAll(*comm_, 2, seal.data(), 2 * comm_->getSize(), seals.front().data());
+    base::collectively(*comm_, [&] {
+      if (!first) return;
+      json sealed = {{"content", checkpoint.content}, {"pieces", seals}};
+      for (const auto& [name, vector] : checkpoint.vectors) sealed["vectors"].push_back(name);
+      write_durably(part + "/manifest.json", json{{"sealed", sealed}, {"seal", seal_of(sealed.dump())}}.dump());
+      bring_to_disk(part);
+      fs::rename(part, folder(number));
+      bring_to_disk(path_);
+    });
+  } catch (...) {  // on every rank
+    std::error_code ignored;
+    if (first) fs::remove_all(part, ignored);
+    throw;
+  }
+  const long long kept = std::exchange(last_, number);
+  base::collectively(*comm_, [&] {
+    if (!first) return;
+    for (const auto old : before)
+      if (old != kept) fs::rename(folder(old), folder(old) + ".part");  // at once, then in peace
+    remove_parts();
+  });
+}
+
+Checkpoint Checkpoints::read(std::vector<std::string>& damaged) {
+  const auto candidates = numbers();
+  for (auto number = candidates.rbegin(); number != candidates.rend(); ++number) {
+    try {
+      auto checkpoint = read(*number);
+      last_ = *number;
+      return checkpoint;
+    } catch (const Error& error) {
+      damaged.push_back(error.what());
+    }
+  }
+  throw Error(fmt::format("{}: there is no complete checkpoint to go on from{}", path_,
+                          damaged.empty() ? "" : fmt::format("; {}", fmt::join(damaged, "; "))));
+}
+
+Checkpoint Checkpoints::read(long long number) const {
+  const std::string manifest_file = folder(number) + "/manifest.json";
+  const std::string text = read_manifest(*comm_, manifest_file);
+  const json manifest = json::parse(text, nullptr, false);
+  SPREKK_CHECK(manifest.is_object() && manifest.contains("seal") && manifest.contains("sealed") &&
+                   manifest["seal"] == json(seal_of(manifest["sealed"].dump())),
+               "{}: is damaged", manifest_file);
+  const auto& pieces = manifest["sealed"]["pieces"];
+  std::map<std::string, NumberedValues> values;
+  base::collectively(*comm_, [&] {
+    for (int k = comm_->getRank(); k < static_cast<int>(pieces.size()); k += comm_->getSize()) {
+      const std::string file = piece_file(folder(number), k), content = read_file(file);
+      SPREKK_CHECK(pieces[k] == json(seal_of(content)), "{}: is damaged", file);
+      from_hdf5(content, file, values);
+    }
+  });
+  Checkpoint checkpoint{{}, manifest["sealed"]["content"]};
+  for (const auto& name : manifest["sealed"]["vectors"]) {
+    const auto& here = values[name];
+    const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+    const auto map = rcp(new const fields::Map(
+        unknown, Teuchos::ArrayView<const GlobalIndex>(here.numbers.data(), here.numbers.size()), 0, comm_));
+    checkpoint.vectors[name] =
+        rcp(new fields::Vector(map, Teuchos::ArrayView<const Real>(here.values.data(), here.values.size())));
+  }
+  return checkpoint;
+}
+
+}  // namespace sprekk::io

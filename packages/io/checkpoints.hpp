@@ -1,0 +1,49 @@
+// Checkpoints in a directory: complete or not there at all, whenever the program is killed.
+#pragma once
+
+#include "io/hdf5.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace sprekk::io {
+
+/// What one checkpoint holds: values that are spread over the ranks, and what is the same on all of them.
+struct Checkpoint {
+  NamedVectors vectors;
+  nlohmann::json content;
+};
+
+/// Numbered checkpoints, PATH/NUMBER/, each a manifest.json and a piece_RANK.h5 for every rank that wrote it. One is
+/// written under the name NUMBER.part, brought to the disk, and renamed when it is complete. The last two are kept. All
+/// members are collective, with the same Error on every rank.
+class Checkpoints {
+ public:
+  /// Changes nothing on the disk.
+  Checkpoints(RCP<const Comm> comm, std::string path);
+
+  /// Removes all checkpoints: those of another run must not pass for those of this one.
+  void clear();
+
+  /// Adds a checkpoint, and then removes all but it and the one that was last read or written. Error: the path and the
+  /// system's reason; earlier checkpoints are as they were.
+  void write(const Checkpoint& checkpoint);
+
+  /// The last checkpoint that is undamaged, on any number of ranks: each rank reads its share of the pieces, so the
+  /// vectors are spread as these are. Appends what is wrong with those after it to `damaged`, a line each. Error: there
+  /// is none.
+  Checkpoint read(std::vector<std::string>& damaged);
+
+ private:
+  std::string folder(long long number) const;
+  std::vector<long long> numbers() const;  ///< complete ones, ascending; the same on all ranks
+  Checkpoint read(long long number) const;
+
+  RCP<const Comm> comm_;
+  std::string path_;
+  long long last_ = -1;  ///< number of the one last read or written
+};
+
+}  // namespace sprekk::io

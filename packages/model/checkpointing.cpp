@@ -1,0 +1,42 @@
+#include "model/checkpointing.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+namespace sprekk::model {
+
+Checkpointing::Checkpointing(Model& model, const std::string& directory, base::Log& log)
+    : model_(model), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
+
+nlohmann::json Checkpointing::restore() {
+  std::vector<std::string> damaged;
+  const auto checkpoint = checkpoints_.read(damaged);
+  for (const auto& what : damaged) log_.warning("{}; going on from the checkpoint before", what);
+  model_.restore(checkpoint);
+  log_.info("going on from t = {}", model_.time());
+  return checkpoint.content.at("results");
+}
+
+bool Checkpointing::is_due(int n_steps, bool last) const {
+  const auto& times = model_.scene().output.checkpoints;
+  if (!times) return false;
+  if (last || (times->steps && n_steps % *times->steps == 0)) return true;
+  const std::chrono::duration<Real, std::ratio<60>> passed = std::chrono::steady_clock::now() - last_;
+  int due = times->minutes && passed.count() >= *times->minutes;  // by the clock of rank 0
+  Teuchos::broadcast(*model_.system().comm(), 0, 1, &due);
+  return due != 0;
+}
+
+void Checkpointing::after_step(const Results& results, bool last) {
+  if (!is_due(results.n_steps(), last)) return;
+  const auto scope = model_.timers().scope("checkpoints");
+  auto checkpoint = model_.save();
+  checkpoint.content["results"] = results.save();
+  try {
+    checkpoints_.write(checkpoint);
+  } catch (const Error& error) {
+    log_.warning("no checkpoint at t = {}: {}", model_.time(), error.what());
+  }
+  last_ = std::chrono::steady_clock::now();
+}
+
+}  // namespace sprekk::model

@@ -1,0 +1,35 @@
+// The checkpoints of a run: when one is written, and how a run goes on from one.
+#pragma once
+
+#include "base/log.hpp"
+#include "model/results.hpp"
+
+#include <chrono>
+
+namespace sprekk::model {
+
+/// Checkpoints of a model with its results, in DIRECTORY/checkpoints. All members are collective.
+class Checkpointing {
+ public:
+  Checkpointing(Model& model, const std::string& directory, base::Log& log);
+
+  /// Removes the checkpoints of an earlier run.
+  void start_anew() { checkpoints_.clear(); }
+  /// Brings the model to the last checkpoint that is undamaged, warns of damaged ones, and returns its results. Error:
+  /// there is none, or it is of another scene.
+  nlohmann::json restore();
+
+  /// Writes a checkpoint if Output of the scene asks for one after this step. If it cannot be written, warns, and the
+  /// run goes on.
+  void after_step(const Results& results, bool last);
+
+ private:
+  bool is_due(int n_steps, bool last) const;
+
+  Model& model_;
+  base::Log& log_;
+  io::Checkpoints checkpoints_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace sprekk::model

@@ -1,0 +1,103 @@
+#include "model/fingerprint.hpp"
+
+#include "base/xml.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace sprekk::model {
+
+using nlohmann::json;
+
+namespace {
+
+/// A hash of numbers, small enough for sums of them over all entities of a mesh.
+template <class T>
+long long hash(const std::vector<T>& numbers) {
+  const std::string_view bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
+  return static_cast<long long>(std::hash<std::string_view>()(bytes) >> 33);
+}
+
+/// Sums over all cells with their nodes, fracture faces and boundary faces, by their global numbers.
+json mesh_hash(const mesh::Mesh& mesh) {
+  std::array<long long, 3> here{}, all{};
+  const int dim = mesh.dim(), n = mesh.nodes_per_cell();
+  for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
+    std::vector<GlobalIndex> numbers = {mesh.cell_id[cell], mesh.cell_region[cell]};
+    std::vector<Real> corners;
+    for (int k = 0; k < n; ++k) {
+      const LocalIndex node = mesh.cells[cell * n + k];
+      numbers.insert(numbers.end(), {mesh.node_id[node], mesh.node_id[mesh.free_node(node)]});
+      corners.insert(corners.end(), &mesh.coordinates[node * dim], &mesh.coordinates[node * dim] + dim);
+    }
+    numbers.push_back(hash(corners));
+    here[0] += hash(numbers);
+  }
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    here[1] += hash(std::vector<GlobalIndex>{face.id, face.fracture, mesh.cell_id[face.cell[0]], face.local_face[0],
+                                             mesh.cell_id[face.cell[1]], face.local_face[1]});
+  }
+  for (const auto& face : mesh.boundary_faces)
+    if (face.owned) here[2] += hash(std::vector<GlobalIndex>{face.boundary, mesh.cell_id[face.cell], face.local_face});
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 3, here.data(), all.data());
+  return all;
+}
+
+json unknowns(const assembly::System& system) {
+  json all = json::array();
+  for (const auto& layout : system.layouts()) {
+    const auto& field = layout.field();
+    all.push_back({field.name, field.entity, field.n_components, layout.owned()->getGlobalNumElements()});
+  }
+  for (const auto& [field, values] : system.histories()) all.push_back({field.name, field.entity, field.n_components});
+  return all;
+}
+
+/// The points of `later` begin with those of `earlier`.
+bool extends(const json& earlier, const json& later) {
+  return earlier.size() <= later.size() && std::equal(earlier.begin(), earlier.end(), later.begin());
+}
+
+bool same_tables(const json& earlier, const json& later) {
+  if (earlier.size() != later.size()) return false;
+  for (const auto& [name, points] : earlier.items())
+    if (!later.contains(name) || !extends(points, later[name])) return false;
+  return true;
+}
+
+}  // namespace
+
+json fingerprint(const Scene& scene, const assembly::System& system) {
+  Scene copy = scene;
+  auto sections = base::effective(copy, "Sprekk");
+  json result = {{"mesh", mesh_hash(system.mesh())},
+                 {"unknowns", unknowns(system)},
+                 {"Time > start", scene.time.start},
+                 {"Tables", json::object()}};
+  for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
+    result[name] = base::to_xml(sections.sublist(name));
+  for (const auto& [name, table] : scene.tables)
+    for (std::size_t i = 0; i < table.arguments.size(); ++i)
+      result["Tables"][name].push_back({table.arguments[i], table.values[i]});
+  return result;
+}
+
+void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
+  std::vector<std::string> different;
+  for (const auto& [what, value] : of_scene.items()) {
+    const json before = of_checkpoint.value(what, json());
+    if (what == "Tables" ? !same_tables(before, value) : before != value) different.push_back(what);
+  }
+  SPREKK_CHECK(different.empty(),
+               "the checkpoint is of another scene, they differ in: {}; only Time, Solver and Output may change, and "
+               "tables get more points at their end",
+               fmt::join(different, ", "));
+}
+
+}  // namespace sprekk::model
