@@ -1,4 +1,5 @@
-// The seed's fracture inside of a block under growing compression: it sticks, and everything is linear in time.
+// The fracture inside of a block of Wollmann (2024), under growing compression: it sticks, and everything is linear in
+// time.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {

@@ -1,5 +1,5 @@
-// The seed's block with a fracture through it, pushed and pulled, on every cell shape, turned, renumbered, sides
-// swapped.
+// The block of Wollmann (2024) with a fracture through it, pushed and pulled, on every cell shape, turned, renumbered,
+// sides swapped.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
@@ -63,18 +63,6 @@ void run(const std::string& name, int dim, const std::vector<std::string>& cells
          const std::vector<std::string>& overrides, const Expected& expected) {
   for_variants(name, dim, cells, overrides,
                [&](model::Model& model, const Matrix3& Q) { expect_joint(model, expected, Q); });
-}
-
-/// Mean over the area of a component of an output. Collective.
-Real mean(const model::Model& model, const assembly::OutputField& field, int component) {
-  Real here[2] = {0, 0}, all[2];
-  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
-    const Real area = model.mesh().fracture_faces[f].area;
-    here[0] += area * field.values[f * field.n_components + component];
-    here[1] += area;
-  }
-  Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 2, here, all);
-  return all[0] / all[1];
 }
 
 TEST(Push2D, JumpIsElastic) {

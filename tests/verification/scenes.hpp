@@ -91,10 +91,45 @@ inline Matrix3 turn(model::Scene& scene, Real degrees, const Vector3& axis) {
   return Q;
 }
 
+/// Moves the box of a scene by v, before any rotation. Its loads must not depend on the place.
+inline void translate(model::Scene& scene, const Vector3& v) {
+  const auto move = [&](std::vector<Real>& corner) {
+    for (std::size_t i = 0; i < corner.size(); ++i) corner[i] += v[i];
+  };
+  move(scene.mesh.lower_corner);
+  move(scene.mesh.upper_corner);
+  for (auto& [name, fracture] : scene.mesh.fractures) {
+    move(fracture.lower_corner);
+    move(fracture.upper_corner);
+  }
+}
+
 /// The shapes of a dimension.
 inline std::vector<std::string> cells_of(int dim) {
   return dim == 2 ? std::vector<std::string>{"quadrilateral", "triangle"}
                   : std::vector<std::string>{"hexahedron", "tetrahedron"};
+}
+
+/// A choice of cells for a scene.
+struct Discretisation {
+  std::string cell;
+  int order;
+
+  std::string name() const { return fmt::format("{} of order {}", cell, order); }
+  /// Overrides of a scene, followed by others.
+  std::vector<std::string> with(const std::vector<std::string>& others = {}) const {
+    std::vector<std::string> all = {"Mesh.cell=" + cell, fmt::format("Mesh.order={}", order)};
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  }
+};
+
+/// All of a dimension.
+inline std::vector<Discretisation> discretisations(int dim) {
+  std::vector<Discretisation> all;
+  for (const auto& cell : cells_of(dim))
+    for (const int order : {1, 2}) all.push_back({cell, order});
+  return all;
 }
 
 /// The outputs of a model's present state, of what this rank owns.
@@ -125,6 +160,7 @@ class Outputs {
 struct Expected {
   Vector3 n, elastic, plastic, traction;
   Real tolerance = 1e-9, traction_tolerance = 1e-9;  ///< absolute
+  std::string fracture = {};                         ///< its name; empty: all fractures
 };
 
 /// Compares vectors turned back, and what does not depend on the frame.
@@ -132,7 +168,9 @@ inline void expect_joint(model::Model& model, const Expected& e, const Matrix3& 
   const Outputs out(model);
   const auto n = times(Q, e.n);
   for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
-    const auto& frame = model.mesh().fracture_faces[f].frame;
+    const auto& face = model.mesh().fracture_faces[f];
+    if (!e.fracture.empty() && model.mesh().fracture_names[face.fracture] != e.fracture) continue;
+    const auto& frame = face.frame;
     const Real sign = dot(frame[0], n);
     ASSERT_NEAR(std::abs(sign), 1, 1e-12);
     const auto back = [&](const char* name) {
@@ -159,6 +197,18 @@ inline void expect_joint(model::Model& model, const Expected& e, const Matrix3& 
         EXPECT_NEAR(local[k], dot(frame[k], global), 1e-14 * (1 + norm(global))) << name;
     }
   }
+}
+
+/// Mean over the area of all fractures of a component of an output. Collective.
+inline Real mean(const model::Model& model, const assembly::OutputField& field, int component) {
+  Real here[2] = {0, 0}, all[2];
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    const Real area = model.mesh().fracture_faces[f].area;
+    here[0] += area * field.values[f * field.n_components + component];
+    here[1] += area;
+  }
+  Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 2, here, all);
+  return all[0] / all[1];
 }
 
 /// Faces of all ranks in the order of their global numbers, turned back and with sides ordered along n.

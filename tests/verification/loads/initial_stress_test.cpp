@@ -1,0 +1,151 @@
+// Initial stress and the forces that balance it: rock at rest.
+#include "verification/loads/block.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+/// Under its own weight and the lithostatic stress rock does not move, and the fracture carries the initial traction at
+/// its centre: sigma_xx = ratio density g (z - surface).
+void expect_rest(const std::string& name, const std::string& cell, int order) {
+  SCOPED_TRACE(fmt::format("{} {} order {}", name, cell, order));
+  auto scene = read_scene(name, {"Mesh.cell=" + cell, fmt::format("Mesh.order={}", order)});
+  model::Model model(scene, Tpetra::getDefaultComm());
+  const auto report = model.step_to(1);
+  ASSERT_TRUE(report.converged) << report.reason;
+  const Outputs out(model);
+  const Real weight = 2700 * 9.81;
+  const int up = model.mesh().dim() - 1;
+  for (Real u : out["displacement"].values) EXPECT_NEAR(u, 0, 1e-13);  // strains would be about 1e-1
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    const auto traction = out.vector("traction local", f);
+    EXPECT_NEAR(traction[0], 0.5 * weight * (model.mesh().fracture_faces[f].centre[up] - 3), 1e-9 * weight);
+    EXPECT_NEAR(norm({0, traction[1], traction[2]}), 0, 1e-9 * weight);
+    EXPECT_EQ(out.scalar("state", f), 1);
+  }
+}
+
+TEST(InitialStress, BalancesGravity) {
+  for (int order : {1, 2}) {
+    for (const auto& cell : cells_of(2)) expect_rest("verification/lithostatic_2d.xml", cell, order);
+    for (const auto& cell : cells_of(3)) expect_rest("verification/lithostatic_3d.xml", cell, order);
+  }
+}
+
+/// The mean over a fracture face of a polynomial of degree 2, by a rule that is exact for it.
+template <class F>
+Vector3 mean_on(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const F& f) {
+  const int n = mesh::n_face_corners(mesh.shape);
+  std::vector<Vector3> corners;
+  for (int k = 0; k < n; ++k) {
+    Vector3 x{};
+    std::copy_n(mesh.coordinates.begin() + face.nodes[0][k] * mesh.dim(), mesh.dim(), x.begin());
+    corners.push_back(x);
+  }
+  Vector3 sum{};
+  const auto add = [&](Real weight, const std::vector<int>& of) {
+    Vector3 x{};
+    for (int k : of)
+      for (int i = 0; i < 3; ++i) x[i] += corners[k][i] / static_cast<Real>(of.size());
+    const Vector3 value = f(x);
+    for (int i = 0; i < 3; ++i) sum[i] += weight * value[i];
+  };
+  if (n == 2) {  // Simpson
+    for (int k : {0, 1}) add(1.0 / 6, {k});
+    add(4.0 / 6, {0, 1});
+  } else if (n == 3) {
+    for (int k : {0, 1, 2}) add(1.0 / 3, {k, (k + 1) % 3});
+  } else {  // Simpson in both directions
+    for (int k : {0, 1, 2, 3}) {
+      add(1.0 / 36, {k});
+      add(4.0 / 36, {k, (k + 1) % 4});
+    }
+    add(16.0 / 36, {0, 1, 2, 3});
+  }
+  return sum;
+}
+
+/// A stress that is quadratic in space, XX, YY, ZZ, XY[, YZ, XZ], and the body force that balances it.
+struct QuadraticStress {
+  std::vector<std::string> components, body_force;
+
+  /// Texts of sigma n.
+  std::vector<std::string> traction(const Vector3& n) const {
+    const int dim = static_cast<int>(body_force.size());
+    constexpr int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    std::vector<std::string> result;
+    for (int i = 0; i < dim; ++i) {
+      result.emplace_back("0");
+      for (int j = 0; j < dim; ++j) result[i] += fmt::format(" + ({:.17g})*({})", n[j], components[place[i][j]]);
+    }
+    return result;
+  }
+};
+
+/// Rock at rest under a stress that is not uniform on faces, with a fracture that reaches the free surface and is
+/// inclined in the stress. On a free surface the deviation of the traction from its mean on a face has no counterpart
+/// on a neighbouring face; inside of the rock, deviations of neighbours cancel where the stress is linear.
+void expect_rest_at_surface(const Discretisation& cells, const QuadraticStress& stress) {
+  SCOPED_TRACE(cells.name());
+  const int dim = static_cast<int>(stress.body_force.size());
+  auto scene = read_scene(dim == 2 ? "verification/lithostatic_2d.xml" : "verification/lithostatic_3d.xml",
+                          cells.with({"Materials.rock.shear modulus=100", "Materials.rock.Lame's first parameter=100",
+                                      "Materials.joint.tangential stiffness=100",
+                                      dim == 2 ? "Mesh.fractures.fracture.lower corner={1, 1}"
+                                               : "Mesh.fractures.fracture.lower corner={1, 0, 1}",
+                                      dim == 2 ? "Mesh.fractures.fracture.upper corner={1, 3}"
+                                               : "Mesh.fractures.fracture.upper corner={1, 2, 3}"}));
+  scene.bulk.gravity.clear();
+  scene.bulk.lithostatic_stress.reset();
+  scene.bulk.initial_stress = expressions(stress.components);
+  scene.bulk.body_force = expressions(stress.body_force);
+  const Vector3 axis = dim == 2 ? Vector3{0, 0, 1} : Vector3{1, 1, 0.5};
+  scene.mesh.rotation = 25;
+  scene.mesh.rotation_axis = {axis[0], axis[1], axis[2]};
+  const Matrix3 Q = rotation(25, axis);
+  scene.boundary_conditions.clear();
+  for (const std::string side : {"west", "east", "south"})
+    prescribe(scene, side, first<std::string>(dim, {"0", "0", "0"}));
+  if (dim == 3)
+    for (const std::string side : {"north", "bottom"}) prescribe(scene, side, {"0", "0", "0"});
+  load(scene, dim == 2 ? "north" : "top", stress.traction(times(Q, dim == 2 ? Vector3{0, 1, 0} : Vector3{0, 0, 1})));
+  model::Model model(scene, Tpetra::getDefaultComm());
+  expect_displacement(model, 1e-12, [](const auto&...) { return Vector3{}; });
+  const Outputs out(model);
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    const auto& face = model.mesh().fracture_faces[f];
+    const auto texts = expressions(stress.traction(face.frame[0]));
+    const auto mean = mean_on(model.mesh(), face, [&](const Vector3& x) {
+      Vector3 traction{};
+      for (int i = 0; i < dim; ++i) traction[i] = texts[i](x, 0);
+      return traction;
+    });
+    const auto traction = out.vector("traction", f);
+    EXPECT_GT(std::abs(dot(mean, face.frame[1])), 0.1);  // inclined
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(traction[i], mean[i], 1e-10 * norm(mean));
+    EXPECT_EQ(out.scalar("state", f), 1);
+  }
+}
+
+TEST(InitialStress, FractureThatReachesTheSurface) {
+  const QuadraticStress plane{{"-50 - 3*x^2 + 2*x*y - y^2", "-40 + x^2 - 2*y^2 - 4*x", "-30", "5 + x*y + 0.5*x^2 - y"},
+                              {"5*x - 2*y + 1", "3*y - x"}};
+  const QuadraticStress solid{
+      {"-60 - x^2 + 2*y*z", "-50 - 2*y^2 + x*z", "-70 - z^2 + x*y", "3 + z^2/2 + x*y/4", "-2 + x^2/2", "4 + y^2/3"},
+      {"1.75*x", "3.75*y", "2*z"}};
+  for (const auto& cells : discretisations(2)) expect_rest_at_surface(cells, plane);
+  for (const auto& cells : discretisations(3)) expect_rest_at_surface(cells, solid);
+}
+
+/// Without the initial stress the same weight does move the rock, so that the test above is one.
+TEST(InitialStress, IsNeededForRest) {
+  auto scene = read_scene("verification/lithostatic_2d.xml");
+  scene.bulk.lithostatic_stress.reset();
+  model::Model model(scene, Tpetra::getDefaultComm());
+  ASSERT_TRUE(model.step_to(1).converged);
+  Real largest = 0;
+  for (Real u : Outputs(model)["displacement"].values) largest = std::max(largest, std::abs(u));
+  EXPECT_TRUE(anywhere(*Tpetra::getDefaultComm(), largest > 1e-3));
+}
+
+}  // namespace
+}  // namespace sprekk::tests

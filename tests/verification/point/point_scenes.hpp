@@ -1,0 +1,24 @@
+// Scenes of xml/point, driven.
+#pragma once
+
+#include "base/check.hpp"
+#include "model/point.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace sprekk::tests {
+
+using model::PointState;
+
+/// The states of xml/point/NAME.
+inline std::vector<PointState> drive(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return model::drive_point(model::read_point_scene(*Tpetra::getDefaultComm(),
+                                                    std::string(SPREKK_SOURCE_DIR) + "/xml/point/" + name, overrides));
+}
+
+}  // namespace sprekk::tests
