@@ -1,15 +1,16 @@
-# Imported targets of the distribution's Trilinos carry no include directories, hence these wrappers.
+# What the packages link; an installed Sprekk includes this file as well. Imported targets of the distribution's Trilinos
+# carry no include directories, and some libraries have no targets at all, hence the wrappers.
 find_package(MPI REQUIRED COMPONENTS C CXX)
 find_package(Trilinos REQUIRED COMPONENTS
   Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 Amesos2 MueLu Zoltan2 Stratimikos Teko NOX Sacado Kokkos Teuchos)
-add_library(sprekk_trilinos INTERFACE)
+add_library(sprekk_trilinos INTERFACE IMPORTED)
 target_include_directories(sprekk_trilinos SYSTEM INTERFACE ${Trilinos_INCLUDE_DIRS})
 target_link_libraries(sprekk_trilinos INTERFACE ${Trilinos_LIBRARIES} MPI::MPI_CXX)
 
 function(sprekk_external target header library)
   find_path(${target}_INCLUDE ${header} REQUIRED)
   find_library(${target}_LIBRARY ${library} REQUIRED)
-  add_library(${target} INTERFACE)
+  add_library(${target} INTERFACE IMPORTED)
   target_include_directories(${target} SYSTEM INTERFACE ${${target}_INCLUDE})
   target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
 endfunction()
@@ -20,4 +21,7 @@ sprekk_external(sprekk_muparser muParser.h muparser)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(ZLIB REQUIRED)
+set(HDF5_PREFER_PARALLEL ON)  # the one that Trilinos has
+find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)

@@ -15,8 +15,12 @@ function(sprekk_package name)
     add_library(sprekk_${name} INTERFACE)
     set(scope INTERFACE)
   endif()
-  target_include_directories(sprekk_${name} ${scope} ${CMAKE_SOURCE_DIR}/packages)
+  target_include_directories(sprekk_${name} ${scope}
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/packages> $<INSTALL_INTERFACE:include/sprekk>)
   target_link_libraries(sprekk_${name} ${scope} sprekk_trilinos fmt::fmt ${uses} ${ARG_LINKS})
+  target_compile_features(sprekk_${name} ${scope} cxx_std_17)
+  set_target_properties(sprekk_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS sprekk_${name} EXPORT Sprekk)
 endfunction()
 
 # sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...] [TIMEOUT seconds])

@@ -1,11 +1,13 @@
 // The program: starts MPI and Kokkos, reads the command line, runs.
 #include "base/check.hpp"
+#include "model/material_library.hpp"
 #include "model/point.hpp"
 #include "model/run.hpp"
 
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 
@@ -28,6 +30,8 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
   auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
+  const auto* schema = reference->add_flag("--schema", "print a RELAX NG schema of scenes instead, for editors");
+  auto* materials = app.add_subcommand("materials", "print the material library");
   auto* point = app.add_subcommand("point", "drive one point of a joint along a path, print CSV");
   std::string mesh_file;
   std::vector<std::string> fractures;
@@ -37,19 +41,30 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
   for (auto* command : {run, check, point}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->check([](const std::string& text) {
+          const auto equals = text.find('=');
+          return equals != 0 && equals != text.npos ? "" : "\"" + text + "\" is not of the form Path.To.Entry=value";
+        });
   }
   run->add_option("--output", options.output, "directory for the results; default output/SCENE");
+  run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (!speaks) return error.get_exit_code() == 0 ? 0 : 2;
-    return app.exit(error) == 0 ? 0 : 2;
+    const bool asked_for_help = error.get_exit_code() == 0;
+    if (speaks && asked_for_help) app.exit(error);
+    if (speaks && !asked_for_help) std::cerr << "sprekk: " << error.what() << " (see sprekk --help)\n";
+    return asked_for_help ? 0 : 2;
   }
 
   try {
     if (reference->parsed()) {
-      if (speaks) std::cout << model::reference();
+      if (speaks) std::cout << (schema->count() ? model::schema() : model::reference());
+      return 0;
+    }
+    if (materials->parsed()) {
+      if (speaks) std::cout << model::library_markdown();
       return 0;
     }
     if (mesh_info->parsed()) {
@@ -82,7 +97,8 @@ int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int n_libraries_may_read = 1;  // Kokkos would answer --help, too
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
+  int n_libraries_may_read = 1;   // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
   return run_command(argc, argv, Tpetra::getDefaultComm());
 }

@@ -1,0 +1,99 @@
+// A host that owns main, the communicator, the scene and the time loop: it shears a block with a joint, finds by
+// bisection when the joint slides, and then gives the joint a slip of its own.
+#include "model/model.hpp"
+
+#include <Teuchos_DefaultMpiComm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+using namespace sprekk;
+
+namespace {
+// A block of 1 m: rock (Poisson's ratio 0), stiffness and friction of the joint, compression.
+constexpr Real E = 10e9, K_t = 30e9, mu = 0.6, compression = 1e-3;  // Pa, Pa/m, -, m
+
+/// The top is pressed down until t = 1, then moves sideways by 1 mm per unit of time.
+model::Scene block() {
+  model::Scene scene;
+  scene.mesh.cells = {4, 4};
+  scene.mesh.periodic = {"x"};
+  scene.mesh.fractures["joint"] = {{0, 0.5}, {1, 0.5}, {}, false};
+  auto& rock = scene.materials["rock"];
+  rock.type = "elastic";
+  rock.E = E;
+  rock.nu = 0;
+  auto& joint = scene.materials["smooth"];
+  joint.type = "joint";
+  joint.tangential_stiffness = K_t;
+  joint.friction_coefficient = mu;
+  scene.bulk.material = "rock";
+  scene.fractures["joint"].material = "smooth";
+  scene.boundary_conditions["floor"] = {"south", {}, {0, 0}, {}};
+  const base::Expression right("1e-3*max(t - 1, 0)"), down("-1e-3*min(t, 1)");
+  scene.boundary_conditions["top"] = {"north", {}, {right, down}, {}};
+  return scene;
+}
+
+Real largest(const std::vector<Real>& values, MPI_Comm comm) {
+  Real here = 0, all = 0;
+  for (Real v : values) here = std::max(here, v);
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return all;
+}
+
+void step(model::Model& model, Real t) {
+  const auto report = model.step_to(t);
+  if (!report.converged) throw Error(report.reason);  // the model is then where it was
+}
+
+/// Errors of the displacement below the joint, where u = (tau y/G, -compression y).
+std::vector<Real> displacement_errors(model::Model& model, Real tau) {
+  const auto u = model.field("displacement").values;
+  std::vector<Real> errors;
+  for (std::size_t node = 0; node < u.extent(0); ++node) {
+    const Real y = model.mesh().coordinates[2 * node + 1];
+    if (y < 0.5) errors.push_back(std::hypot(u(node, 0) - tau * y / (E / 2), u(node, 1) + compression * y));
+  }
+  return errors;
+}
+
+int run(MPI_Comm comm) {
+  model::Model model(block(), rcp(new Teuchos::MpiComm<int>(comm)));
+  step(model, 1);
+  for (Real dt = 1; dt > 1e-3; dt /= 2) {
+    const auto before = model.save();
+    step(model, model.time() + dt);
+    if (largest(model.output("slip").values, comm) > 1e-12) model.restore(before);
+  }
+  // By hand: the block and the joint shear in series, tau = d/(1 m/G + 1/K_t), up to mu times the pressure.
+  const Real compliance = 2 / E + 1 / K_t, onset = 1 + 1e3 * mu * E * compression * compliance, stuck = model.time();
+
+  // A slip that the host knows of relieves the shear stress; from here on it is part of the joint's history.
+  const auto plastic = model.field("elastic-plastic jump: plastic jump").values;
+  constexpr Real given = 2e-4;
+  for (std::size_t face = 0; face < plastic.extent(0); ++face) plastic(face, 0) = given;
+  step(model, stuck + 0.01);
+  const Real tau = (1e-3 * (model.time() - 1) - given) / compliance;
+  const Real error = largest(displacement_errors(model, tau), comm);
+  if (model.mesh().comm->getRank() == 0)
+    std::cout << "slides after t = " << stuck << ", by hand " << onset << "; error of u " << error << " m\n";
+  return stuck <= onset && onset < stuck + 2e-3 && error < 1e-14 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  MPI_Init(&argc, &argv);
+  Kokkos::initialize(argc, argv);
+  int status = 1;
+  try {
+    status = run(MPI_COMM_WORLD);  // no model may outlive Kokkos
+  } catch (const Error& error) {   // the same on every rank
+    std::cerr << error.what() << '\n';
+  }
+  Kokkos::finalize();
+  MPI_Finalize();
+  return status;
+}

@@ -1,0 +1,92 @@
+"""Pictures of what sprekk computed, as PNG files.
+
+PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
+as NAME.png, those of a run into its directory: bulk.png and fractures.png of one step, loops.png (mean traction against
+mean jump of each fracture) and convergence.png of all steps.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import read
+from read import PlotError
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="sprekk plot", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="CSV of a point, or directory of a run")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="write the pictures there")
+    parser.add_argument("--time", type=float, metavar="T", help="draw the step written nearest to T (default: the last)")
+    parser.add_argument("--warp", type=float, metavar="FACTOR", help="factor on the displacement (default: a visible one)")
+    parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
+    parser.add_argument("--whole", action="store_true", help="cut nothing away in 3D")
+    parser.add_argument("--paraview", action="store_true",
+                        help="write paraview.py instead, which ParaView opens with File > Load State")
+    return parser.parse_args(words)
+
+
+def of_csv(path):
+    """(name, figure)"""
+    import loops
+    columns, tangential = read.point_csv(path)
+    yield path.stem, loops.of_point(columns, tangential, path.stem)
+
+
+def of_run(directory, options):
+    """(name, figure) of each picture that the run has something for."""
+    import bulk
+    import convergence
+    import fractures
+    import loops
+    content = read.results(directory)
+    steps = content["steps"]
+    states = [step for step in steps if "fractures" in step]  # a step that failed at once has none
+    names = sorted(states[-1]["fractures"]) if states else []
+    name = directory.resolve().name
+
+    bulk_steps, fracture_steps = (read.written_steps(directory, kind) for kind in ("bulk", "fractures"))
+    if bulk_steps:
+        wanted = bulk_steps[-1][0] if options.time is None else options.time
+        time, file = min(bulk_steps, key=lambda step: abs(step[0] - wanted))
+        title = f"{name}, t = {time:g} s"
+        rock, joints = read.grid(file), None
+        for file in [file for t, file in fracture_steps if t == time]:
+            joints = read.grid(file)
+        yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
+        if joints and joints.GetNumberOfCells() > 0:
+            yield "fractures", fractures.of_step(joints, names, title)
+    if names and len(states) > 1:
+        yield "loops", loops.of_fractures(states, names, name)
+    yield "convergence", convergence.of_run(steps, name)
+
+
+def plot(path, options):
+    path = Path(path)
+    if not path.exists():
+        raise PlotError(f"{path}: no such file or directory")
+    folder = options.output or (path if path.is_dir() else path.parent)
+    folder.mkdir(parents=True, exist_ok=True)
+    if options.paraview:
+        from paraview_state import write
+        print(write(path, folder))
+        return
+    for name, figure in of_run(path, options) if path.is_dir() else of_csv(path):
+        picture = folder / f"{name}.png"
+        figure.savefig(picture, dpi=options.dpi)
+        print(picture)
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        for path in options.paths:
+            plot(path, options)
+    except (PlotError, OSError) as error:
+        print(f"sprekk plot: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

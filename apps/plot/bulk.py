@@ -1,0 +1,132 @@
+"""Rock: displacement, equivalent stress and largest compression, on the deformed body."""
+import numpy as np
+import read
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgba
+from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, plt
+
+
+def tensors(stress):
+    """(n, 3, 3) of (n, 6): XX, YY, ZZ, XY, YZ, XZ."""
+    return stress[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
+
+
+def von_mises(stress):
+    """sqrt(3/2 s:s) with the deviator s."""
+    sigma = tensors(stress)
+    deviator = sigma - np.trace(sigma, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    return np.sqrt(1.5 * np.sum(deviator**2, axis=(1, 2)))
+
+
+def largest_compression(stress):
+    """Minus the smallest principal stress; compression is positive here."""
+    return -np.linalg.eigvalsh(tensors(stress))[:, 0]
+
+
+def warp_factor(points, displacement, factor=None):
+    """A round factor that makes the largest displacement a visible part of the body, unless one is given."""
+    if factor is not None:
+        return factor
+    largest = np.max(np.linalg.norm(displacement, axis=1), initial=0)
+    return nice(0.05 * np.max(np.ptp(points, axis=0)) / largest) if largest > 0 else 0
+
+
+def edge_segments(polygons, keep):
+    """Pairs of points of the edges that so many polygons share as keep(n) says."""
+    pairs = np.concatenate([np.stack([p, np.roll(p, -1)], 1) for p in polygons])
+    ends, counts = np.unique(np.sort(pairs, axis=1), axis=0, return_counts=True)
+    return ends[keep(counts)]
+
+
+def triangles(polygons):
+    return np.concatenate([np.stack([np.full(len(p) - 2, p[0]), p[1:-1], p[2:]], 1) for p in polygons])
+
+
+def panels(surface):
+    """(values, colours, label, on the points) of each picture; values in the label's unit."""
+    size = np.linalg.norm(surface.point_data["displacement"], axis=1)
+    equivalent, compression = von_mises(surface.cell_data["stress"]), largest_compression(surface.cell_data["stress"])
+    for values, colours, name, base, on_points in (
+            (size, "viridis", "displacement", "m", True),
+            (equivalent, "inferno", "von Mises stress", "Pa", False),
+            (compression, "cividis", "largest compressive stress", "Pa", False)):
+        quantity = Quantity(name, base, values)
+        yield quantity(values), plt.get_cmap(colours), quantity.label, on_points
+
+
+def of_plane(grid, title, factor=None):
+    surface = read.surface(grid)
+    displacement = surface.point_data["displacement"]
+    factor = warp_factor(surface.points, displacement, factor)
+    rest, moved = surface.points[:, :2], (surface.points + factor * displacement)[:, :2]
+    rim = edge_segments(surface.polygons, lambda n: n == 1)  # outer boundary and sides of fractures
+    width, height = np.ptp(moved, axis=0)
+    rows, columns = (3, 1) if width > 1.8 * height else (1, 3)
+    figure, axes = plt.subplots(rows, columns, sharex=True, sharey=True,
+                                figsize=(7, 3.3 * 5.4 * height / width + 0.8) if rows == 3 else
+                                (10.5, 2.6 * height / width + 0.9))
+    figure.suptitle(f"{title}, deformation × {factor:g}", fontsize=10)
+    for ax, (values, colours, label, on_points) in zip(axes.flat, panels(surface)):
+        norm = limits(values)
+        if on_points:
+            ax.tripcolor(*moved.T, triangles(surface.polygons), values, cmap=colours, norm=norm, shading="gouraud")
+        else:
+            ax.add_collection(PolyCollection(surface.corners(moved), array=values, cmap=colours, norm=norm,
+                                             edgecolors="face", linewidths=0.2))
+        ax.add_collection(LineCollection(rest[rim], colors=FAINT, linewidths=0.7, linestyles=(0, (4, 3))))
+        ax.add_collection(LineCollection(moved[rim], colors=INK, linewidths=0.9))
+        ax.set_aspect("equal")
+        ax.margins(0.03)
+        ax.autoscale_view()
+        ax.grid(False)
+        ax.label_outer()
+        colour_bar(figure, ax, norm, colours, label)
+    for ax in axes.flat if columns == 3 else axes.flat[-1:]:
+        ax.set_xlabel("x (m)")
+    for ax in axes.flat if columns == 1 else axes.flat[:1]:
+        ax.set_ylabel("y (m)")
+    return figure
+
+
+def fracture_faces(grid, fractures, factor):
+    """Corners of the fracture faces, moved by the mean displacement of the rock's points at each corner."""
+    from vtkmodules.vtkCommonCore import vtkIdList
+    from vtkmodules.vtkCommonDataModel import vtkPointLocator
+    faces = read.surface(fractures)
+    displacement = read.arrays(grid.GetPointData())["displacement"]
+    locator, found = vtkPointLocator(), vtkIdList()
+    locator.SetDataSet(grid)
+    locator.BuildLocator()
+    moved = faces.points.copy()
+    for point in moved:
+        locator.FindPointsWithinRadius(1e-9 * grid.GetLength(), point, found)
+        sides = [found.GetId(k) for k in range(found.GetNumberOfIds())]
+        point += factor * np.mean(displacement[sides], axis=0) if sides else 0
+    return faces.corners(moved)
+
+
+def of_body(grid, fractures, title, factor=None, whole=False):
+    surface = read.surface(grid if whole else read.behind(grid))
+    displacement = surface.point_data["displacement"]
+    factor = warp_factor(surface.points, displacement, factor)
+    corners = surface.corners(surface.points + factor * displacement)
+    joints = fracture_faces(grid, fractures, factor) if fractures and not whole else []
+    paper = np.tile(to_rgba(PAPER), (len(joints), 1))
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.9), subplot_kw={"projection": "3d"})
+    half = "" if whole else ", front half of the rock cut away"
+    figure.suptitle(f"{title}, deformation × {factor:g}{half}", fontsize=10)
+    for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
+        faces = np.array([np.mean(values[p]) for p in surface.polygons]) if on_points else values
+        norm = limits(faces)
+        colour = colours(norm(faces))
+        edges = np.concatenate([colour * (0.85, 0.85, 0.85, 1), np.tile(to_rgba(INK), (len(joints), 1))])
+        draw_polygons_3d(ax, corners + joints, np.concatenate([colour, paper]), grid.GetBounds(), edges, zoom=0.98)
+        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.06)
+    return figure
+
+
+def of_step(grid, fractures, title, factor=None, whole=False):
+    """Of the rock's grid; the fractures' may be None."""
+    if read.is_plane(grid):
+        return of_plane(grid, title, factor)
+    return of_body(grid, fractures, title, factor, whole)

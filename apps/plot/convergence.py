@@ -1,0 +1,38 @@
+"""How the solver went: iterations of each step, and what was left when it stopped."""
+import numpy as np
+from style import FAINT, LINES, plt
+
+
+def of_run(steps, title):
+    number = np.arange(1, len(steps) + 1)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.2))
+    figure.suptitle(title, fontsize=10)
+
+    newton = np.array([step["newton_iterations"] for step in steps])
+    linear = np.array([step["linear_iterations"] for step in steps])
+    left.bar(number, newton, color=LINES[0], width=0.75)
+    left.set(xlabel="step", ylabel="Newton iterations (-)", title="iterations")
+    left.yaxis.set_major_locator(plt.MaxNLocator(integer=True))
+    left.grid(axis="x", visible=False)
+    if np.any(linear != newton):  # a direct solver needs one for each of Newton's
+        per_solve = left.twinx()
+        per_solve.plot(number, linear / np.maximum(newton, 1), "o-", color=LINES[1], markersize=3)
+        per_solve.set_ylabel("linear iterations for each of Newton's (-)", color=LINES[1])
+        per_solve.spines["right"].set_visible(True)
+        per_solve.set_ylim(bottom=0)
+        per_solve.grid(False)
+    cut = [n for n, step in zip(number, steps) if step["cuts"] > 0]
+    left.plot(cut, [0.3] * len(cut), "v", color=LINES[3], markersize=4, label="step was halved")
+    if cut:
+        left.legend()
+
+    for i, name in enumerate(sorted(steps[-1]["measures"])):
+        values = np.array([step["measures"].get(name) for step in steps], dtype=float)  # none: no number
+        right.semilogy(number, np.where(values > 0, values, np.nan), "o-", markersize=3, color=LINES[i % len(LINES)],
+                       label=name.replace("_", " "))
+    right.set(xlabel="step", ylabel="relative residual (-)", title="left at the end of each step")
+    right.legend(loc="upper left", bbox_to_anchor=(1, 1))
+    for ax in (left, right):
+        ax.xaxis.set_major_locator(plt.MaxNLocator(integer=True))
+        ax.tick_params(which="both", color=FAINT)
+    return figure

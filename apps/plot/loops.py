@@ -1,0 +1,107 @@
+"""Traction against jump: of a point, and of the means over the fractures of a run."""
+import numpy as np
+from read import PlotError
+from style import LINES, Quantity, STATES, STATE_COLOURS, give_room, plt, without_noise
+
+SHOW_STATES = 400  # of at most so many steps, more would hide the curve
+
+
+def curve(ax, x, y, colour, label=None, states=None):
+    """A path with its first step and its last marked; dots tell the contact state."""
+    ax.plot(x, y, color=colour, label=label, zorder=2)
+    ax.plot(x[:1], y[:1], "o", color="white", markeredgecolor=colour, markersize=5, zorder=4)
+    if states is not None and len(x) <= SHOW_STATES:
+        ax.scatter(x, y, c=STATE_COLOURS(states.astype(int)), s=14, zorder=3, linewidths=0.4, edgecolors="white")
+    ax.plot(x[-1:], y[-1:], "s", color=colour, markersize=4.5, zorder=5)
+
+
+def mark_legend(figure, states):
+    """In the upper right corner: the colours of the contact states, the marks of a path's ends."""
+    marks = [plt.Line2D([], [], linestyle="", marker="o", markersize=4, color=STATE_COLOURS(i), label=name)
+             for i, name in enumerate(STATES) if states]
+    marks += [plt.Line2D([], [], linestyle="", marker="o", markersize=5, color="white", markeredgecolor=LINES[0],
+                         label="first step"),
+              plt.Line2D([], [], linestyle="", marker="s", markersize=4.5, color=LINES[0], label="last step")]
+    figure.legend(handles=marks, loc="upper right", ncol=len(marks), columnspacing=0.8, handletextpad=0)
+
+
+def of_point(columns, tangential, title):
+    """Shear traction against tangential jump, normal traction against normal jump, and the normal jump that shear
+    brings; in 3D the path of the tangential jump instead."""
+    def named(kind, axes):
+        return [columns[f"{kind}_{axis}"] for axis in axes]
+
+    jumps, tractions = named("jump", ["n", *tangential]), named("traction", ["n", *tangential])
+    length, stress = (max(np.max(np.abs(v)) for v in vs) for vs in (jumps, tractions))
+    normal_jump, normal_traction = without_noise(jumps[0], length), without_noise(tractions[0], stress)
+    shear_jump = Quantity("tangential jump", "m", *jumps[1:])
+    shear = Quantity("shear traction", "Pa", *tractions[1:])
+    opening, normal = Quantity("normal jump", "m", normal_jump), Quantity("normal traction", "Pa", normal_traction)
+
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(9, 3.1))
+    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+    mark_legend(figure, states=len(columns["t"]) <= SHOW_STATES)
+    for i, axis in enumerate(tangential):
+        curve(left, shear_jump(jumps[i + 1]), shear(tractions[i + 1]), LINES[i], label=axis,
+              states=columns["state"] if len(tangential) == 1 else None)
+    left.set(xlabel=shear_jump.label, ylabel=shear.label, title="shear")
+    if len(tangential) > 1:
+        left.legend()
+    curve(middle, opening(normal_jump), normal(normal_traction), LINES[0], states=columns["state"])
+    middle.set(xlabel=opening.label, ylabel=normal.label, title="normal, compression negative")
+
+    if len(tangential) == 1:
+        curve(right, shear_jump(jumps[1]), opening(normal_jump), LINES[0], states=columns["state"])
+        right.set(xlabel=shear_jump.label, ylabel=opening.label, title="dilation and closure")
+    else:
+        for kind, colour in (("jump", LINES[0]), ("plastic_jump", LINES[3])):
+            first, second = named(kind, tangential)
+            right.plot(shear_jump(first), shear_jump(second), color=colour, label=kind.replace("_", " "))
+        right.set(xlabel=f"t1 ({shear_jump.unit})", ylabel=f"t2 ({shear_jump.unit})", title="path of the tangential jump")
+        right.set_aspect("equal", adjustable="datalim")
+        right.legend(loc="best")
+    for ax in (left, middle, right):
+        give_room(ax)
+    return figure
+
+
+def main_direction(vectors):
+    """The direction in the tangent plane along which the vectors (n, 1 or 2) extend most, towards the largest."""
+    largest = vectors[np.argmax(np.linalg.norm(vectors, axis=1))]
+    direction = np.linalg.svd(vectors)[2][0]
+    return direction if direction @ largest >= 0 else -direction
+
+
+def of_fractures(steps, names, title):
+    """Means over each fracture, step by step: shear along the main direction of its tangential jump, and normal."""
+    if not names:
+        raise PlotError(f"{title}: the run has no fractures")
+
+    def local(name, key):
+        return np.array([step["fractures"][name][key]["local"] for step in steps])
+
+    means = {name: (local(name, "mean_jump"), local(name, "mean_traction")) for name in names}
+    length = max(np.max(np.abs(jump)) for jump, _ in means.values())
+    stress = max(np.max(np.abs(traction)) for _, traction in means.values())
+    shears, normals = {}, {}
+    for name, (jump, traction) in means.items():
+        along = main_direction(jump[:, 1:])
+        shears[name] = without_noise(jump[:, 1:] @ along, length), without_noise(traction[:, 1:] @ along, stress)
+        normals[name] = without_noise(jump[:, 0], length), without_noise(traction[:, 0], stress)
+
+    figure, axes = plt.subplots(1, 2, figsize=(7.4, 3.3))
+    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+    for ax, kind, curves in zip(axes, (("tangential jump", "shear traction"), ("normal jump", "normal traction")),
+                                (shears, normals)):
+        jump = Quantity("mean " + kind[0], "m", *(c[0] for c in curves.values()))
+        traction = Quantity("mean " + kind[1], "Pa", *(c[1] for c in curves.values()))
+        for i, (name, (x, y)) in enumerate(curves.items()):
+            curve(ax, jump(x), traction(y), LINES[i % len(LINES)], label=name)
+        ax.set(xlabel=jump.label, ylabel=traction.label)
+        give_room(ax)
+    mark_legend(figure, states=False)
+    axes[0].set_title("shear")
+    axes[1].set_title("normal, compression negative")
+    if len(names) > 1:
+        axes[0].legend()
+    return figure

@@ -1,0 +1,84 @@
+"""Writes a Python state for ParaView that opens a run: the rock warped and half cut, its fractures by what they do."""
+from pathlib import Path
+
+from read import PlotError, grid, is_plane, results, written_steps
+
+STATE = '''# Opens {name} in ParaView: File > Load State. Written by "sprekk plot --paraview".
+from pathlib import Path
+
+from paraview.simple import *
+
+RUN = Path({run!r})  # where the results lie
+
+view = GetActiveViewOrCreate("RenderView")
+view.UseColorPaletteForBackground = 0
+view.Background = [1, 1, 1]
+view.OrientationAxesLabelColor = [0, 0, 0]
+
+
+def show(source, place, array, title):
+    """Shows the source in the view, coloured by an array of its POINTS or CELLS, with a colour bar."""
+    display = Show(source, view)
+    ColorBy(display, (place, array))
+    table = GetColorTransferFunction(array)
+    table.ApplyPreset("Cool to Warm" if array == "state" else "Viridis (matplotlib)", True)
+    bar = GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = title, ""
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    display.SetScalarBarVisibility(view, True)
+    display.RescaleTransferFunctionToDataRange(False)
+    if array == "state":
+        table.RescaleTransferFunction(0, 2)
+    return display
+
+
+rock = PVDReader(registrationName="rock", FileName=str(RUN / "bulk.pvd"))
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+GetAnimationScene().GoToLast()
+warped = WarpByVector(registrationName="deformed rock", Input=rock)
+warped.Vectors = ["POINTS", "displacement"]
+warped.ScaleFactor = {warp:g}
+shown = warped
+{cut}show(shown, "POINTS", "displacement", "displacement (m)")
+{fractures}
+view.ResetCamera()
+{camera}Render(view)
+'''
+
+CUT = '''shown = Clip(registrationName="rear half", Input=warped)
+shown.ClipType.Origin = {centre}
+shown.ClipType.Normal = [0, -1, 0]
+'''
+
+FRACTURES = '''
+fractures = PVDReader(registrationName="fractures", FileName=str(RUN / "fractures.pvd"))
+faces = show(fractures, "CELLS", "state", "state: 0 open, 1 stick, 2 slip")  # or "slip", "opening", "traction", ...
+faces.LineWidth = 4
+'''
+
+CAMERA = '''camera = GetActiveCamera()
+camera.SetPosition(*[f + d for f, d in zip(camera.GetFocalPoint(), (0.55, -0.75, 0.42))])
+camera.SetViewUp(0, 0, 1)
+view.ResetCamera()
+'''
+
+
+def write(directory, folder):
+    """Writes FOLDER/paraview.py for the run in a directory; returns its path."""
+    from bulk import warp_factor
+    from read import arrays
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    results(directory)
+    steps = written_steps(directory, "bulk")
+    if not steps:
+        raise PlotError(f'{directory}: holds no bulk.pvd; the scene\'s Output has "vtu" false')
+    rock = grid(steps[-1][1])
+    warp = warp_factor(vtk_to_numpy(rock.GetPoints().GetData()), arrays(rock.GetPointData())["displacement"])
+    solid, run = not is_plane(rock), Path(directory).resolve()
+    state = Path(folder) / "paraview.py"
+    state.write_text(STATE.format(
+        name=run.name, run=str(run), warp=warp,
+        cut=CUT.format(centre=list(rock.GetCenter())) if solid else "",
+        fractures=FRACTURES if written_steps(directory, "fractures") else "",
+        camera=CAMERA if solid else ""))
+    return state

@@ -1,0 +1,117 @@
+"""One look for all pictures: fonts, units, colours, colour bars."""
+import matplotlib
+
+matplotlib.use("Agg")  # no screen
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
+
+INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
+LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
+STATES = ["open", "stick", "slip"]
+STATE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#cc3311"])
+
+plt.rcParams.update({
+    "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9, "xtick.labelsize": 8, "ytick.labelsize": 8,
+    "legend.fontsize": 8, "legend.frameon": False, "lines.linewidth": 1.4, "axes.edgecolor": INK, "text.color": INK,
+    "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.grid": True, "grid.color": "#e3e5e9",
+    "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.spines.top": False, "axes.spines.right": False,
+    "savefig.bbox": "tight", "savefig.pad_inches": 0.22, "figure.facecolor": "white", "figure.constrained_layout.use": True,
+    "axes.formatter.limits": (-3, 4), "axes.formatter.useoffset": False, "image.cmap": "viridis",
+})
+
+PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
+            "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")]}
+
+
+def unit(largest, base):
+    """(factor, name) of the unit in which `largest`, in m or Pa, is a number that is easily read."""
+    for factor, name in PREFIXES[base]:
+        if largest >= 0.5 * factor:
+            return factor, name
+    return 1, base
+
+
+class Quantity:
+    """Arrays of one kind in one readable unit."""
+
+    def __init__(self, name, base, *values):
+        largest = max((float(np.max(np.abs(v))) for v in values if np.size(v)), default=0)
+        self.factor, self.unit = unit(largest, base)
+        self.label = f"{name} ({self.unit})"
+
+    def __call__(self, values):
+        return np.asarray(values) / self.factor
+
+
+def without_noise(values, scale):
+    """The values, or zeros where all of them are round-off of something as large as scale."""
+    values = np.asarray(values, dtype=float)
+    return values if np.max(np.abs(values), initial=0) > 1e-10 * scale else np.zeros_like(values)
+
+
+def limits(values, signed=False):
+    """Ends of a colour bar: around zero if signed; a constant gets some room."""
+    low, high = (float(np.min(values)), float(np.max(values))) if np.size(values) else (0, 0)
+    if signed:
+        high = max(abs(low), abs(high)) or 1
+        return Normalize(-high, high)
+    if high - low <= 1e-6 * max(abs(low), abs(high)):
+        room = 0.05 * max(abs(low), abs(high))
+        low, high = (0, 1) if low == high == 0 else (low - room, high + room)
+    return Normalize(low, high)
+
+
+def give_room(ax):
+    """Widens an axis on which a value does not change but for round-off."""
+    for line in ax.lines:
+        for values, get, put in ((line.get_xdata(), ax.get_xlim, ax.set_xlim), (line.get_ydata(), ax.get_ylim, ax.set_ylim)):
+            size = np.max(np.abs(values), initial=0)
+            if get()[1] - get()[0] < 1e-6 * size:
+                put(np.mean(values) - 0.1 * size, np.mean(values) + 0.1 * size)
+
+
+def colour_bar(figure, ax, norm, colours, label, zero=False, **where):
+    """A bar beside the axes or where `location` says; of a field that is zero everywhere it shows just that."""
+    bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
+    bar.set_label(label)
+    bar.locator = plt.FixedLocator([0]) if zero else plt.MaxNLocator(4 if "location" in where else 7)
+    bar.update_ticks()
+    bar.outline.set_visible(False)
+    return bar
+
+
+def state_bar(figure, ax, **where):
+    """The three contact states as a bar; returns how they are coloured."""
+    norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
+    bar = colour_bar(figure, ax, norm, STATE_COLOURS, "contact state (-)", **where)
+    bar.set_ticks([0, 1, 2], labels=STATES)
+    bar.ax.tick_params(length=0)
+    return norm
+
+
+def nice(number):
+    """The largest of 1, 2, 5 times a power of ten that is not above number."""
+    power = 10.0 ** np.floor(np.log10(number))
+    return float(max(k * power for k in (1, 2, 5) if k * power <= number * (1 + 1e-9)))
+
+
+def draw_polygons_3d(ax, corners, faces, bounds, edges=None, zoom=1.0):
+    """Polygons in a box with equal scales, seen from a corner; each in its colour."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces if edges is None else edges,
+                                         linewidths=0.3))
+    low, high = np.array(bounds[0::2]), np.array(bounds[1::2])
+    flat = high - low < 1e-9 * np.max(high - low)
+    room = 0.15 * flat * np.max(high - low)
+    low, high = low - room, high + room
+    for name, a, b in zip("xyz", low, high):
+        getattr(ax, f"set_{name}lim")(a, b)
+        getattr(ax, f"set_{name}label")(f"{name} (m)", labelpad=-3)
+        getattr(ax, f"{name}axis").set_major_locator(plt.MaxNLocator(3))
+        getattr(ax, f"{name}axis").set_pane_color((1, 1, 1, 0))
+        ax.tick_params(axis=name, pad=-2)
+    ax.set_box_aspect(high - low, zoom=zoom)
+    ax.set_proj_type("ortho")
+    ax.view_init(elev=22, azim=-58)
