@@ -1,27 +1,35 @@
 #!/usr/bin/env python3
 """Holds the documentation to what is true.
 
-    check_docs.py quotes ROOT              code in a ```cpp or ```xml block is literally in the file that the comment
-                                           before the block names (<!-- from PATH -->), and relative links lead somewhere
-    check_docs.py commands ROOT BINARY MPIEXEC
-                                           sprekk run, check and point in ```sh and ```console blocks end with
-                                           status 0, or N if "# exit N" follows; the lines below a command in a
-                                           ```console block are lines of what it prints
-    check_docs.py reference ROOT BINARY    xml/reference.md is what the binary prints
+    check_docs.py quotes ROOT              code in a ```cpp, ```xml or ```cmake block is literally in the file that the comment
+                                           before the block names (<!-- from PATH -->), relative links lead somewhere, and
+                                           the version is that of CMakeLists.txt
+    check_docs.py commands ROOT BINARY MPIEXEC PAGE
+                                           every command in a ```sh or ```console block of the page ends with status 0,
+                                           or N if "# exit N" follows; the lines below a command in a ```console block
+                                           are lines of what it prints. Blocks after <!-- not run: REASON --> are left
+                                           out, as are the commands that build
+    check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
+    check_docs.py doxygen ROOT FOLDER      docs/Doxyfile makes FOLDER/doxygen of the public headers without warnings
 
-Prints what is wrong; exit status 1 if anything is.
+Prints what is wrong; exit status 1 if anything is, 77 if a command could not be run since a program is missing.
 """
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-BLOCK = re.compile(r"^(?:<!-- from (?P<source>\S+) -->\n)?```(?P<kind>\w+)\n(?P<content>.*?)^```$",
+BLOCK = re.compile(r"^(?:<!-- (?:from (?P<source>\S+)|not run: (?P<reason>[^\n]+)) -->\n)?```(?P<kind>\w+)\n(?P<content>.*?)^```$",
                    re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:|#|mailto:)([^)#\s]+)[^)]*\)")
+
+
+class Skipped(str):
+    """What could not be tested."""
 
 
 def pages(root):
@@ -29,11 +37,19 @@ def pages(root):
 
 
 def check_quotes(root):
+    version = re.search(r"project\(Sprekk VERSION (\S+)", (root / "CMakeLists.txt").read_text())[1]
+    for name, words in (("CITATION.cff", f"version: {version}\n"), ("README.md", f'"Sprekk {version}"'),
+                        ("CHANGELOG.md", version)):
+        if words not in (root / name).read_text():
+            yield f"{name}: does not name the version, {version}"
     for page in pages(root):
         text = page.read_text()
+        fences = len(re.findall(r"^```", text, flags=re.MULTILINE))
+        if fences != 2 * len(BLOCK.findall(text)):
+            yield f"{page.relative_to(root)}: {fences} lines with ```, which make {len(BLOCK.findall(text))} blocks"
         for block in BLOCK.finditer(text):
             place = f"{page.relative_to(root)}:{text.count(chr(10), 0, block.start()) + 1}"
-            if block["kind"] not in ("cpp", "xml"):
+            if block["kind"] not in ("cpp", "xml", "cmake"):
                 continue
             if not block["source"]:
                 yield f"{place}: the block does not say from which file it is"
@@ -44,62 +60,109 @@ def check_quotes(root):
                 yield f"{page.relative_to(root)}: the link {link[1]} leads nowhere"
 
 
+# What ./sprekk does with these commands, without building first.
+LAUNCHER = """#!/usr/bin/env bash
+words=() mpi=()
+while (($#)); do
+  if [[ $1 == --ranks ]]; then mpi=({mpiexec} --quiet --oversubscribe --bind-to none -np "$2"); shift
+  else words+=("$1"); fi
+  shift
+done
+if [[ ${{words[0]}} == plot ]]; then exec {python} -B {root}/apps/plot "${{words[@]:1}}"; fi
+exec "${{mpi[@]}}" {binary} "${{words[@]}}"
+"""
+BUILDS = re.compile(r"\./sprekk (build|test|fuzz)\b")
+PLOT_PYTHON = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "python3"
+
+
+def prepare(folder, root, binary, mpiexec):
+    """Gives the folder what a user has: the scenes and pages, ./sprekk, and the program where a build puts it."""
+    for name in ("xml", "docs", "tests/data"):
+        shutil.copytree(root / name, folder / name)
+    launcher = folder / "sprekk"
+    launcher.write_text(LAUNCHER.format(**{name: shlex.quote(str(value)) for name, value in {
+        "mpiexec": mpiexec, "python": PLOT_PYTHON, "root": root, "binary": Path(binary).resolve()}.items()}))
+    launcher.chmod(0o755)
+    program = folder / "build/apps/sprekk/sprekk"
+    program.parent.mkdir(parents=True)
+    program.symlink_to(Path(binary).resolve())
+
+
 def commands(block):
-    """(command, lines that it prints) of each run of the program."""
+    """(command, lines that it prints) of each command in the block."""
     found = []
-    for line in block["content"].splitlines():
-        command = line[2:] if block["kind"] == "console" and line.startswith("$ ") else line
-        if block["kind"] == "console" and command == line:
-            if found:
-                found[-1][1].append(line)
-        else:
-            found.append((command, []))
-    return [c for c in found if re.match(r"\S*/sprekk (run|check|point)\b", c[0])]
+    for line in block["content"].replace("\\\n", "").splitlines():
+        if block["kind"] == "console" and not line.startswith("$ "):
+            found[-1][1].append(line)
+        elif line.strip() and not line.startswith("#"):
+            found.append((line.removeprefix("$ "), []))
+    return [c for c in found if not BUILDS.match(c[0])]
 
 
-def run(command, binary, mpiexec, folder):
-    words = shlex.split(command, comments=True)[1:]
-    launcher = []
-    if "--ranks" in words:
-        i = words.index("--ranks")
-        launcher = [mpiexec, "--oversubscribe", "--bind-to", "none", "-np", words[i + 1]]
-        del words[i:i + 2]
+def missing_program(command):
+    """What the command needs and this machine lacks, or None."""
+    if command.startswith("./sprekk plot"):
+        modules = "matplotlib, numpy, vtkmodules"
+        found = subprocess.run([PLOT_PYTHON, "-c", "import " + modules], stderr=subprocess.DEVNULL).returncode == 0
+        return None if found else f"one of {modules} for {PLOT_PYTHON}"
+    words = [word for word in shlex.split(command) if "=" not in word]
+    return None if "/" in words[0] or shutil.which(words[0]) else words[0]
+
+
+def run(command, folder):
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                    "OMP_NUM_THREADS": "1", "SPREKK_TERMINAL": "1"}
-    return subprocess.run([*launcher, binary, *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=60)
+    return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=60)
 
 
-def check_commands(root, binary, mpiexec):
+def check_commands(root, binary, mpiexec, page):
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("xml", "docs"):
-            (Path(folder) / name).symlink_to(root / name)
-        for page in pages(root):
-            for block in BLOCK.finditer(page.read_text()):
-                if block["kind"] not in ("sh", "console"):
+        prepare(Path(folder), root, binary, mpiexec)
+        for block in BLOCK.finditer((root / page).read_text()):
+            if block["kind"] not in ("sh", "console") or block["reason"]:
+                continue
+            for command, expected in commands(block):
+                if missing := missing_program(command):
+                    yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
                     continue
-                for command, expected in commands(block):
-                    done = run(command, binary, mpiexec, folder)
-                    status = re.search(r"# exit (\d)", command)
-                    if done.returncode != (int(status[1]) if status else 0):
-                        yield f"{page.name}: {command}: exit status {done.returncode}\n{done.stdout}"
-                    for line in expected:
-                        if line not in done.stdout.splitlines():
-                            yield f"{page.name}: {command}: does not print\n  {line}\nbut\n{done.stdout}"
+                done = run(command, folder)
+                status = re.search(r"# exit (\d)", command)
+                if done.returncode != (int(status[1]) if status else 0):
+                    yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout}"
+                for line in expected:
+                    if line not in done.stdout.splitlines():
+                        yield f"{page}: {command}: does not print\n  {line}\nbut\n{done.stdout}"
 
 
 def check_reference(root, binary):
-    printed = subprocess.run([binary, "reference"], stdout=subprocess.PIPE, text=True, check=True).stdout
-    if printed != (root / "xml" / "reference.md").read_text():
-        yield "xml/reference.md is out of date; write it anew with ./sprekk reference > xml/reference.md"
+    for command, path in (("reference", "docs/reference.md"), ("reference --schema", "docs/sprekk.rng"),
+                          ("materials", "docs/materials.md")):
+        printed = subprocess.run([binary, *command.split()], stdout=subprocess.PIPE, text=True, check=True).stdout
+        if printed != (root / path).read_text():
+            yield f"{path} is out of date; write it anew with ./sprekk {command} > {path}"
+
+
+def check_doxygen(root, folder):
+    if not shutil.which("doxygen"):
+        yield Skipped("not run, this machine lacks doxygen")
+        return
+    settings = (root / "docs/Doxyfile").read_text() + f'OUTPUT_DIRECTORY = "{folder}/doxygen"\n'
+    done = subprocess.run(["doxygen", "-"], cwd=root, input=settings, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                          text=True)
+    if done.returncode or done.stderr:
+        yield done.stderr
 
 
 def main():
     what, root, *rest = sys.argv[1:]
-    check = {"quotes": check_quotes, "commands": check_commands, "reference": check_reference}[what]
-    wrong = list(check(Path(root).resolve(), *rest))
-    print("\n".join(wrong))
-    sys.exit(1 if wrong else 0)
+    check = {"quotes": check_quotes, "commands": check_commands, "reference": check_reference,
+             "doxygen": check_doxygen}[what]
+    found = list(check(Path(root).resolve(), *rest))
+    print("\n".join(found))
+    wrong = any(not isinstance(message, Skipped) for message in found)
+    sys.exit(1 if wrong else 77 if found else 0)
 
 
 if __name__ == "__main__":

@@ -87,6 +87,7 @@ class ElasticFoundation final : public assembly::Module {
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     faces_->add_jacobian(*op_, state, J);
   }
+  bool holds_bodies() const override { return true; }
 
  private:
   ElasticFoundationParameters parameters_;

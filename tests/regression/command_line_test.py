@@ -3,7 +3,7 @@
 
 Every error must end the program on all ranks with status 1 and be told once, with the file, the place, the value and
 what is allowed."""
-from program import ProgramTest, main
+from program import ROOT, ProgramTest, main
 
 PUSH = "seed/push_2d.xml"
 MOVED = "Boundary conditions.moved.displacement"
@@ -57,9 +57,6 @@ class Errors(ProgramTest):
     def test_name_of_an_override(self):
         self.expect_error(self.scene(PUSH), [PUSH, '"tolerence"', 'Did you mean "tolerance"?'], "Solver.tolerence=1e-6")
 
-    def test_override_without_a_value(self):
-        self.expect_error(self.scene(PUSH), ["Solver.tolerance"], "Solver.tolerance")
-
     def test_wrong_type(self):
         self.expect_error(self.changed('type="double" value="1e-5"', 'type="string" value="soft"'),
                           ["changed.xml", "Sprekk > Materials > joint", '"tangential stiffness"', '"soft"', "unknown name"])
@@ -82,11 +79,51 @@ class Errors(ProgramTest):
         self.expect_error(self.scene(PUSH), ['"tolerence"', '"friction coefficient"'], "Solver.tolerence=1",
                           "Materials.joint.friction coefficient=-1")
 
+    def test_all_that_is_wrong_is_told_at_once(self):
+        path = self.folder / "wrong.xml"
+        text = (ROOT / "docs" / "shear_test.xml").read_text()
+        for old, new in (('value="0.25"', 'value="O.25"'),
+                         ('name="steps" type="int" value="20"', 'name="steps" type="integer" value="20"'),
+                         ('name="dilation angle" type="double" value="5 deg"', 'name="dilation angle" type="double" value="5 m"'),
+                         ('value="50 GPa"', 'value="50 GPaa"'),
+                         ('name="tolerance"', 'name="tolerence"'),
+                         ('<Parameter name="every" type="int" value="5"/>', '<Parameter name="vtu" type="bool" value="true"/><foo/>'),
+                         ('{2e-3*ramp(t), free}', '{2e-3*rampp(t), sin(y) +}'),
+                         ('{0, -5 MPa}', '{0, -5 MPa, 1}'),
+                         ('name="boundary" type="string" value="south"', 'name="boundary" type="string" value="suth"'),
+                         ('value="rough joint"/>', 'value="smooth joint"/>'),
+                         ('value="{0, 0.5}"', 'value="{0, 0.55}"')):
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1)
+        path.write_text(text)
+        _, err = self.call("check", path, "--set", "Time.end=1 m", "--set", "Time.end.x=1", expect=1)
+        lines = err.splitlines()
+        for words in (['"Time.end.x=1"', "is not a section"], ['"Poisson\'s ratio"', '"O.25"'], ['"steps"', 'type "integer"'],
+                      ['"dilation angle"', '"5 m"', '"rad"'], ['"Young\'s modulus"', 'Did you mean "GPa"?'],
+                      ['"tolerence"', 'Did you mean "tolerance"?'], ['"vtu"', "twice"], ["Output", "<foo>"],
+                      ['"displacement"[0]', '"rampp"', 'Did you mean "ramp"?'], ['"displacement"[1]', '"sin(y) +"'],
+                      ['confinement > "traction"', "3 values"], ['"suth"', 'Did you mean "south"?'], ['"smooth joint"'],
+                      ['"shear plane"', "on no mesh plane"], ['"end"', '"1 m"', '"day"']):
+            with self.subTest(words=words):
+                self.assertEqual(sum(all(word in line for word in words) for line in lines), 1, err)
+        self.assertEqual(len(lines), 15, err)
+
+    def test_all_conflicts_of_conditions_are_told(self):
+        side = "Boundary conditions.side."
+        _, err = self.call("check", ROOT / "docs" / "shear_test.xml", "--set", side + "boundary=west", "--set",
+                           side + "displacement={1 mm, 2 mm}", expect=1)
+        for component in "xy":
+            self.assertEqual(err.count(f'"floor" and "side" prescribe 0 and 0.00{component == "y" and 2 or 1} for component {component}'), 1, err)
+
     def test_wrong_material(self):
         self.expect_error(self.scene(PUSH), [PUSH, "Bulk", '"material"', '"rok"', '"rock"'], "Bulk.material=rok")
         self.expect_error(self.scene(PUSH), [PUSH, "Bulk", '"material"', '"joint"', '"rock"'], "Bulk.material=joint")
         self.expect_error(self.scene(PUSH), [PUSH, "fracture", '"material"', '"rock"', '"joint"'],
                           "Fractures.fracture.material=rock")
+
+    def test_gravity_without_density(self):
+        self.expect_error(self.scene(PUSH), [PUSH, "Materials", "rock", '"density": missing', '"gravity"'],
+                          "Bulk.gravity={0, -9.81}")
 
     def test_wrong_boundary(self):
         self.expect_error(self.scene(PUSH), [PUSH, "moved", '"boundary"', '"top"', '"north"'],
@@ -101,6 +138,11 @@ class Errors(ProgramTest):
             self.expect_error(self.scene(PUSH), [PUSH, '"fixed"', '"third"', "0.5", "(0, 0"],
                               "Boundary conditions.third.boundary=west", "Boundary conditions.third.displacement={0.5, 0}",
                               command=command)
+
+    def test_rock_that_nothing_holds(self):
+        for command in ("run", "check"):
+            self.expect_error(self.scene(PUSH), [PUSH, "nothing holds the rock", '"bulk"', "can move along (1, 0)", "periodic"],
+                              "Boundary conditions.fixed.displacement={free, 0}", MOVED + "={free, -1}", command=command)
 
     def test_unknown_function(self):
         self.expect_error(self.scene(PUSH), [PUSH, "moved", '"displacement"', "ramp"], MOVED + "={ramp(t), 0}")
@@ -162,6 +204,23 @@ class Commands(ProgramTest):
                      "Pa/m", "boundary", "maximum halvings"):
             self.assertIn(word, out)
         self.assertGreater(sum(line.startswith("|") for line in out.splitlines()), 40)
+
+    def test_mesh_info(self):
+        meshes = ROOT / "tests" / "data" / "meshes"
+        flat, _ = self.call("mesh-info", meshes / "x_order1_v41.msh", "--fractures", "f1,f2")
+        for line in ("cells         82 triangles of order 1", "nodes         65, 7 of them copies along fractures",
+                     'region        "rock": 82 cells, area 16', 'boundary      "south": 8 faces, length 4',
+                     'fracture      "f1": 4 faces, length 3.2', "tips          4 points", "intersections 1 points",
+                     "unknowns      130 displacements, 32 bubbles, 16 tractions"):
+            self.assertIn(line, flat.splitlines())
+        solid, _ = self.call("mesh-info", meshes / "triple_order2.msh", "--fractures", "f1,f2,f3", ranks=2)
+        for line in ("cells         120 tetrahedra of order 2", 'boundary      "top": 4 faces, area 4',
+                     'fracture      "f3": 8 faces, area 2.25', "tips          24 edges with 18 corners",
+                     "intersections 6 edges, which meet in 1 points", "unknowns      702 displacements, 144 bubbles, 72 tractions"):
+            self.assertEqual(solid.splitlines().count(line), 1, line)
+        hexahedra, _ = self.call("mesh-info", meshes / "hexahedra.msh", "--fractures", "f1,f2")
+        self.assertIn("32 hexahedra of order 1", hexahedra)
+        self.assertRegex(hexahedra, "quality       largest ratio of edges 1 in cell 0, smallest scaled Jacobian 1 in cell")
 
     def test_check(self):
         for name in (PUSH, "seed/immersed_3d.xml", "verification/crossing_3d.xml", "verification/uniaxial_2d.xml"):

@@ -27,6 +27,12 @@ class Results(ProgramTest):
             self.assertEqual(r["ranks"], ranks)
             self.assertEqual(r["mesh"]["cells"], 128)
             self.assertEqual(r["mesh"]["fracture_faces"], 12)
+            cells, faces = r["partition"]["cells"], r["partition"]["fracture_faces"]
+            self.assertEqual((cells["min"] + cells["max"], faces["min"] + faces["max"]), (256, 24) if ranks == 1 else (128, 12))
+            self.assertAlmostEqual(cells["imbalance"], cells["max"] / (128 / ranks))
+            self.assertAlmostEqual(faces["imbalance"], faces["max"] / (12 / ranks))
+            self.assertEqual(r["partition"]["cut_edges"] > 0, ranks > 1)
+            self.assertLessEqual(r["partition"]["separated_fracture_faces"], r["partition"]["cut_edges"])
             self.assertEqual([step["time"] for step in r["steps"]], [1, 2, 3, 4])
             for step in r["steps"]:
                 self.expect_step(step)

@@ -25,7 +25,7 @@ SOURCES = {".hpp", ".cpp", ".h"}
 
 SOLVER_HEADER = re.compile(r'\s*#\s*include\s*[<"]((?:NOX|Stratimikos|Belos|Teko|MueLu|Amesos2)[^>"]*)')
 HOST_ONLY = re.compile(
-    r"\bMPI_COMM_WORLD\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
+    r"\bMPI_COMM_WORLD\b|\bgetDefaultComm\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
 NOT_IN_KERNELS = re.compile(
     r"\bstd::(?:vector|map|unordered_map|set|string|cout|cerr|function)\b|\bnew\b|\b(?:malloc|printf)\s*\("
     r"|(?:\.|->)data\s*\(\s*\)")

@@ -1,0 +1,367 @@
+#!/usr/bin/env python3
+"""What is wrong with the input is told: bad_input_test.py PROGRAM ROOT MPIEXEC
+
+On 1 and on 3 ranks every bad input gives the same one message, which names the file, the place, the value and what is
+allowed, and the same exit status; nothing hangs or crashes."""
+import os
+import random
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+from program import ProgramTest, main
+
+PUSH = "seed/push_2d.xml"
+FRACTURE = '<ParameterList name="fractures"><ParameterList name="f1"/></ParameterList>'
+SQUARES = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+5
+1 1 "f1"
+1 2 "south"
+1 3 "north"
+1 5 "outer"
+2 4 "rock"
+$EndPhysicalNames
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+$EndNodes
+$Elements
+6
+10 3 2 4 1 1 2 5 4
+11 3 2 4 1 2 3 6 5
+20 1 2 1 1 2 5
+21 1 2 2 2 1 2
+22 1 2 3 3 4 5
+23 1 2 5 5 1 4
+$EndElements
+"""
+CUBES = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+1
+1 5 2 1 1 1 2 3 4 5 6 7 8
+$EndElements
+"""
+
+
+def replaced(text, *changes):
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+class BadInput(ProgramTest):
+    def refuse(self, words, *arguments, status=1, any_point=False):
+        """The message of `sprekk ARGUMENTS`, which is the same on 1 and 3 ranks, is one, and has all of these words.
+        `any_point`: of several points at which an expression fails, each number of ranks may name another."""
+        with ThreadPoolExecutor(2) as pool:
+            (out, err), other = pool.map(lambda ranks: self.call(*arguments, ranks=ranks, expect=status), (1, 3))
+        self.assertEqual(out, "")
+        hidden = (lambda text: re.sub(r"x = \(.*?\)", "", text)) if any_point else str
+        self.assertEqual(*map(hidden, ("".join(other), err)))
+        self.assertEqual(err.count("sprekk: "), 1, err)
+        self.assertTrue(err.startswith("sprekk: "), err)
+        for word in words:
+            self.assertIn(word, err)
+        for odd in (".;", "std::", "exception", "1 values", "-nan", "; Did"):
+            self.assertNotIn(odd, err)
+        return err
+
+    def scene_with(self, *changes, name=PUSH):
+        path = self.folder / "scene.xml"
+        path.write_text(replaced(self.scene(name).read_text(), *changes))
+        return path.name
+
+    def refuse_set(self, words, *overrides, any_point=False):
+        sets = [word for override in overrides for word in ("--set", override)]
+        return self.refuse([PUSH, *words], "check", self.scene(PUSH), *sets, any_point=any_point)
+
+    def refuse_mesh(self, words, content, fractures=FRACTURE, options=()):
+        """A scene on a mesh of this content (text, bytes, or None: none)."""
+        text = self.scene(PUSH).read_text()
+        begin, end = text.index('  <ParameterList name="Mesh">'), text.index('  <ParameterList name="Materials">')
+        text = (text[:begin] + '<ParameterList name="Mesh file"><Parameter name="path" type="string" value="a.msh"/>'
+                + fractures + "</ParameterList>\n" + text[end:])
+        (self.folder / "scene.xml").write_text(text.replace('name="fracture"', 'name="f1"'))
+        path = self.folder / "a.msh"
+        if isinstance(content, str):
+            content = content.encode()
+        if content is not None:
+            path.write_bytes(content)
+        return self.refuse(["scene.xml: ", *words], "check", "scene.xml", *options)
+
+
+class Meshes(BadInput):
+    def test_sound_one(self):
+        """Else the others would prove nothing."""
+        with self.assertRaises(AssertionError) as caught:
+            self.refuse_mesh([], SQUARES)
+        self.assertIn("scene.xml: no errors", str(caught.exception))
+
+    def test_files(self):
+        self.refuse_mesh(["a.msh: there is no such file"], None)
+        self.refuse_mesh(["a.msh: is empty"], "")
+        self.refuse_mesh(["a.msh: line 1: found ", "expected $MeshFormat"], random.Random(1).randbytes(3000))
+        (self.folder / "a.msh").unlink()
+        (self.folder / "a.msh").mkdir()
+        self.refuse_mesh(["a.msh: is a folder, expected a gmsh mesh"], None)
+        self.refuse(["/dev/zero: is a device"], "mesh-info", "/dev/zero")
+        (self.folder / "a.msh").rmdir()
+        os.mkfifo(self.folder / "a.msh")
+        self.refuse_mesh(["a.msh: is a device, pipe or socket"], None)
+
+    def test_unreadable_file(self):
+        if os.geteuid() == 0:
+            self.skipTest("root reads everything")
+        (self.folder / "a.msh").write_text(SQUARES)
+        (self.folder / "a.msh").chmod(0)
+        self.refuse_mesh(["a.msh: cannot be read"], None)
+
+    def test_truncated(self):
+        meshes = self.scene("../tests/data/meshes")
+        for name in ("x_order1_v22", "x_order1_v22_binary", "x_order1_v41", "x_order1_v41_binary"):
+            whole = (meshes / f"{name}.msh").read_bytes()
+            for part in (0.4, 0.9):
+                self.refuse_mesh(["a.msh: $"], whole[:int(part * len(whole))])
+
+    def test_versions(self):
+        for version in ("1.0", "4.0", "3", "99"):
+            self.refuse_mesh(["a.msh: $MeshFormat, line 2", f"format {version}", "2.2 and 4.1"],
+                             replaced(SQUARES, ("2.2 0 8", version + " 0 8")))
+        self.refuse_mesh(["format 1;", "2.2 and 4.1"], "$NOD\n1\n1 0 0 0\n$ENDNOD\n")
+
+    def test_huge(self):
+        self.refuse_mesh(["$Nodes, line 13: the number of nodes is 1000000000, which the rest of the file"],
+                         replaced(SQUARES, ("\n6\n1 0 0 0", "\n1000000000\n1 0 0 0")))
+        (self.folder / "a.msh").write_bytes(b"x")
+        os.truncate(self.folder / "a.msh", 1 << 40)  # sparse
+        self.refuse_mesh(["a.msh: line 1: found \"x??", "expected $MeshFormat"], None)
+        (self.folder / "a.msh").write_text(SQUARES)
+        os.truncate(self.folder / "a.msh", 1 << 43)
+        self.refuse_mesh([f"a.msh: has {1 << 43} bytes", "the memory of this machine"], None)
+
+    def test_elements(self):
+        cell = "10 3 2 4 1 1 2 5 4"
+        self.refuse_mesh(["element 10: is a 6-node prism", "Sprekk reads"], replaced(SQUARES, (cell, "10 6 2 4 1 1 2 5 4")))
+        self.refuse_mesh(["element 10: is a 5-node pyramid"], replaced(SQUARES, (cell, "10 7 2 4 1 1 2 5 4")))
+        self.refuse_mesh(["element 10 is a 4-node quadrilateral and element 11 a 3-node triangle", "one shape"],
+                         replaced(SQUARES, ("11 3 2 4 1 2 3 6 5", "11 2 2 4 1 2 3 6")))
+        self.refuse_mesh(["element 10 occurs twice"], replaced(SQUARES, ("11 3 2 4", "10 3 2 4")))
+        self.refuse_mesh(["$Nodes: node 5 occurs twice"], replaced(SQUARES, ("\n4 0 1 0", "\n5 0 1 0")))
+        self.refuse_mesh(["element 10 has node 9, which is not in $Nodes"], replaced(SQUARES, (cell, "10 3 2 4 1 1 2 9 4")))
+        for x in ("nan", "inf", "1e+200"):
+            self.refuse_mesh(["$Nodes, line 18: node 5: x is ", x, "must be a number"],
+                             replaced(SQUARES, ("\n5 1 1 0", f"\n5 {x} 1 0")))
+        self.refuse_mesh(["element 10 at (0, 0, 0) has no volume"],
+                         replaced(SQUARES, ("\n4 0 1 0\n5 1 1 0", "\n4 3 0 0\n5 4 0 0")))
+        self.refuse_mesh(["element 10 at (0, 0, 0) is twisted"], replaced(SQUARES, (cell, "10 3 2 4 1 1 5 2 4")))
+        self.refuse_mesh(["physical group 4: its name \"r?ck\" is not UTF-8"],
+                         SQUARES.replace("rock", "r\xf8ck").encode("latin-1"))
+
+    def test_inside_out_cells_are_mirrored(self):
+        (self.folder / "a.msh").write_text(replaced(CUBES, ("1 2 3 4 5 6 7 8", "5 6 7 8 1 2 3 4")))
+        mirrored, _ = self.call("mesh-info", "a.msh")
+        (self.folder / "a.msh").write_text(CUBES)
+        self.assertEqual(self.call("mesh-info", "a.msh")[0], mirrored)
+
+    def test_conformity(self):
+        hanging = replaced(SQUARES, ("\n6\n1 0 0 0", "\n8\n7 1 .5 0\n8 2 .5 0\n1 0 0 0"), ("\n6\n10", "\n6\n12 3 2 4 1 7 8 6 5\n10"),
+                           ("11 3 2 4 1 2 3 6 5", "11 3 2 4 1 2 3 8 7"), ("20 1 2 1 1 2 5\n", ""))
+        self.refuse_mesh(["elements 12 and 10 touch at (1, 0.5, 0)", "without sharing nodes"], hanging, fractures="")
+        apart = replaced(SQUARES, ("\n6\n1 0 0 0", "\n8\n7 1 0 0\n8 1 1 0\n1 0 0 0"), ("11 3 2 4 1 2 3 6 5", "11 3 2 4 1 7 3 6 8"))
+        self.refuse_mesh(["elements 10 and 11 touch at (1, 0.5, 0) without sharing nodes"], apart)
+        third = replaced(SQUARES, ("\n6\n1 0 0 0", "\n8\n7 3 0 0\n8 3 1 0\n1 0 0 0"), ("\n6\n10", "\n7\n12 3 2 4 1 2 7 8 5\n10"))
+        self.refuse_mesh(["elements 12, 10 and 11 share the face at (1, 0.5, 0); at most two may"], third)
+        twice = replaced(SQUARES, ("\n6\n10", "\n7\n12 3 2 4 1 1 2 5 4\n10"))
+        self.refuse_mesh(["elements 12, 10 and 11 share the face"], twice)
+
+    def test_other_diagonal(self):
+        """Tetrahedra on both sides of a square that is cut along different diagonals: no node hangs."""
+        nodes = "\n7\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 .5 1\n6 .5 .5 -1\n7 9 9 9\n"
+        below = {"same": ("1 3 2 6", "1 4 3 6"), "other": ("1 4 2 6", "2 4 3 6")}
+        for name, (a, b) in below.items():
+            (self.folder / "a.msh").write_text(
+                f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes{nodes}$EndNodes\n$Elements\n4\n1 4 0 1 2 3 5\n2 4 0 1 3 4 5\n"
+                f"3 4 0 {a}\n4 4 0 {b}\n$EndElements\n")
+            if name == "same":
+                self.call("mesh-info", "a.msh")
+            else:
+                self.refuse(["a.msh: elements ", "touch at", "without sharing nodes"], "mesh-info", "a.msh")
+
+    def test_fractures(self):
+        named = FRACTURE.replace("f1", "F-1")
+        self.refuse_mesh(['fracture "F-1": unknown', '"f1", "south"', 'Did you mean "f1"?'], SQUARES, named)
+        self.refuse_mesh(['element 23 at (0, 0.5, 0) of the fracture "outer" lies on the boundary'], SQUARES,
+                         FRACTURE.replace("f1", "outer").replace("/></", '/><ParameterList name="f1"/></'))
+        self.refuse_mesh(['element 20 at (1, 0, 0) of the physical group "f1" is no face of a cell'],
+                         replaced(SQUARES, ("20 1 2 1 1 2 5", "20 1 2 1 1 2 4")))
+        outside = replaced(SQUARES, ("\n6\n1 0 0 0", "\n7\n7 1 2 0\n1 0 0 0"), ("20 1 2 1 1 2 5", "20 1 2 1 1 5 7"))
+        self.refuse_mesh(['element 20 at (1, 1, 0) of the physical group "f1" is no face of a cell'], outside)
+        self.refuse_mesh(['element 20 at (1, 0.5, 0) of the physical group "f1" lies inside', 'list "f1" among the fractures'],
+                         SQUARES, fractures="")
+
+    def test_names_that_the_mesh_lacks(self):
+        moved = "Boundary conditions.moved.boundary"
+        self.refuse_mesh(['moved > "boundary"', '"nort"', '"north"', 'Did you mean "north"?'], SQUARES,
+                         options=["--set", moved + "=nort"])
+        self.refuse_mesh(['Regions > "rok"', 'Did you mean "rock"?'], SQUARES, options=["--set", "Regions.rok.material=rock"])
+        self.refuse_mesh(['Fractures > "f2"', 'Did you mean "f1"?'], SQUARES, options=["--set", "Fractures.f2.material=joint"])
+
+
+class Scenes(BadInput):
+    def test_files(self):
+        self.refuse(["absent.xml: there is no such file"], "run", "absent.xml")
+        self.refuse([".: is a folder"], "run", ".")
+        (self.folder / "a.xml").write_text("")
+        self.refuse(["a.xml: is empty"], "run", "a.xml")
+        (self.folder / "a.xml").write_text(self.scene(PUSH).read_text()[:600])
+        self.refuse(["a.xml: not well-formed XML: line "], "run", "a.xml")
+        (self.folder / "a.xml").write_bytes(random.Random(2).randbytes(3000))
+        self.refuse(["a.xml: line 1: byte 0x", "not UTF-8"], "run", "a.xml")
+        os.truncate(self.folder / "a.xml", 1 << 40)
+        self.refuse(["a.xml: has 1099511627776 bytes; an XML file may have"], "run", "a.xml")
+        self.refuse(["/dev/zero: is a device"], "run", "/dev/zero")
+        self.assertFalse((self.folder / "output").exists())
+
+    def test_encodings(self):
+        text = self.scene(PUSH).read_text().replace('"rock"', '"r\xf8ck"')
+        path = self.folder / "a.xml"
+        for encoding in ("utf-8", "utf-8-sig"):
+            path.write_bytes(text.encode(encoding))
+            self.call("check", "a.xml")
+        path.write_bytes(text.encode("latin-1"))
+        self.refuse(["a.xml: line 16: byte 0xf8 is not UTF-8"], "check", "a.xml")
+        path.write_bytes(text.encode("utf-16"))
+        self.refuse(["a.xml: line 1: byte 0xff is not UTF-8"], "check", "a.xml")
+        path.write_text(text.replace("\xf8", "&#248;"))
+        self.refuse(["a.xml: line 16: has the character reference &#248;"], "check", "a.xml")
+        path.write_text(text.replace("\xf8", "&oslash;"))
+        self.refuse(["a.xml: not well-formed XML: line 16", "undefined entity"], "check", "a.xml")
+
+    def test_misspelt_entry_is_told_once(self):
+        for old, new in (("displacement", "displacment"), ("friction coefficient", "friction coeficient"), ("shear modulus", "sheer modulus")):
+            text = self.scene(PUSH).read_text().replace(f'name="{old}"', f'name="{new}"', 1)
+            (self.folder / "a.xml").write_text(text)
+            err = self.refuse([f'"{new}": unknown. Did you mean "{old}"?'], "check", "a.xml")
+            self.assertEqual(err.count("\n"), 1, err)
+
+    def test_types_and_lengths(self):
+        moved = "Boundary conditions.moved.displacement"
+        self.refuse_set(['"cells": is the array {2, 2.5}, expected integers'], "Mesh.cells={2, 2.5}")
+        self.refuse_set(['"steps": is the string "many", expected an integer'], "Time.steps=many")
+        self.refuse_set(["Boundary conditions > moved > \"displacement\": has 1 value, must have 2"], moved + "={0}")
+        self.refuse_set(["Bulk > \"body force\": has 3 values, must have 2"], "Bulk.body force={0, 0, 0}")
+        self.refuse_set(["cells", "has 1 component", "needs 2"], "Mesh.cells={2}")
+        self.refuse_set(["cells", "{2000000000, 2000000000}", "may make"], "Mesh.cells={2000000000, 2000000000}")
+        self.refuse([': missing; it is required: '], "check", self.scene_with(('<Parameter name="boundary" type="string" value="north"/>', "")))
+        self.refuse(["scene.xml", '"end"', '"nan"', "not a number"], "check",
+                    self.scene_with(('<Parameter name="end" type="double" value="1"/>', '<Parameter name="end" type="double" value="nan"/>')))
+
+    def test_tables(self):
+        table = ["Tables.ramp.arguments={0, 1}", "Tables.ramp.values={0, 1}"]
+        self.refuse_set(["Tables > ramp: has 2 arguments but 1 value"], table[0], "Tables.ramp.values={0}")
+        self.refuse_set(["Tables > ramp", "increase strictly", "argument 1 is 0"], "Tables.ramp.arguments={0, 0}", table[1])
+        for value in ("nan", "inf"):
+            xml = self.scene_with(("</ParameterList>\n</ParameterList>", f'''</ParameterList>
+              <ParameterList name="Tables"><ParameterList name="ramp">
+              <Parameter name="arguments" type="Array(double)" value="{{0, 1}}"/>
+              <Parameter name="values" type="Array(double)" value="{{0, {value}}}"/>
+              </ParameterList></ParameterList></ParameterList>'''))
+            self.refuse(["Sprekk > Tables > ramp", f'"{value}"', "not a number"], "check", xml)
+        self.refuse_set(['moved > "displacement"[0]: "ramp(t+1)" at x = (', 't = 1: table "ramp": argument 2 is outside of [0, 1]'],
+                        "Boundary conditions.moved.displacement={ramp(t+1), 0}", *table, any_point=True)
+        self.refuse_set(['"rmp(t)": unknown name "rmp" at position 0. Did you mean "ramp"? Allowed are'],
+                        "Boundary conditions.moved.displacement={rmp(t), 0}", *table)
+
+    def test_expressions_that_become_nan(self):
+        self.refuse_set(['moved > "displacement"[1]: "0/(t-1)" at x = (', "1, 0), t = 1: is nan, must be finite"],
+                        "Boundary conditions.moved.displacement={0, 0/(t-1)}", any_point=True)
+        self.refuse_set(['moved > "displacement"[1]: "sqrt(x-0.3)" at x = (0, 1, 0), t = 1: is nan, must be finite'],
+                        "Boundary conditions.moved.displacement={0, sqrt(x-0.3)}")
+        self.refuse_set(['Bulk > "body force"[0]: "sqrt(-1-t)" at x = (0', "t = 1: is nan, must be finite"],
+                        "Bulk.body force={sqrt(-1-t), 0}", any_point=True)
+        self.refuse_set(['friction coefficient', "x-5", "must be at least 0"], "Materials.joint.friction coefficient=x-5",
+                        "Mesh.cells={1, 2}")
+
+
+class Outputs(BadInput):
+    def test_directory(self):
+        (self.folder / "file").write_text("")
+        for path in ("file", "file/below", "/dev/null/below"):
+            self.refuse([f"{path}: cannot be made a directory: "], "run", self.scene(PUSH), "--output", path)
+
+    def full(self, name, *options, ranks):
+        """A run for which the file with this name lies on a full disk."""
+        (self.folder / "out" / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.folder / "out" / (name + ".part")).symlink_to("/dev/full")
+        out, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Time.steps=3", *options, ranks=ranks, expect=1)
+        self.assertEqual(out, "")
+        self.assertEqual(err, f"sprekk: out/{name}: cannot be written: No space left on device\n")
+
+    def test_full_disk(self):
+        for ranks in (1, 3):
+            self.full("results.json", ranks=ranks)
+            self.full("effective_input.xml", ranks=ranks)
+            self.full(f"bulk/bulk_0001_{ranks - 1}.vtu", ranks=ranks)  # in the second step
+            results = self.results()
+            self.assertEqual(results["status"], "failed")
+            self.assertIn("No space left", results["reason"])
+            self.assertEqual(len(results["steps"]), 2)
+            self.assertEqual((self.folder / "out" / "bulk.pvd").read_text().count("<DataSet"), 1)
+            self.assertEqual(list(self.folder.glob("out/**/*.part")), [])
+
+    def test_earlier_results_do_not_pass_for_those_of_a_failed_run(self):
+        for ranks in (1, 3):
+            for wrong, words in (("Bulk.material=rok", '"rok"'), ("Bulk.body force={0, sqrt(-1-t)}", "sqrt(-1-t)")):
+                self.assertEqual(self.run_scene(PUSH, ranks=ranks)["status"], "completed")
+                results = self.run_scene(PUSH, wrong, ranks=ranks, expect=1)
+                self.assertEqual((results["status"], results["steps"]), ("failed", []))
+                self.assertIn(words, results["reason"])
+            self.call("run", self.scene(PUSH), "--output", "new", "--set", "Bulk.material=rok", ranks=ranks, expect=1)
+            self.assertFalse((self.folder / "new").exists())
+        self.run_scene("gmsh/crossing.xml", "Mesh file.path=absent.msh", output="new", expect=1)
+        self.assertIn("absent.msh: there is no such file", self.results("new")["reason"])
+
+    def test_failed_step_is_told_on_standard_error(self):
+        limits = ["--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0"]
+        for ranks in (1, 3):
+            out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", *limits, ranks=ranks, expect=3)
+            self.assertEqual(out, "")
+            self.assertEqual(err.count("no convergence in 1 iterations"), 1, err)
+
+
+class CommandLine(BadInput):
+    def test_status_2(self):
+        scene = self.scene(PUSH)
+        self.refuse(['"foo" is not of the form Path.To.Entry=value'], "check", scene, "--set", "foo", status=2)
+        self.refuse(['"=3" is not of the form'], "check", scene, "--set", "=3", status=2)
+        self.refuse(["--sett"], "run", scene, "--sett", "a=1", status=2)
+        self.refuse(["scene"], "run", status=2)
+
+    def test_missing_files_are_wrong_input(self):
+        for command in ("run", "check", "point", "mesh-info"):
+            self.refuse(["absent: there is no such file"], command, "absent")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""The launcher ./sprekk: launcher_test.py PROGRAM ROOT MPIEXEC
+
+A copy of it, where building is replaced: words go to the program, statuses come back, wrong words are refused."""
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import program
+from program import ROOT, ProgramTest, main
+
+PUSH = "xml/seed/push_2d.xml"
+STUBS = {"dpkg-query": 'for package in "${@:4}"; do printf "installed:%s " "$package"; done',
+         "cmake": 'touch "$4/build.ninja"',
+         "ninja": 'echo "[1/1] $*"; [[ ! -e broken ]] || { echo "FAILED: model.o"; exit 1; }'}
+
+
+class Launcher(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        shutil.copy(ROOT / "sprekk", self.folder)
+        shutil.copy(ROOT / "CMakeLists.txt", self.folder)
+        shutil.copytree(ROOT / "xml" / "seed", self.folder / "xml" / "seed")
+        binary = self.folder / "build/apps/sprekk/sprekk"
+        binary.parent.mkdir(parents=True)
+        binary.symlink_to(program.PROGRAM)
+        for name, content in STUBS.items():
+            stub = self.folder / "stubs" / name
+            stub.parent.mkdir(exist_ok=True)
+            stub.write_text("#!/usr/bin/env bash\n" + content + "\n")
+            stub.chmod(0o755)
+
+    def launch(self, *words, expect=0):
+        path = os.pathsep.join([str(self.folder / "stubs"), str(Path(program.MPIEXEC).parent), os.environ["PATH"]])
+        done = subprocess.run(["timeout", "60", "./sprekk", *words], cwd=self.folder, env={**os.environ, "PATH": path},
+                              capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, expect, f"{words}\n{done.stdout}{done.stderr}")
+        return done.stdout, done.stderr
+
+    def test_run_on_one_rank_and_on_several(self):
+        for words, ranks in ((["--output", "out", "--set", "Time.steps=2"], 1),
+                             (["--ranks", "2", "--output=out", "--set=Time.steps=2"], 2),
+                             (["--ranks=3", "--output", "out", "--set", "Time.steps=2"], 3)):
+            self.launch("run", PUSH, *words)
+            results = self.results()
+            self.assertEqual((results["status"], results["ranks"], len(results["steps"])), ("completed", ranks, 2))
+
+    def test_statuses_of_the_program_come_back(self):
+        for ranks in ("1", "3"):
+            _, err = self.launch("run", PUSH, "--ranks", ranks, "--set", "Bulk.material=rok", expect=1)
+            self.assertIn('"rok"', err)
+            self.launch("run", PUSH, "--ranks", ranks, "--set=Time", expect=2)
+            self.launch("run", PUSH, "--ranks", ranks, "--set", "Solver.maximum iterations=1", "--set",
+                        "Solver.tolerance=1e-300", "--set", "Time.maximum halvings=0", expect=3)
+
+    def test_words_that_are_refused(self):
+        for words in ([], ["walk"], ["run"], ["run", PUSH, PUSH], ["run", PUSH, "--ranks"], ["run", PUSH, "--ranks", "0"],
+                      ["run", PUSH, "--ranks", "two"], ["run", PUSH, "--rank", "2"], ["check", PUSH, "--ranks", "2"],
+                      ["fuzz", "many"], ["fuzz", "1", "2"]):
+            with self.subTest(words=words):
+                out, err = self.launch(*words, expect=2)
+                self.assertEqual(out, "")
+                self.assertTrue(err)
+        self.assertIn("absent.xml: there is no such file", self.launch("run", "absent.xml", expect=1)[1])
+        self.assertFalse((self.folder / "build/build.log").exists())  # none of this builds
+
+    def test_help_names_every_command(self):
+        out, _ = self.launch("--help")
+        commands = re.findall(r"^  ([a-z| -]+)\)", (ROOT / "sprekk").read_text().split("\ncase ")[-1], re.MULTILINE)
+        for command in (word.strip() for line in commands for word in line.split("|")):
+            if command not in ("-h", "help"):
+                self.assertIn(command, out)
+        self.assertEqual(self.launch("run", "--help")[0], out)
+
+    def test_version_is_that_of_the_program(self):
+        self.assertEqual(self.launch("--version")[0], self.call("--version")[0])
+
+    def test_build_that_fails(self):
+        (self.folder / "broken").touch()
+        out, err = self.launch("check", PUSH, expect=1)
+        self.assertEqual(out, "")
+        self.assertIn("FAILED: model.o", err)
+        self.assertIn("the build failed", err)
+
+
+if __name__ == "__main__":
+    main()

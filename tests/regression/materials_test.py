@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""The material library: materials_test.py PROGRAM ROOT MPIEXEC"""
+import math
+import re
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from program import ProgramTest, main
+
+PUSH = "seed/push_2d.xml"
+ROCK, JOINT = "Bulk.material=", "Fractures.fracture.material="
+
+
+def told(results):
+    """What does not depend on the clock, the folder or the materials' names."""
+    return {key: results[key] for key in ("status", "steps")}
+
+
+class Materials(ProgramTest):
+    def library(self, kind):
+        """{name: {entry: value}}, from the printed tables."""
+        sets = {}
+        for line in self.call("materials")[0].splitlines():
+            cells = [cell.strip() for cell in line.split("|")[1:-1]]
+            if len(cells) == 4 and cells[1] == kind:
+                self.assertGreater(len(cells[3]), 20, f"{cells[0]} has no source")
+                sets[cells[0]] = {name: float(value) for name, value in (item.rsplit(" ", 1) for item in cells[2].split(", "))}
+        return sets
+
+    def entries_of(self, path):
+        """{material: {entry: text}} of a scene file."""
+        materials = ElementTree.parse(path).getroot().find("ParameterList[@name='Materials']")
+        return {m.get("name"): {p.get("name"): p.get("value") for p in m} for m in materials}
+
+    def test_every_set_is_accepted(self):
+        for kind, place in (("elastic", ROCK), ("joint", JOINT)):
+            sets = self.library(kind)
+            self.assertGreaterEqual(len(sets), 8)
+            for name in sets:
+                with self.subTest(name=name):
+                    self.call("check", self.scene(PUSH), "--set", place + name)
+
+    def test_rocks_are_rocks(self):
+        """Densities, and speeds of compression waves, as rocks have them."""
+        for name, rock in self.library("elastic").items():
+            if name == "Wollmann rock":
+                continue
+            E, nu, G, K = (rock.get(n) for n in ("Young's modulus", "Poisson's ratio", "shear modulus", "bulk modulus"))
+            if E:
+                G, K = E / (2 * (1 + nu)), E / (3 * (1 - 2 * nu))
+            elif K is None:
+                K = rock["Lame's first parameter"] + 2 * G / 3
+            with self.subTest(name=name):
+                self.assertTrue(2000 <= rock["density"] <= 3300, rock)
+                self.assertTrue(1500 <= math.sqrt((K + 4 * G / 3) / rock["density"]) <= 7500, rock)
+
+    def test_values_against_other_forms_of_their_sources(self):
+        rocks = self.library("elastic")
+        granite = rocks["granite"]  # measured as wave speeds, 3700 and 2353 m/s
+        self.assertAlmostEqual(math.sqrt((granite["Lame's first parameter"] + 2 * granite["shear modulus"]) / granite["density"]), 3700, delta=0.1)
+        self.assertAlmostEqual(math.sqrt(granite["shear modulus"] / granite["density"]), 2353, delta=0.1)
+        K, G = rocks["claystone"]["bulk modulus"], rocks["claystone"]["shear modulus"]  # the source has E and nu, too
+        self.assertAlmostEqual(9 * K * G / (3 * K + G), 6.1065e9, delta=1e5)
+        self.assertAlmostEqual((3 * K - 2 * G) / (6 * K + 2 * G), 0.3275, delta=1e-6)
+        self.assertAlmostEqual(rocks["tonalite"]["Young's modulus"], 3.0e6 * 6894.757, delta=0.05e9)  # psi
+        self.assertAlmostEqual(rocks["limestone"]["density"], 144 * 0.45359237 / 0.3048**3, delta=0.5)  # pounds per cubic foot
+
+    def test_a_name_equals_the_values_written_out(self):
+        named = self.run_scene(PUSH, ROCK + "granite", JOINT + "granite joint", output="named")
+        written = self.run_scene(PUSH, "Materials.rock.shear modulus=14854721950",
+                                 "Materials.rock.Lame's first parameter=7020826106", "Materials.joint.friction coefficient=0.6",
+                                 "Materials.joint.tangential stiffness=infinite", output="written")
+        other = self.run_scene(PUSH, output="other")
+        self.assertEqual(told(named), told(written))
+        self.assertNotEqual(told(named), told(other))
+
+    def test_effective_input_has_the_set_in_full(self):
+        first = self.run_scene(PUSH, ROCK + "claystone", JOINT + "claystone fault", output="first")
+        entries = self.entries_of(self.folder / "first" / "effective_input.xml")
+        self.assertEqual(set(entries), {"rock", "joint", "claystone", "claystone fault"})  # used or defined, no others
+        self.assertEqual(float(entries["claystone"]["bulk modulus"]), 5.9e9)
+        self.assertEqual(float(entries["claystone fault"]["initial aperture"]), 1e-5)
+        self.assertIn("DECOVALEX", entries["claystone"]["source"])
+        again = self.run_scene(str(self.folder / "first" / "effective_input.xml"), output="again")
+        self.assertEqual(told(first), told(again))
+
+    def test_the_scenes_own_material_wins(self):
+        own = self.scene(PUSH).read_text().replace('"rock"', '"granite"')
+        (self.folder / "own.xml").write_text(own)
+        results = self.run_scene(str(self.folder / "own.xml"))
+        self.assertEqual(told(results), told(self.run_scene(PUSH, output="plain")))
+        self.assertEqual(float(self.entries_of(self.folder / "out" / "effective_input.xml")["granite"]["shear modulus"]), 1e6)
+
+    def test_a_point_takes_a_joint_of_the_library(self):
+        scene = sorted((self.scene("point")).glob("*.xml"))[0]
+        self.assertGreater(len(self.call("point", scene, "--set", "Point.material=greywacke joint")[0].splitlines()), 1)
+
+    def test_wrong_names(self):
+        for override, words in (
+                (ROCK + "granit", ['Bulk > "material"', '"granit"', "elastic", '"rock"', "library", '"gneiss"', 'Did you mean "granite"?']),
+                (JOINT + "granit joint", ['Fractures > fracture > "material"', '"joint"', '"Byerlee joint"', 'Did you mean "granite joint"?']),
+                (JOINT + "granite", ['"granite"', "must be the name of a joint material", '"joint"', '"granite joint"'])):
+            with self.subTest(override=override):
+                _, err = self.call("check", self.scene(PUSH), "--set", override, expect=1)
+                for word in words:
+                    self.assertIn(word, err)
+                self.assertIsNone(re.search(r'library:.*"(rock|joint)"', err), err)
+
+
+if __name__ == "__main__":
+    main()

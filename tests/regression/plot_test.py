@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""Pictures of runs and of points: plot_test.py PROGRAM ROOT MPIEXEC
+
+Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
+import contextlib
+import importlib.util
+import io
+import sys
+from pathlib import Path
+
+from program import ROOT, ProgramTest, main
+
+MISSING = [name for name in ("matplotlib", "numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
+if MISSING:
+    print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
+    sys.exit(77)
+
+sys.path.insert(0, str(ROOT / "apps" / "plot"))
+spec = importlib.util.spec_from_file_location("sprekk_plot", ROOT / "apps" / "plot" / "__main__.py")
+plot = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(plot)
+
+import bulk  # noqa: E402
+import fractures  # noqa: E402
+import loops  # noqa: E402
+import numpy as np  # noqa: E402
+import read  # noqa: E402
+import style  # noqa: E402
+
+
+class PlotTest(ProgramTest):
+    def tearDown(self):
+        style.plt.close("all")
+
+    def draw(self, *words, expect=0):
+        """Standard output and error of the command."""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            self.assertEqual(plot.main(list(map(str, words))), expect, err.getvalue())
+        return out.getvalue(), err.getvalue()
+
+
+class Pictures(PlotTest):
+    def csv(self, scene, *overrides):
+        path = self.folder / "point.csv"
+        path.write_text(self.call("point", self.scene(scene), *(w for o in overrides for w in ("--set", o)))[0])
+        return path
+
+    def figures(self, directory, *words):
+        """The figures of a run by name."""
+        return dict(plot.of_run(self.folder / directory, plot.arguments(["-", *words])))
+
+    def expect_pictures(self, names):
+        for name in names:
+            picture = self.folder / name
+            self.assertTrue(picture.is_file(), name)
+            pixels = style.plt.imread(picture)[:, :, :3].reshape(-1, 3)
+            self.assertGreater(len(np.unique(np.round(pixels * 255).astype(int), axis=0)), 50, name)
+            ink = np.mean(np.any(pixels < 0.99, axis=1))
+            self.assertTrue(0.005 < ink < 0.95, f"{name}: {ink}")
+
+    def expect_labels(self, figure, *wanted):
+        axes = figure.axes
+        labels = [label for ax in axes for label in (ax.get_xlabel(), ax.get_ylabel()) if label]
+        for words in wanted:
+            self.assertTrue(any(words in label for label in labels), f"{words} is not in {labels}")
+
+    def test_point(self):
+        path = self.csv("point/cyclic_shear.xml", "Time.steps=80")
+        out, _ = self.draw(path)
+        self.assertEqual(out.strip(), str(path.with_suffix(".png")))
+        self.expect_pictures(["point.png"])
+        (name, figure), = plot.of_csv(path)
+        self.assertEqual(name, "point")
+        self.expect_labels(figure, "tangential jump (mm)", "shear traction (Pa)", "normal traction (Pa)")
+        x, y = figure.axes[0].lines[0].get_data()
+        self.assertEqual(len(x), 80)
+        self.assertAlmostEqual(max(y), 0.18, 12)
+        self.assertAlmostEqual(x[-1], 320, 9)  # mm
+
+    def test_point_in_3d_of_many_steps(self):
+        (_, figure), = plot.of_csv(self.csv("point/turning_shear.xml"))
+        self.expect_labels(figure, "t1 (mm)", "t2 (mm)")
+        self.assertEqual(figure.axes[2].get_aspect(), 1)
+
+    def test_plane_run(self):
+        self.run_scene("verification/crossing_2d.xml")
+        out, _ = self.draw(self.folder / "out")
+        names = ["bulk.png", "fractures.png", "loops.png", "convergence.png"]
+        self.assertEqual([Path(line).name for line in out.splitlines()], names)
+        self.expect_pictures("out/" + name for name in names)
+        made = self.figures("out")
+        self.expect_labels(made["bulk"], "x (m)", "y (m)", "displacement (", "von Mises stress (", "largest compressive")
+        self.expect_labels(made["fractures"], "arc length (m)", "tangential jump (mm)", "opening (mm)", "traction (Pa)")
+        self.expect_labels(made["loops"], "mean tangential jump (", "mean normal traction (Pa)")
+        self.expect_labels(made["convergence"], "Newton iterations (-)", "relative residual (-)")
+        titles = [ax.get_title(loc="left") for ax in made["fractures"].axes]
+        self.assertEqual([t for t in titles if t], ["flat", "steep"])
+
+    def test_run_in_3d_on_two_ranks(self):
+        self.run_scene("verification/crossing_3d.xml", ranks=2)
+        made = self.figures("out")
+        self.expect_labels(made["bulk"], "displacement (", "von Mises stress (")
+        self.expect_labels(made["fractures"], "slip (", "opening (", "normal traction (", "contact state (-)")
+        self.draw(self.folder / "out", "--whole", "--output", self.folder / "pictures")
+        self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png"])
+
+    def test_loops_are_the_means_of_the_results(self):
+        content = self.run_scene("verification/cyclic_2d.xml")
+        last = content["steps"][-1]["fractures"]["fracture"]
+        x, y = self.figures("out")["loops"].axes[0].lines[0].get_data()
+        self.assertEqual(len(y), len(content["steps"]))
+        self.assertAlmostEqual(abs(x[-1]) * 1e-3, abs(last["mean_jump"]["local"][1]), 12)
+        self.assertAlmostEqual(abs(y[-1]), abs(last["mean_traction"]["local"][1]), 12)
+
+    def test_step_of_a_time(self):
+        self.run_scene("verification/crossing_2d.xml")
+        self.assertIn("t = 2 s", self.figures("out", "--time", "2.2")["bulk"]._suptitle.get_text())
+        self.assertIn("t = 4 s", self.figures("out")["bulk"]._suptitle.get_text())
+        self.assertIn("× 3", self.figures("out", "--warp", "3")["bulk"]._suptitle.get_text())
+
+    def test_run_without_fractures_and_without_grids(self):
+        self.run_scene("verification/uniaxial_2d.xml")
+        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence"])
+        self.run_scene("seed/push_2d.xml", "Output.vtu=false", output="numbers")
+        self.assertEqual(sorted(self.figures("numbers")), ["convergence"])
+
+    def test_quadratic_cells(self):
+        self.run_scene("seed/push_2d.xml", "Mesh.order=2")
+        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures"])
+
+    def test_paraview(self):
+        self.run_scene("seed/push_3d.xml")
+        out, _ = self.draw("--paraview", self.folder / "out")
+        state = Path(out.strip())
+        self.assertEqual(state, self.folder / "out" / "paraview.py")
+        text = state.read_text()
+        compile(text, str(state), "exec")
+        for word in ("bulk.pvd", "fractures.pvd", "Clip(", repr(str((self.folder / "out").resolve()))):
+            self.assertIn(word, text)
+
+
+class Errors(PlotTest):
+    def expect_error(self, path, words, *options):
+        out, err = self.draw(path, *options, expect=1)
+        self.assertEqual(out, "")
+        self.assertEqual(len(err.splitlines()), 1, err)
+        for word in (str(path), *words):
+            self.assertIn(word, err)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def test_wrong_paths(self):
+        self.expect_error(self.folder / "absent", ["no such file"])
+        self.expect_error(self.folder, ["holds no results.json"])
+        self.expect_error(self.folder, ["holds no results.json"], "--paraview")
+
+    def test_wrong_content(self):
+        self.expect_error(self.write("notes.csv", "a,b\n1,2\n"), ["is no CSV", "t,state"])
+        self.expect_error(self.write("cut.csv", "t,state,jump_n\n1,2\n3,4,x\n"), ["not complete"])
+        self.expect_error(self.write("picture.csv", "\x89PNG"), ["is no CSV"])
+        self.expect_error(self.write("run/results.json", "{").parent, ["is no JSON"])
+        self.expect_error(self.write("run/results.json", '{"steps": []}').parent, ["no step"])
+
+    def test_lost_pieces(self):
+        self.run_scene("seed/push_2d.xml")
+        (self.folder / "out" / "bulk_0000.pvtu").unlink()
+        self.expect_error(self.folder / "out", ["bulk_0000.pvtu", "no such file"])
+
+
+class Numbers(ProgramTest):
+    def test_stress_measures(self):
+        stress = np.array([[-3.0, 0, 0, 0, 0, 0], [1, 1, 1, 0, 0, 0], [0, 0, 0, 2, 0, 0], [0, 0, 0, 0, 0, 2]])
+        self.assertTrue(np.allclose(bulk.von_mises(stress), [3, 0, 2 * 3**0.5, 2 * 3**0.5]))
+        self.assertTrue(np.allclose(bulk.largest_compression(stress), [3, -1, 2, 2]))
+
+    def test_stress_measures_do_not_depend_on_the_axes(self):
+        turn = np.linalg.qr(np.array([[1.0, 2, 3], [-2, 1, 5], [4, 0, 1]]))[0]
+        sigma = turn @ np.diag([-3.0, 1, 2]) @ turn.T
+        stress = np.array([[sigma[0, 0], sigma[1, 1], sigma[2, 2], sigma[0, 1], sigma[1, 2], sigma[0, 2]]])
+        self.assertTrue(np.allclose(bulk.largest_compression(stress), 3))
+        self.assertTrue(np.allclose(bulk.von_mises(stress), 21**0.5))
+
+    def test_units(self):
+        self.assertEqual([style.unit(v, "m")[1] for v in (2.0, 0.02, 2e-5, 2e-9, 0)], ["m", "mm", "µm", "nm", "m"])
+        self.assertEqual([style.unit(v, "Pa")[1] for v in (5e9, 5e6, 700.0, 7.0, 0)], ["GPa", "MPa", "kPa", "Pa", "Pa"])
+
+    def test_chains_order_the_faces_of_a_fracture(self):
+        points = np.array([[3.0, 0, 0], [0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 2, 0], [3, 2, 0]])
+        faces = [np.array(f) for f in ([4, 5], [1, 2], [3, 4])]  # points 2 and 3 are the same place
+        (chain, arc), = fractures.chains(read.Surface(points, faces, {}, {}))
+        self.assertEqual(chain, [1, 2, 0])
+        self.assertTrue(np.allclose(arc, [0, 1, 3, 5]))
+
+    def test_main_direction(self):
+        along = loops.main_direction(np.array([[0.1, 0.1], [-2.0, -2.0], [1.0, 1.0]]))
+        self.assertTrue(np.allclose(along, [-(0.5**0.5), -(0.5**0.5)]))
+
+
+if __name__ == "__main__":
+    main()

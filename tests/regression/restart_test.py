@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+"""Runs that go on from a checkpoint: restart_test.py PROGRAM ROOT MPIEXEC [NUMBER OF KILLS]"""
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import program
+from program import ProgramTest, main
+
+N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
+CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
+QUIET = "Output.vtu=false"
+EVERY_STEP = "Output.checkpoints.steps=1"
+REPRODUCIBLE = "Solver.Linear solver.reproducible=true"
+
+
+def small_files(size):
+    """To be called in a process: no file of its own may grow beyond this, as on a disk that is full."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    return limit
+
+
+class Restart(ProgramTest):
+    def command(self, name, *overrides, ranks=1, output="out", restart=False):
+        sets = [word for override in overrides for word in ("--set", override)]
+        command = [str(program.PROGRAM), "run", str(self.scene(name)), "--output", output, *sets]
+        if restart:
+            command.append("--restart")
+        if ranks > 1:
+            command = [program.MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
+        return command
+
+    def go(self, *arguments, expect=0, limit=None, **options):
+        """What a run says."""
+        command = self.command(*arguments, **options)
+        environment = {**os.environ, "PMIX_MCA_gds": "hash"}  # MPI itself must live without large files
+        done = subprocess.run(["timeout", "60", *command], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, preexec_fn=limit, env=environment)
+        self.assertEqual(done.returncode, expect, f"{command}\n{done.stdout}{done.stderr}")
+        return done.stdout + done.stderr
+
+    def checkpoints(self, output="out"):
+        """Folders of the complete ones, the last one last."""
+        folder = self.folder / output / "checkpoints"
+        return sorted((f for f in folder.glob("*") if f.name.isdigit()), key=lambda f: int(f.name))
+
+    def last(self, output="out"):
+        """What the last checkpoint holds: its numbers and the bytes of all values."""
+        folder = self.checkpoints(output)[-1]
+        content = json.loads((folder / "manifest.json").read_text())["sealed"]["content"]
+        content["results"].pop("restarts")
+        return content, [piece.read_bytes() for piece in sorted(folder.glob("piece_*.h5"))]
+
+    def expect_same_bits(self, a, b):
+        self.assertEqual(self.results(a)["status"], "completed")
+        self.assertEqual(self.results(a)["steps"], self.results(b)["steps"])
+        self.assertEqual(self.last(a), self.last(b))
+
+    def test_same_bits_on_the_same_ranks(self):
+        multigrid = ["Solver.Linear solver.type=iterative", "Solver.Linear solver.MueLu.coarse: max size=200"]
+        past_the_largest_load = "1, 2, 4", ", 4.5"
+        for scene, ranks, (first, then), options in (
+                (CYCLIC, 1, past_the_largest_load, []), (CYCLIC, 2, ("1, 2, 3", ", 4, 5"), []),
+                (CROSSING, 3, ("1, 2", ", 3"), []), (CROSSING, 1, ("2", ", 3"), multigrid),
+                (CROSSING, 2, ("2", ", 3"), multigrid)):
+            with self.subTest(scene=scene, ranks=ranks, options=options):
+                options = [*options, REPRODUCIBLE, EVERY_STEP, QUIET]
+                whole = f"Time.schedule={{{first}{then}}}"
+                self.go(scene, *options, whole, ranks=ranks, output="whole")
+                self.go(scene, *options, f"Time.schedule={{{first}}}", ranks=ranks, output="parts")
+                self.go(scene, *options, whole, ranks=ranks, output="parts", restart=True)
+                self.expect_same_bits("whole", "parts")
+                self.assertEqual(self.results("parts")["restarts"], [int(first[-1])])
+                shutil.rmtree(self.folder / "whole")
+                shutil.rmtree(self.folder / "parts")
+
+    def test_other_numbers_of_ranks(self):
+        options = ["Solver.tolerance=1e-13", EVERY_STEP, QUIET]
+        self.go(CROSSING, *options, output="whole")
+        for before, after in ((2, 1), (1, 3)):
+            output = f"from_{before}_to_{after}"
+            self.go(CROSSING, *options, "Time.end=2", "Time.steps=2", ranks=before, output=output)
+            self.go(CROSSING, *options, ranks=after, output=output, restart=True)
+            content, pieces = self.last(output)
+            self.assertEqual(len(pieces), after)
+            steps, others = self.results("whole")["steps"], self.results(output)["steps"]
+            self.assertEqual([s["time"] for s in steps], [s["time"] for s in others])
+            for step, other in zip(steps[2:], others[2:]):
+                for fracture, values in step["fractures"].items():
+                    self.expect_close(values, other["fractures"][fracture], content["scales"])
+
+    def expect_close(self, values, others, scales):
+        self.assertEqual(values.keys(), others.keys())
+        for key, value in values.items():
+            scale = scales["stress"] if "traction" in key else 1 if key.startswith(("area", "fraction")) else scales["length"]
+            for frame in ("global", "local") if isinstance(value, dict) else (None,):
+                pairs = zip(value[frame], others[key][frame]) if frame else [(value, others[key])]
+                for x, y in pairs:
+                    self.assertAlmostEqual(x, y, delta=1e-10 * scale, msg=key)
+
+    def test_killed_at_any_moment(self):
+        scene = [CYCLIC, "Time.steps=32", "Mesh.cells={4, 4}", EVERY_STEP, QUIET]
+        begin = time.monotonic()
+        self.go(*scene, output="whole")
+        duration = time.monotonic() - begin
+        rng = random.Random(1)
+        kills = progress = 0
+        while kills < N_KILLS:
+            before = self.checkpoints("parts")
+            command = self.command(*scene, output="parts", restart=bool(before))
+            run = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            time.sleep(rng.uniform(0.2, 1) * duration)
+            run.send_signal(signal.SIGKILL)
+            words = run.communicate()[1].decode()
+            self.assertIn(run.returncode, (0, -signal.SIGKILL), words)
+            self.assertNotIn("checkpoint", words)  # none was damaged
+            after = self.checkpoints("parts")
+            if before:
+                self.assertGreaterEqual(int(after[-1].name), int(before[-1].name))
+            progress += after != before
+            kills += run.returncode != 0
+            if run.returncode == 0:
+                self.expect_same_bits("whole", "parts")
+                shutil.rmtree(self.folder / "parts")
+        self.assertGreater(progress, 0)
+        self.go(*scene, output="parts", restart=bool(self.checkpoints("parts")))
+        self.expect_same_bits("whole", "parts")
+
+    def test_one_of_three_ranks_is_killed(self):
+        scene = [CYCLIC, "Time.steps=200", EVERY_STEP, QUIET]
+        run = subprocess.Popen(self.command(*scene, ranks=3), cwd=self.folder, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+        while len(self.checkpoints()) < 2:
+            self.assertIsNone(run.poll())
+            time.sleep(0.01)
+        children = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True).stdout.split()
+        subprocess.run(["kill", "-9", children[-1]], check=True)
+        self.assertNotEqual(run.wait(timeout=30), 0)
+        reached = self.last()[0]["time"]
+        short = f"Time.schedule={{{reached}, {reached + 0.04}}}"
+        self.go(CYCLIC, short, EVERY_STEP, QUIET, ranks=3, restart=True)
+        steps = self.results()["steps"]
+        self.assertEqual(steps[-1]["time"], reached + 0.04)
+        self.assertEqual(len(steps), round(reached / 0.04) + 1)
+
+    def test_full_disk(self):
+        scene = [CYCLIC, "Mesh.cells={40, 40}", EVERY_STEP, QUIET]
+        self.go(*scene, output="whole")
+        self.go(*scene, "Time.end=3", "Time.steps=3")
+        results, before = self.results(), self.last()
+        size = (self.folder / "whole" / "results.json").stat().st_size
+        self.assertLess(2 * size, (self.checkpoints()[-1] / "piece_0.h5").stat().st_size)
+
+        words = self.go(*scene, restart=True, limit=small_files(1000), expect=1)  # nothing can be written
+        self.assertRegex(words, "cannot be written: File too large")
+        self.assertEqual(self.results(), results)
+        self.assertEqual(self.last(), before)
+
+        words = self.go(*scene, restart=True, limit=small_files(2 * size))  # all but checkpoints
+        self.assertRegex(words, "warning: no checkpoint at t = 4: .*piece_0.h5: cannot be written: File too large")
+        self.assertEqual(self.results()["steps"], self.results("whole")["steps"])
+        self.assertEqual(self.last(), before)
+        self.assertEqual([f.name for f in (self.folder / "out/checkpoints").iterdir() if not f.name.isdigit()], [])
+
+        self.go(*scene, restart=True)
+        self.expect_same_bits("whole", "out")
+
+    def test_what_may_change(self):
+        first = ["Time.end=2", "Time.steps=2", EVERY_STEP, QUIET]
+        self.go(CYCLIC, *first)
+        results = self.results()
+        for part, override in (("mesh", "Mesh.cells={4, 4}"), ("mesh", "Mesh.rotation=5"),
+                               ("Materials", "Materials.joint.friction coefficient=0.1"),
+                               ("Bulk", "Bulk.body force={0, -1}"), ("Time > start", "Time.start=-1"),
+                               ("Boundary conditions", "Boundary conditions.extra.boundary=west"),
+                               ("Tables", "Tables.extra.arguments={0, 1}")):
+            more = ["Tables.extra.values={0, 1}"] if part == "Tables" else \
+                ["Boundary conditions.extra.traction={0, 0}"] if part == "Boundary conditions" else []
+            words = self.go(CYCLIC, *first, override, *more, restart=True, expect=1)
+            self.assertRegex(words, f"another scene, they differ in: (.*, )?{part}")
+            self.assertEqual(self.results(), results)
+        self.go(CYCLIC, "Time.schedule={1, 2, 2.5}", "Solver.tolerance=1e-9", "Output.every=3", restart=True)
+        self.assertEqual([s["time"] for s in self.results()["steps"]], [1, 2, 2.5])
+        self.assertEqual(self.results()["steps"][:2], results["steps"])
+
+    def test_tables_may_grow(self):
+        table = "Tables.lateral.arguments={{0, 8{}}}", "Tables.lateral.values={{-0.1, -0.1{}}}"
+        short, long = ([entry.format(more) for entry in table] for more in ("", ", 9"))
+        first = ["Time.end=2", "Time.steps=2", EVERY_STEP, QUIET]
+        self.go(CYCLIC, *first, *short)
+        self.go(CYCLIC, *first, *long, restart=True)
+        self.assertEqual(self.last()[0]["scene"]["Tables"]["lateral"], [[0, -0.1], [8, -0.1]])
+        self.go(CYCLIC, "Time.end=3", "Time.steps=3", EVERY_STEP, QUIET, *long, restart=True)
+        words = self.go(CYCLIC, *first, *short, restart=True, expect=1)
+        self.assertRegex(words, "another scene, they differ in: Tables;")
+
+    def test_damaged_checkpoints(self):
+        scene = [CYCLIC, EVERY_STEP, QUIET]
+        self.go(*scene, output="whole")
+        for damage in (lambda f: (f / "piece_0.h5").write_bytes((f / "piece_0.h5").read_bytes()[:-1]),
+                       lambda f: (f / "piece_0.h5").unlink(),
+                       lambda f: (f / "manifest.json").write_text((f / "manifest.json").read_text().replace("4", "5", 1)),
+                       lambda f: (f / "manifest.json").write_text("")):
+            self.go(*scene, "Time.end=3", "Time.steps=3")
+            self.assertEqual(len(self.checkpoints()), 2)
+            damage(self.checkpoints()[-1])
+            words = self.go(*scene, restart=True)
+            self.assertRegex(words, "warning: out/checkpoints/[0-9]+/[a-z0-9_.]+: (is damaged|cannot be read); "
+                                    "going on from the checkpoint before")
+            self.expect_same_bits("whole", "out")
+            shutil.rmtree(self.folder / "out")
+
+    def test_no_checkpoint(self):
+        self.assertIn("out/checkpoints: there is no complete checkpoint", self.go(CYCLIC, restart=True, expect=1))
+        self.go(CYCLIC, "Time.end=1", "Time.steps=1", EVERY_STEP, QUIET)
+        piece = self.checkpoints()[0] / "piece_0.h5"
+        content = bytearray(piece.read_bytes())
+        content[len(content) // 2] ^= 1
+        piece.write_bytes(content)
+        results = self.results()
+        words = self.go(CYCLIC, restart=True, expect=1)
+        self.assertRegex(words, "there is no complete checkpoint to go on from; .*piece_0.h5: is damaged")
+        self.assertEqual(self.results(), results)
+
+    def test_no_checkpoint_of_another_run(self):
+        self.go(CYCLIC, "Time.end=1", "Time.steps=1", EVERY_STEP, QUIET)
+        self.go(CYCLIC, "Time.end=1", "Time.steps=2", QUIET)
+        self.assertIn("there is no complete checkpoint", self.go(CYCLIC, restart=True, expect=1))
+
+    def test_pictures_go_on(self):
+        scene = [CYCLIC, "Output.checkpoints.steps=2", "Output.every=1"]
+        self.go(*scene, output="whole", ranks=2)
+        self.go(*scene, "Time.end=5", "Time.steps=5", ranks=2)
+        shutil.rmtree(self.checkpoints()[-1])  # as if killed after step 5
+        self.go(*scene, "Time.end=4", "Time.steps=4", ranks=2, restart=True)
+        self.assertEqual(len(self.results()["steps"]), 4)
+        self.assertEqual((self.folder / "out/bulk.pvd").read_text().count("<DataSet"), 4)
+        self.go(*scene, ranks=2, restart=True)
+        for name in ("bulk.pvd", "fractures.pvd"):
+            self.assertEqual((self.folder / "out" / name).read_text(), (self.folder / "whole" / name).read_text())
+        self.assertEqual(self.results()["restarts"], [4])
+
+    def test_by_the_clock(self):
+        self.go(CYCLIC, "Output.checkpoints.minutes=1000", QUIET)
+        self.assertEqual(len(self.checkpoints()), 1)  # after the last step
+        self.go(CYCLIC, "Output.checkpoints.minutes=1e-9", QUIET, output="often")
+        self.assertEqual([f.name for f in self.checkpoints("often")], ["6", "7"])
+
+
+if __name__ == "__main__":
+    main()
