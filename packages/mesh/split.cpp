@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "base/check.hpp"
+#include "mesh/union_find.hpp"
 
 namespace sprekk::mesh {
 namespace {
@@ -39,23 +40,6 @@ FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& m
   return faces;
 }
 
-/// Disjoint sets of cell corners [cell * n_nodes + local node]; the lowest corner represents its set.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), GlobalIndex{0}); }
-  GlobalIndex find(GlobalIndex corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void unite(GlobalIndex a, GlobalIndex b) {
-    const auto [low, high] = std::minmax({find(a), find(b)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<GlobalIndex> parent_;
-};
-
 /// Gives each set of cells that unmarked faces connect around a fracture node its own copy of that node.
 void split_nodes(GlobalMesh& mesh, const FractureFaces& faces, const std::vector<GlobalIndex>& neighbour) {
   const int faces_per_cell = n_faces(mesh.shape), nodes_per_cell = n_nodes(mesh.shape), dim = mesh.dim();
@@ -71,12 +55,12 @@ void split_nodes(GlobalMesh& mesh, const FractureFaces& faces, const std::vector
     const auto first = mesh.cells.begin() + cell * nodes_per_cell;
     return std::find(first, first + nodes_per_cell, node) - mesh.cells.begin();
   };
-  CornerSets sets(mesh.cells.size());
+  UnionFind sets(static_cast<GlobalIndex>(mesh.cells.size()));  // of cell corners [cell * n_nodes + local node]
   for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour.size()); ++face) {
     if (neighbour[face] < face || is_fracture_face[face]) continue;
     const GlobalIndex cell = face / faces_per_cell, other = neighbour[face] / faces_per_cell;
     for (GlobalIndex node : nodes_of_face(mesh, cell, static_cast<int>(face % faces_per_cell)))
-      if (node >= 0 && on_fracture[node]) sets.unite(corner_of(cell, node), corner_of(other, node));
+      if (node >= 0 && on_fracture[node]) sets.join(corner_of(cell, node), corner_of(other, node));
   }
 
   std::vector<bool> is_taken(mesh.n_nodes(), false);
