@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <utility>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 namespace sprekk::io {
 

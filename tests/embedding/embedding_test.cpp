@@ -210,6 +210,7 @@ TEST(SceneInCpp, IsMadeReady) {
   scene.boundary_conditions["north"].displacement[1] = base::Expression("ramp(t)");
   model::Model model(scene, Tpetra::getDefaultComm());
   ASSERT_TRUE(model.step_to(1).converged);
+  EXPECT_THROW(model.step_to(1), Error);  // no step forward
   EXPECT_EQ(model.scene().materials.count("gneiss"), 1u);
 }
 

@@ -113,6 +113,9 @@ TEST(FreeSides, GradedMesh) {
     for (const auto& d : discretisations(dim)) {
       SCOPED_TRACE(d.name());
       const Errors e = errors(dim, graded_block(dim, d));
+      if (Tpetra::getDefaultComm()->getRank() == 0)
+        fmt::print("{}: T {:.1e}, N {:.1e}, jump at the centre {:.1e}, at the free end {:.1e}, u_x {:.1e}\n", d.name(),
+                   e.T, e.N, e.jump_centre, e.jump_side, e.above_end);
       const bool linear = d.order == 1, mirrored = d.cell == "quadrilateral" || d.cell == "hexahedron";
       EXPECT_LT(e.T, linear ? 1.5e-2 : 1e-3);
       EXPECT_LT(e.N, linear ? 2.5e-3 : 1e-3);
