@@ -49,11 +49,7 @@ std::string read_manifest(const Comm& comm, const std::string& path) {
   base::collectively(comm, [&] {
     if (comm.getRank() == 0) text = read_file(path);
   });
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, 0, 1, &length);
-  text.resize(length);
-  Teuchos::broadcast(comm, 0, length, text.data());
-  return text;
+  return from_rank_0(comm, text);
 }
 
 }  // namespace

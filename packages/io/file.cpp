@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -39,6 +40,14 @@ void bring_to_disk(const std::string& path) {
   const int error = errno;
   if (file >= 0) ::close(file);
   SPREKK_CHECK(done, "{}: cannot be brought to the disk: {}", path, std::generic_category().message(error));
+}
+
+std::string from_rank_0(const Comm& comm, std::string text) {
+  int length = static_cast<int>(text.size());
+  Teuchos::broadcast(comm, 0, 1, &length);
+  text.resize(length);
+  Teuchos::broadcast(comm, 0, length, text.data());
+  return text;
 }
 
 void make_directory(const Comm& comm, const std::string& path) {

@@ -11,6 +11,9 @@ namespace sprekk::io {
 /// Error: the path and the system's reason; the file beside is removed and an earlier `path` stays as it was.
 void write_file(const std::string& path, const std::string& content);
 
+/// The text that rank 0 has, on every rank. Collective.
+std::string from_rank_0(const Comm& comm, std::string text);
+
 /// Returns when a file's content, or a directory's names, would outlive a failure of power. Not collective; Error: the
 /// path and the system's reason.
 void bring_to_disk(const std::string& path);

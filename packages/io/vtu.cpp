@@ -140,14 +140,6 @@ void check_sizes(const std::string& name, const Piece& piece) {
   check(piece.cell_data, piece.n_cells(), "cells");
 }
 
-std::string from_rank_0(const Comm& comm, std::string text) {
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, 0, 1, &length);
-  text.resize(length);
-  Teuchos::broadcast(comm, 0, length, text.data());
-  return text;
-}
-
 }  // namespace
 
 Piece bulk_piece(const mesh::Mesh& mesh) {
