@@ -1,25 +1,58 @@
-// A module of a host, with an unknown of its own: grout that is sealed in the fractures.
+// A module of a host, with an unknown of its own: grout that is sealed in the fractures and resists to be squeezed.
 #pragma once
 
-#include "assembly/module.hpp"
-
-#include <memory>
-#include <string>
+#include "model/model.hpp"
 
 namespace hosts {
 
-struct GroutParameters {
-  sprekk::Real thickness;     ///< h, m, at zero displacement
-  sprekk::Real bulk_modulus;  ///< K, Pa
-  /// With contact: p is eliminated face by face. Empty: it stays in the linear system beside the displacement.
-  std::string local_group = "fracture face";
+using namespace sprekk;
+
+/// The grout at one side of one fracture face. The volume of all grout in the face is |f| (w_n + h), where w_n is the
+/// mean normal displacement jump; it has the pressure p = -K w_n/h, which acts on both sides. Rows:
+///   displacement, side bubble   - p d(volume)/d(u, beta)
+///   grout pressure              - |f| (w_n + h p/K)
+///
+/// | symbol | shape                        | unit      |                                                              |
+/// | x      | u [node, dim], beta [dim], p | m, m, Pa  | unknowns                                                     |
+/// | r      | rows of the same             | N, N, m^3 |                                                              |
+/// | V      | [side, as x]                 | m^2       | d(volume)/d(u, beta, h), this side's part                    |
+/// | h_K    |                              | m/Pa      | h/K, thickness at zero displacement over bulk modulus        |
+template <mesh::Shape shape>
+struct GroutedSide {
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape), p = n * dim + dim;
+  using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, 1>>;
+  using Rows = Columns;
+  static constexpr auto loop = assembly::Loop::fracture_sides;
+  static constexpr std::array fields = {"displacement", "side bubble", "grout pressure"};
+
+  View<Real**> V;
+  Real h_K;
+
+  KOKKOS_INLINE_FUNCTION void residual(int side, const Real (&x)[p + 1], Real (&r)[p + 1]) const {
+    r[p] = -V(side, p) * h_K * x[p];
+    for (int c = 0; c < p; ++c) {
+      r[c] = -V(side, c) * x[p];
+      r[p] -= V(side, c) * x[c];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[p + 1], Real (&J)[p + 1][p + 1]) const {
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    for (int c = 0; c < p; ++c) J[c][p] = J[p][c] = -V(side, c);
+    J[p][p] = -V(side, p) * h_K;
+  }
 };
 
-/// Grout in all fractures that pushes their sides apart with p = -K w_n/h, w_n the mean normal displacement jump of a
-/// face. Declares the unknown "grout pressure" p (fracture faces; Pa) and adds with the face's area |f|
-///   displacement and side bubble rows  - |f| p n . (mean(v+) - mean(v-))
-///   grout pressure rows                - |f| (w_n + h p/K)
-/// so that the Jacobian is symmetric. Output: "grout pressure".
-std::unique_ptr<sprekk::assembly::Module> make_grout(sprekk::mesh::Shape shape, const GroutParameters& parameters);
+/// h, m, and K, Pa. In the local group of contact, p is eliminated face by face; in "" it stays in the linear system.
+inline auto make_grout(const mesh::Mesh& mesh, Real h, Real K, const std::string& local_group = "fracture face") {
+  const fields::Field pressure{"grout pressure", fields::Entity::fracture_face, 1, "Pa"};
+  assembly::Description grout{"grout", fmt::format("h = {} m, K = {} Pa", h, K)};
+  grout.unknowns = {{pressure, assembly::Quantity::stress, assembly::Quantity::volume, false, local_group}};
+  grout.linear = true;  // and symmetric
+  return mesh::for_shape(mesh.shape, [&](auto shape) {
+    return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes<shape()>(mesh), h / K});
+  });
+}
 
 }  // namespace hosts

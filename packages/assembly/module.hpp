@@ -100,6 +100,8 @@ class Module {
  public:
   virtual ~Module() = default;
   virtual std::string name() const = 0;
+  /// What of it, besides the scene, must be the same where a checkpoint is restored: its parameters, on every rank.
+  virtual std::string fingerprint() const { return {}; }
   virtual Declaration declare() const = 0;
   /// Builds the module's tables and constant operators. Called once. Collective; what can throw on one rank comes last.
   virtual void bind(const Context& context) = 0;

@@ -44,7 +44,11 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
 
 namespace {
 
-void check_unique(std::vector<std::string> names, const char* what) {
+/// Names must differ, and be fit for groups of files.
+void check_names(std::vector<std::string> names, const char* what) {
+  for (const auto& name : names)
+    SPREKK_CHECK(!name.empty() && name.find('/') == name.npos,
+                 "modules declare the {} \"{}\": a name must not be empty or contain \"/\"", what, name);
   std::sort(names.begin(), names.end());
   const auto twice = std::adjacent_find(names.begin(), names.end());
   SPREKK_CHECK(twice == names.end(), "modules declare the {} \"{}\" twice", what, *twice);
@@ -101,8 +105,8 @@ void System::declare_fields() {
   for (const auto& unknown : unknowns_) fields.push_back(unknown.field.name);
   for (std::size_t m = 0; m < modules_.size(); ++m)
     for (const auto& history : declarations_[m].history) histories.push_back(history_name(m, history));
-  check_unique(fields, "field");
-  check_unique(histories, "history");
+  check_names(fields, "field");
+  check_names(histories, "history");
   for (const auto& unknown : unknowns_) layouts_.emplace_back(unknown.field, *mesh_);
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     const auto& layout = layouts_[b];

@@ -82,6 +82,8 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"Tables", json::object()}};
   for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
     result[name] = base::to_xml(sections.sublist(name));
+  for (const auto& module : system.modules())
+    result["module \"" + module->name() + "\""].push_back(module->fingerprint());
   for (const auto& [name, table] : scene.tables)
     for (std::size_t i = 0; i < table.arguments.size(); ++i)
       result["Tables"][name].push_back({table.arguments[i], table.values[i]});
@@ -90,9 +92,11 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
 
 void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
   std::vector<std::string> different;
-  for (const auto& [what, value] : of_scene.items()) {
-    const json before = of_checkpoint.value(what, json());
-    if (what == "Tables" ? !same_tables(before, value) : before != value) different.push_back(what);
+  json all = of_checkpoint;
+  all.update(of_scene);
+  for (const auto& [what, ignored] : all.items()) {
+    const json before = of_checkpoint.value(what, json()), now = of_scene.value(what, json());
+    if (what == "Tables" ? !same_tables(before, now) : before != now) different.push_back(what);
   }
   SPREKK_CHECK(different.empty(),
                "the checkpoint is of another scene, they differ in: {}; only Time, Solver and Output may change, and "

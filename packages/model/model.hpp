@@ -1,6 +1,8 @@
 // The embedding surface: a host application includes this header and no other.
 #pragma once
 
+#include "assembly/kernel_module.hpp"
+#include "assembly/layer_volume.hpp"
 #include "assembly/system.hpp"
 #include "base/log.hpp"
 #include "base/timer.hpp"

@@ -56,10 +56,10 @@ model::Scene column(const Discretisation& cells) {
   return scene;
 }
 
-model::ModuleFactory grout(const std::string& local_group) {
+model::ModuleFactory grout(const std::string& local_group, Real bulk_modulus = K) {
   return [=](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> modules;
-    modules.push_back(hosts::make_grout(mesh.shape, {thickness, K, local_group}));
+    modules.push_back(hosts::make_grout(mesh, thickness, bulk_modulus, local_group));
     return modules;
   };
 }
@@ -241,10 +241,11 @@ TEST(Fields, AreReachedInPlace) {
 /// Counts the steps on every node.
 class Counter : public assembly::Module {
  public:
+  explicit Counter(const std::string& of = "steps") : of_(of) {}
   std::string name() const override { return "counter"; }
   assembly::Declaration declare() const override {
     assembly::Declaration d;
-    d.history = {{"steps", fields::Entity::node, 1}};
+    d.history = {{of_, fields::Entity::node, 1}};
     return d;
   }
   void bind(const assembly::Context&) override {}
@@ -253,6 +254,9 @@ class Counter : public assembly::Module {
   void commit(assembly::State& state) const override {
     for (std::size_t n = 0; n < state.history[0].extent(0); ++n) state.history[0](n, 0) += 1;
   }
+
+ private:
+  std::string of_;
 };
 
 TEST(OwnModules, AreSavedAndRestored) {
@@ -286,8 +290,64 @@ TEST(OwnModules, AreSavedAndRestored) {
     ASSERT_TRUE(restored->step_to(2).converged);
     EXPECT_EQ(values(*restored, "grout pressure"), later);
   }
-  model::Model without(scene, comm);
-  EXPECT_THAT(error_of([&] { without.restore(saved); }), HasSubstr("unknowns"));
+  model::Model without(scene, comm), without_counter(scene, comm, grout("")), softer(scene, comm, grout("", K / 2));
+  const auto refusal = [&](model::Model& refusing) { return error_of([&] { refusing.restore(saved); }); };
+  EXPECT_THAT(refusal(without), HasSubstr("they differ in: module \"counter\", module \"grout\", unknowns;"));
+  EXPECT_THAT(refusal(without_counter), HasSubstr("they differ in: module \"counter\", unknowns;"));
+  const auto of_grout = without_counter.save();
+  EXPECT_THAT(error_of([&] { softer.restore(of_grout); }), HasSubstr("they differ in: module \"grout\";"));
+}
+
+/// T + T^3/S^2 = 2 S at every node, which T = S solves.
+struct CubicNode {
+  static constexpr int n = 4;
+  using Columns = assembly::Slots<assembly::Slot<n, 1>>;
+  using Rows = Columns;
+  static constexpr auto loop = assembly::Loop::cells;
+  static constexpr std::array fields = {"T"};
+
+  View<Real**> S;  // [cell, node]
+
+  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&T)[n], Real (&r)[n]) const {
+    for (int a = 0; a < n; ++a) r[a] = T[a] + T[a] * T[a] * T[a] / (S(cell, a) * S(cell, a)) - 2 * S(cell, a);
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&T)[n], Real (&J)[n][n]) const {
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b) J[a][b] = a == b ? 1 + 3 * T[a] * T[a] / (S(cell, a) * S(cell, a)) : 0;
+  }
+};
+
+TEST(OwnModules, MayBeNonlinearAndShowUnknownsOfNodes) {
+  auto scene = column({"quadrilateral", 1});
+  scene.mesh.periodic = {"x"};  // nodes without unknowns of their own
+  for (const char* side : {"west", "east"}) scene.boundary_conditions.erase(side);
+  for (const char* end : {"south", "north"}) scene.boundary_conditions[end].displacement[0] = 0;
+  const auto exact = [](const mesh::Mesh& mesh, LocalIndex node) {
+    return 1e-3 * (1 + mesh.coordinates[2 * node + 1]);
+  };
+  const auto cubic = [&](const mesh::Mesh& mesh) {
+    assembly::Description d{"cubic", ""};
+    d.unknowns = {{{"T", fields::Entity::node, 1, "m"}, assembly::Quantity::length, assembly::Quantity::length}};
+    d.merit_weight = E;  // times m: the stiffness of the rock
+    const View<Real**> S("S", mesh.n_cells(), 4);
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c)
+      for (int a = 0; a < 4; ++a) S(c, a) = exact(mesh, mesh.cells[c * 4 + a]);
+    std::vector<std::unique_ptr<assembly::Module>> modules;
+    modules.push_back(assembly::make_kernel_module(d, CubicNode{S}));
+    return modules;
+  };
+  model::Model model(scene, Tpetra::getDefaultComm(), cubic);
+  const auto report = model.step_to(1);
+  ASSERT_TRUE(report.converged) << report.reason;
+  const auto shown = model.output("T");
+  EXPECT_EQ(shown.unit, "m");
+  ASSERT_EQ(shown.values.size(), static_cast<std::size_t>(model.mesh().n_nodes()));
+  for (LocalIndex n = 0; n < model.mesh().n_nodes(); ++n)
+    EXPECT_NEAR(shown.values[n], exact(model.mesh(), n), 1e-9 * shown.values[n]);
+  for (const auto& error : assembly::check_jacobian(model.system(), model.state()))
+    if (error.module == "cubic") {
+      EXPECT_LT(error.error, 1e-7) << error.row << ", " << error.column;
+    }
 }
 
 TEST(OwnModules, MayHoldTheRock) {
@@ -302,7 +362,7 @@ TEST(OwnModules, MayHoldTheRock) {
   const Real k = 1e9;
   const auto springs = [&](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> modules;
-    modules.push_back(examples::make_elastic_foundation(mesh.shape, {2, {k, k, k}}));  // 2: south
+    modules.push_back(examples::make_elastic_foundation(mesh, {2, {k, k, k}}));  // 2: south
     return modules;
   };
   model::Model model(scene, Tpetra::getDefaultComm(), springs);
@@ -331,6 +391,13 @@ TEST(OwnModules, MistakesAreErrorsOnEveryRank) {
   };
   EXPECT_EQ(error_of([&] { model::Model model(scene, comm, counters); }),
             "modules declare the history \"counter: steps\" twice");
+  const auto ratio = [](const mesh::Mesh&) {
+    std::vector<std::unique_ptr<assembly::Module>> modules;
+    modules.push_back(std::make_unique<Counter>("steps/s"));
+    return modules;
+  };
+  EXPECT_EQ(error_of([&] { model::Model model(scene, comm, ratio); }),
+            "modules declare the history \"counter: steps/s\": a name must not be empty or contain \"/\"");
   const auto on_rank_0 = [](const mesh::Mesh& mesh) -> std::vector<std::unique_ptr<assembly::Module>> {
     if (mesh.comm->getRank() == 0) throw Error("the host's file is missing");
     return {};

@@ -15,6 +15,7 @@ struct ElasticFoundationParameters {
 
 /// Springs between a boundary and rigid ground: the traction -k_i u_i acts on the body. Adds to the displacement rows
 ///   boundary integral sum_i k_i u_i v_i.
-std::unique_ptr<assembly::Module> make_elastic_foundation(mesh::Shape shape, ElasticFoundationParameters parameters);
+std::unique_ptr<assembly::Module> make_elastic_foundation(const mesh::Mesh& mesh,
+                                                          const ElasticFoundationParameters& parameters);
 
 }  // namespace sprekk::examples

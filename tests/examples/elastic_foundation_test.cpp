@@ -38,7 +38,7 @@ std::unique_ptr<assembly::System> bar(const std::tuple<std::string, int>& cell_a
   rock.tractions = {{east, traction}};
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(physics::make_bulk_momentum(mesh->shape, rock));
-  modules.push_back(make_elastic_foundation(mesh->shape, {west, {k, k, k}}));
+  modules.push_back(make_elastic_foundation(*mesh, {west, {k, k, k}}));
 
   std::vector<assembly::DirichletCondition> rollers{{"south", "displacement", south, {std::nullopt, 0.0}}};
   if (dim == 3) {

@@ -1,0 +1,87 @@
+// Modules that are one local operator over one loop.
+#pragma once
+
+#include "assembly/assembler.hpp"
+
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// What a KernelModule says of itself, see Module.
+struct Description {
+  std::string name, fingerprint;
+  std::vector<Unknown> unknowns = {};
+  bool linear = false, holds_bodies = false;
+  Real merit_weight = 0;  ///< of the rows of the own unknowns, if not linear: see Module::merit_weights
+};
+
+/// Adds one local operator over one loop. Op is what Assembler takes, with Rows = Columns, and names
+///   static constexpr Loop loop;
+///   static constexpr std::array fields = {"...", ...};   in the order of the slots
+/// Each of these fields has rows that depend on all of them. Outputs the module's own unknowns.
+template <class Op>
+class KernelModule final : public Module {
+ public:
+  KernelModule(Description description, Op op) : description_(std::move(description)), op_(std::move(op)) {}
+
+  std::string name() const override { return description_.name; }
+  std::string fingerprint() const override { return description_.fingerprint; }
+  bool holds_bodies() const override { return description_.holds_bodies; }
+
+  Declaration declare() const override {
+    Declaration d;
+    d.unknowns = description_.unknowns;
+    d.linear = description_.linear;
+    for (const char* row : Op::fields) d.couplings.push_back({Op::loop, row, {Op::fields.begin(), Op::fields.end()}});
+    for (const auto& [field, value, row, modes, group] : d.unknowns)
+      d.outputs.push_back({field.name, field.unit, field.entity, field.n_components});
+    return d;
+  }
+
+  void bind(const Context& context) override {
+    static_assert(std::is_same_v<typename Op::Rows, typename Op::Columns> && Op::fields.size() == Op::Rows::n);
+    using Positions = typename Assembler<Op>::Positions;
+    std::vector<int> blocks;
+    for (const char* name : Op::fields) blocks.push_back(context.field(name));
+    assembler_ = std::make_unique<Assembler<Op>>(context, Op::loop, blocks, blocks,
+                                                 description_.linear ? Positions::once : Positions::keep);
+    mesh_ = context.mesh();
+    for (const auto& unknown : description_.unknowns) own_.push_back(context.field(unknown.field.name));
+  }
+
+  void residual(const State& state, const Rows& r) const override { assembler_->add_residual(op_, state, r); }
+  void jacobian(const State& state, fields::BlockMatrix& J) const override { assembler_->add_jacobian(op_, state, J); }
+
+  void merit_weights(const Rows& weights) const override {
+    for (int block : own_) Kokkos::deep_copy(weights[block], description_.merit_weight);
+  }
+
+  void output(const State& state, std::vector<OutputField>& fields) const override {
+    for (std::size_t k = 0; k < own_.size(); ++k) {
+      const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[own_[k]]);
+      const bool on_nodes = fields[k].entity == fields::Entity::node;
+      const LocalIndex n = on_nodes ? mesh_->n_nodes() : fields::n_entities(*mesh_, fields[k].entity, false);
+      for (LocalIndex e = 0; e < n; ++e)
+        for (int i = 0; i < fields[k].n_components; ++i)
+          fields[k].values.push_back(x((on_nodes ? mesh_->free_node(e) : e) * fields[k].n_components + i));
+    }
+  }
+
+ private:
+  Description description_;
+  Op op_;
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<int> own_;  // blocks of the unknowns
+  std::unique_ptr<Assembler<Op>> assembler_;
+};
+
+template <class Op>
+std::unique_ptr<Module> make_kernel_module(Description description, Op op) {
+  return std::make_unique<KernelModule<Op>>(std::move(description), std::move(op));
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,35 @@
+// The volume between the sides of a fracture, which what fills it resists to change.
+#pragma once
+
+#include "assembly/geometry.hpp"
+#include "assembly/loop.hpp"
+
+namespace sprekk::assembly {
+
+/// The volume of a layer of thickness h (at zero displacement) in one face is |f| (w_n + h), w_n the mean normal
+/// displacement jump. It is the sum over the face's two sides of V . (u [node of the side's cell, dim], beta [dim], h):
+/// V [side of Loop::fracture_sides, node dim + dim + 1], m^2 (m in 2D); each side has half of the thickness. Not
+/// collective.
+template <Shape shape>
+View<Real**> layer_volumes(const mesh::Mesh& mesh) {
+  constexpr int dim = mesh::dimension(shape), bubble = mesh::n_nodes(shape) * dim;
+  const auto sides = fracture_sides(mesh);
+  const View<Real**> V("layer volumes", sides.size(), bubble + dim + 1);
+  const auto host = Kokkos::create_mirror_view(V);
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto& face = mesh.fracture_faces[sides[s][0]];
+    const int side = sides[s][1], local_face = face.local_face[side];
+    const auto shares = mean_shares<shape>(mesh, face.cell[side], local_face);
+    for (int i = 0; i < dim; ++i) {
+      const Real area = (side == mesh::plus ? face.area : -face.area) * face.frame[0][i];
+      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+        host(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k];
+      host(s, bubble + i) = area * ReferenceCell<shape>::bubble_mean;
+    }
+    host(s, bubble + dim) = face.area / 2;
+  }
+  Kokkos::deep_copy(V, host);
+  return V;
+}
+
+}  // namespace sprekk::assembly
