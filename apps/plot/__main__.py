@@ -58,6 +58,8 @@ def of_run(directory, options):
             yield "fractures", fractures.of_step(joints, names, title)
     if names and len(states) > 1:
         yield "loops", loops.of_fractures(states, names, name)
+    elif names:
+        print(f"sprekk plot: no loops.png: {directory} holds one step, a loop needs two", file=sys.stderr)
     yield "convergence", convergence.of_run(steps, name)
 
 
@@ -71,9 +73,10 @@ def plot(path, options):
         from paraview_state import write
         print(write(path, folder))
         return
+    from style import save
     for name, figure in of_run(path, options) if path.is_dir() else of_csv(path):
         picture = folder / f"{name}.png"
-        figure.savefig(picture, dpi=options.dpi)
+        save(figure, picture, options.dpi)
         print(picture)
 
 

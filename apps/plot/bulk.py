@@ -64,7 +64,7 @@ def of_plane(grid, title, factor=None):
     rows, columns = (3, 1) if width > 1.8 * height else (1, 3)
     figure, axes = plt.subplots(rows, columns, sharex=True, sharey=True,
                                 figsize=(7, 3.3 * 5.4 * height / width + 0.8) if rows == 3 else
-                                (10.5, 2.6 * height / width + 0.9))
+                                (10, 2.4 * height / width + 0.9))
     figure.suptitle(f"{title}, deformation × {factor:g}", fontsize=10)
     for ax, (values, colours, label, on_points) in zip(axes.flat, panels(surface)):
         norm = limits(values)
@@ -112,7 +112,7 @@ def of_body(grid, fractures, title, factor=None, whole=False):
     corners = surface.corners(surface.points + factor * displacement)
     joints = fracture_faces(grid, fractures, factor) if fractures and not whole else []
     paper = np.tile(to_rgba(PAPER), (len(joints), 1))
-    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.9), subplot_kw={"projection": "3d"})
+    figure, axes = plt.subplots(1, 3, figsize=(10, 3.9), subplot_kw={"projection": "3d"})
     half = "" if whole else ", front half of the rock cut away"
     figure.suptitle(f"{title}, deformation × {factor:g}{half}", fontsize=10)
     for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
@@ -120,8 +120,8 @@ def of_body(grid, fractures, title, factor=None, whole=False):
         norm = limits(faces)
         colour = colours(norm(faces))
         edges = np.concatenate([colour * (0.85, 0.85, 0.85, 1), np.tile(to_rgba(INK), (len(joints), 1))])
-        draw_polygons_3d(ax, corners + joints, np.concatenate([colour, paper]), grid.GetBounds(), edges, zoom=0.98)
-        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.06)
+        draw_polygons_3d(ax, corners + joints, np.concatenate([colour, paper]), edges, zoom=0.98)
+        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.1)
     return figure
 
 

@@ -6,7 +6,7 @@ from style import FAINT, LINES, plt
 def of_run(steps, title):
     number = np.arange(1, len(steps) + 1)
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.2))
-    figure.suptitle(title, fontsize=10)
+    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
 
     newton = np.array([step["newton_iterations"] for step in steps])
     linear = np.array([step["linear_iterations"] for step in steps])

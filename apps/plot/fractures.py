@@ -96,20 +96,18 @@ def along(surface, names, title):
 
 def on_faces(surface, title):
     """3D: the faces coloured."""
-    figure, axes = plt.subplots(2, 3, figsize=(10.5, 6.4), subplot_kw={"projection": "3d"})
+    figure, axes = plt.subplots(2, 3, figsize=(9, 6.2), subplot_kw={"projection": "3d"})
     figure.suptitle(title, fontsize=10)
-    bar = {"location": "bottom", "shrink": 0.65, "pad": 0.05}
-    bounds = np.stack([np.min(surface.points, axis=0), np.max(surface.points, axis=0)], 1).ravel()
+    bar = {"location": "bottom", "shrink": 0.7, "pad": 0.12}
     edges = [(0.5, 0.5, 0.5, 0.6)]
     colours = {"opening": "RdBu_r", "normal traction": "cividis", "shear traction": "cividis"}
     for ax, (name, (values, base)) in zip(axes.flat, quantities(surface.cell_data).items()):
         quantity, palette = Quantity(name, base, values), plt.get_cmap(colours.get(name, "inferno"))
         norm = limits(quantity(values), signed=name == "opening")
-        draw_polygons_3d(ax, surface.corners(), palette(norm(quantity(values))), bounds, edges, zoom=0.9)
+        draw_polygons_3d(ax, surface.corners(), palette(norm(quantity(values))), edges, zoom=0.95)
         colour_bar(figure, ax, norm, palette, quantity.label, zero=not np.any(values), **bar)
     norm = state_bar(figure, axes[-1, -1], **bar)
-    draw_polygons_3d(axes[-1, -1], surface.corners(), STATE_COLOURS(norm(surface.cell_data["state"])), bounds, edges,
-                     zoom=0.9)
+    draw_polygons_3d(axes[-1, -1], surface.corners(), STATE_COLOURS(norm(surface.cell_data["state"])), edges, zoom=0.95)
     return figure
 
 

@@ -97,21 +97,31 @@ def nice(number):
     return float(max(k * power for k in (1, 2, 5) if k * power <= number * (1 + 1e-9)))
 
 
-def draw_polygons_3d(ax, corners, faces, bounds, edges=None, zoom=1.0):
-    """Polygons in a box with equal scales, seen from a corner; each in its colour."""
+def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
+    """Polygons in a box around them with equal scales, seen from a corner; each in its colour."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-    ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces if edges is None else edges,
-                                         linewidths=0.3))
-    low, high = np.array(bounds[0::2]), np.array(bounds[1::2])
+    ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=edges, linewidths=0.3))
+    low, high = np.min(np.concatenate(corners), axis=0), np.max(np.concatenate(corners), axis=0)
     flat = high - low < 1e-9 * np.max(high - low)
     room = 0.15 * flat * np.max(high - low)
+    for name, a, b, extra in zip("xyz", low, high, room):
+        axis = getattr(ax, f"{name}axis")
+        getattr(ax, f"set_{name}lim")(a - extra, b + extra)
+        axis.set_pane_color((1, 1, 1, 0))
+        axis.set_major_locator(plt.FixedLocator([a]) if extra else plt.MaxNLocator(3))
+        if extra:  # all in one plane
+            axis.set_major_formatter(f"{name} = {{x:.4g}} m")
+        else:
+            axis.set_label_text(f"{name} (m)")
+        axis.labelpad = 0 if name == "z" else 3
+        ax.tick_params(axis=name, pad=2 if name == "z" else -1)
     low, high = low - room, high + room
-    for name, a, b in zip("xyz", low, high):
-        getattr(ax, f"set_{name}lim")(a, b)
-        getattr(ax, f"set_{name}label")(f"{name} (m)", labelpad=-3)
-        getattr(ax, f"{name}axis").set_major_locator(plt.MaxNLocator(3))
-        getattr(ax, f"{name}axis").set_pane_color((1, 1, 1, 0))
-        ax.tick_params(axis=name, pad=-2)
     ax.set_box_aspect(high - low, zoom=zoom)
     ax.set_proj_type("ortho")
     ax.view_init(elev=22, azim=-58)
+
+
+def save(figure, picture, dpi):
+    """Writes a PNG of what is drawn, with the labels in 3D, which matplotlib leaves out of the size of axes."""
+    labels = [axis.label for ax in figure.axes if ax.name == "3d" for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]
+    figure.savefig(picture, dpi=dpi, bbox_extra_artists=figure.get_default_bbox_extra_artists() + labels)

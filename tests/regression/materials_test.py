@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The material library: materials_test.py PROGRAM ROOT MPIEXEC"""
+import csv
 import math
 import re
 import unittest
@@ -56,14 +57,23 @@ class Materials(ProgramTest):
 
     def test_values_against_other_forms_of_their_sources(self):
         rocks = self.library("elastic")
-        granite = rocks["granite"]  # measured as wave speeds, 3700 and 2353 m/s
-        self.assertAlmostEqual(math.sqrt((granite["Lame's first parameter"] + 2 * granite["shear modulus"]) / granite["density"]), 3700, delta=0.1)
-        self.assertAlmostEqual(math.sqrt(granite["shear modulus"] / granite["density"]), 2353, delta=0.1)
+        for name, compression, shear in (("granite", 3700, 2353), ("shale", 3292, 1768), ("sandstone", 4206, 2664)):  # waves, m/s
+            rock = rocks[name]
+            self.assertAlmostEqual(math.sqrt((rock["Lame's first parameter"] + 2 * rock["shear modulus"]) / rock["density"]), compression, delta=0.1)
+            self.assertAlmostEqual(math.sqrt(rock["shear modulus"] / rock["density"]), shear, delta=0.1)
         K, G = rocks["claystone"]["bulk modulus"], rocks["claystone"]["shear modulus"]  # the source has E and nu, too
         self.assertAlmostEqual(9 * K * G / (3 * K + G), 6.1065e9, delta=1e5)
         self.assertAlmostEqual((3 * K - 2 * G) / (6 * K + 2 * G), 0.3275, delta=1e-6)
         self.assertAlmostEqual(rocks["tonalite"]["Young's modulus"], 3.0e6 * 6894.757, delta=0.05e9)  # psi
         self.assertAlmostEqual(rocks["limestone"]["density"], 144 * 0.45359237 / 0.3048**3, delta=0.5)  # pounds per cubic foot
+
+    def test_closure_against_its_regressions(self):
+        joint, JRC, JCS = self.library("joint")["Bandis joint"], 10, 100  # -, MPa
+        aperture = JRC / 5 * (0.2 - 0.1)  # mm
+        self.assertAlmostEqual(joint["initial aperture"], aperture * 1e-3, delta=1e-9)
+        self.assertAlmostEqual(joint["normal stiffness"], (-7.15 + 1.75 * JRC + 0.02 * JCS / aperture) * 1e9, delta=1e6)
+        closure = -0.1032 - 0.0074 * JRC + 1.135 * (JCS / aperture)**-0.251
+        self.assertAlmostEqual(joint["maximum closure"], closure * 1e-3, delta=1e-10)
 
     def test_a_name_equals_the_values_written_out(self):
         named = self.run_scene(PUSH, ROCK + "granite", JOINT + "granite joint", output="named")
@@ -92,8 +102,15 @@ class Materials(ProgramTest):
         self.assertEqual(float(self.entries_of(self.folder / "out" / "effective_input.xml")["granite"]["shear modulus"]), 1e6)
 
     def test_a_point_takes_a_joint_of_the_library(self):
-        scene = sorted((self.scene("point")).glob("*.xml"))[0]
-        self.assertGreater(len(self.call("point", scene, "--set", "Point.material=greywacke joint")[0].splitlines()), 1)
+        path = "{-10e6*t, 0}"  # Pa
+        out, _ = self.call("point", self.scene("point/cyclic_shear.xml"), "--set", "Point.material=Bandis joint", "--set", "Time.end=1",
+                           "--set", "Time.steps=4", "--set", "Point.control={traction, traction}", "--set", f"Point.path={path}")
+        rows = list(csv.DictReader(out.splitlines()))
+        self.assertEqual([float(row["traction_n"]) for row in rows][-4:], [-2.5e6, -5e6, -7.5e6, -10e6])
+        stiffness, closure = 20.35e9, 6.133625e-5
+        for row in rows:  # the hyperbola of Bandis, Lumsden and Barton (1983)
+            shut = -float(row["jump_n"])
+            self.assertAlmostEqual(-float(row["traction_n"]), stiffness * shut / (1 - shut / closure), delta=1)
 
     def test_wrong_names(self):
         for override, words in (

@@ -5,8 +5,11 @@ Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, w
 import contextlib
 import importlib.util
 import io
+import runpy
 import sys
+import types
 from pathlib import Path
+from unittest import mock
 
 from program import ROOT, ProgramTest, main
 
@@ -26,6 +29,12 @@ import loops  # noqa: E402
 import numpy as np  # noqa: E402
 import read  # noqa: E402
 import style  # noqa: E402
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
+
+
+def points_at(grid, axis, place):
+    """Numbers of the points of a plane across an axis."""
+    return np.flatnonzero(abs(vtk_to_numpy(grid.GetPoints().GetData())[:, axis] - place) < 1e-12)
 
 
 class PlotTest(ProgramTest):
@@ -48,16 +57,20 @@ class Pictures(PlotTest):
 
     def figures(self, directory, *words):
         """The figures of a run by name."""
-        return dict(plot.of_run(self.folder / directory, plot.arguments(["-", *words])))
+        with contextlib.redirect_stderr(io.StringIO()):
+            return dict(plot.of_run(self.folder / directory, plot.arguments(["-", *words])))
 
     def expect_pictures(self, names):
         for name in names:
             picture = self.folder / name
             self.assertTrue(picture.is_file(), name)
-            pixels = style.plt.imread(picture)[:, :, :3].reshape(-1, 3)
+            image = style.plt.imread(picture)[:, :, :3]
+            pixels = image.reshape(-1, 3)
             self.assertGreater(len(np.unique(np.round(pixels * 255).astype(int), axis=0)), 50, name)
             ink = np.mean(np.any(pixels < 0.99, axis=1))
             self.assertTrue(0.005 < ink < 0.95, f"{name}: {ink}")
+            for edge in (image[:8], image[-8:], image[:, :8], image[:, -8:]):  # nothing is cut off
+                self.assertGreater(np.min(edge), 0.99, name)
 
     def expect_labels(self, figure, *wanted):
         axes = figure.axes
@@ -102,8 +115,9 @@ class Pictures(PlotTest):
         made = self.figures("out")
         self.expect_labels(made["bulk"], "displacement (", "von Mises stress (")
         self.expect_labels(made["fractures"], "slip (", "opening (", "normal traction (", "contact state (-)")
-        self.draw(self.folder / "out", "--whole", "--output", self.folder / "pictures")
-        self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png"])
+        for words in ([], ["--whole"]):
+            self.draw(self.folder / "out", *words, "--dpi", "60", "--output", self.folder / "pictures")
+            self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png"])
 
     def test_loops_are_the_means_of_the_results(self):
         content = self.run_scene("verification/cyclic_2d.xml")
@@ -129,15 +143,48 @@ class Pictures(PlotTest):
         self.run_scene("seed/push_2d.xml", "Mesh.order=2")
         self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures"])
 
-    def test_paraview(self):
-        self.run_scene("seed/push_3d.xml")
-        out, _ = self.draw("--paraview", self.folder / "out")
-        state = Path(out.strip())
-        self.assertEqual(state, self.folder / "out" / "paraview.py")
-        text = state.read_text()
-        compile(text, str(state), "exec")
-        for word in ("bulk.pvd", "fractures.pvd", "Clip(", repr(str((self.folder / "out").resolve()))):
-            self.assertIn(word, text)
+    def shown_by_paraview(self, output):
+        """What the state shows: displays of the stand-in of ParaView."""
+        out, _ = self.draw("--paraview", self.folder / output)
+        state = self.folder / output / "paraview.py"
+        self.assertEqual(Path(out.strip()), state)
+        sys.modules.pop("paraview_stub", None)  # a new view
+        import paraview_stub
+        with mock.patch.dict(sys.modules, {"paraview": types.ModuleType("paraview"), "paraview.simple": paraview_stub}):
+            view = runpy.run_path(str(state))["view"]
+        self.assertEqual(view.rendered, 1)
+        self.assertTrue(all(display.bar for display in view.shown))
+        self.assertEqual([display.array for display in view.shown],
+                         [("POINTS", "displacement"), ("CELLS", "state")][:len(view.shown)])
+        return view.shown
+
+    def test_paraview_of_a_body(self):
+        self.run_scene("seed/push_3d.xml", ranks=2)
+        rock, faces = self.shown_by_paraview("out")
+        body = read.grid(self.folder / "out" / "bulk_0000.pvtu")
+        factor = rock.source.Input.ScaleFactor
+        moved = factor * read.arrays(body.GetPointData())["displacement"]
+        largest = np.max(np.linalg.norm(moved, axis=1))
+        self.assertTrue(0.01 < largest <= 0.0501, largest)  # of a cube of 1 m
+        low, high = rock.source.output().GetBounds()[2:4]
+        self.assertAlmostEqual(low, 0.5, 9)  # the front half, y < 0.5, is cut away
+        self.assertAlmostEqual(high, 1 + np.max(moved[:, 1][points_at(body, 1, 1.0)]), 9)
+        self.assertEqual(faces.source.output().GetNumberOfCells(), 4)
+
+    def test_paraview_of_a_plane(self):
+        self.run_scene("verification/crossing_2d.xml")
+        rock, faces = self.shown_by_paraview("out")
+        self.assertEqual(rock.source.output().GetNumberOfCells(), read.grid(self.folder / "out" / "bulk_0003.pvtu").GetNumberOfCells())
+        self.assertEqual(faces.LineWidth, 4)
+        self.run_scene("verification/uniaxial_2d.xml", output="whole")
+        self.assertEqual(len(self.shown_by_paraview("whole")), 1)
+
+    def test_one_step_has_no_loop(self):
+        self.run_scene("seed/push_2d.xml")
+        out, err = self.draw(self.folder / "out", "--dpi", "30")
+        self.assertEqual([Path(line).name for line in out.splitlines()], ["bulk.png", "fractures.png", "convergence.png"])
+        self.assertIn("no loops.png", err)
+        self.assertIn("one step", err)
 
 
 class Errors(PlotTest):
