@@ -1,27 +1,41 @@
 #!/usr/bin/env python3
-"""What fractures did, from a run's results.json.
+"""What fractures did, and what holds the rock, from a run's results.json.
 
     read_results.py DIRECTORY            all fractures in the last step
     read_results.py DIRECTORY FRACTURE   one fracture in all steps
 
 Jumps (m) and tractions (Pa) are means over the fracture, in its frame: normal first, opening and tension positive.
+Reactions (N, in 2D per metre of thickness) are the forces that held boundaries in the last step, by coordinates.
 """
 import json
 import sys
 
 
+def words(vector):
+    return "  ".join(f"{round(value, 9) + 0:.5g}" for value in vector)  # + 0: no "-0"
+
+
 def row(time, name, fracture):
     shares = [100 * fracture["fraction_" + state] for state in ("open", "stick", "slip")]
     vectors = [fracture[f"mean_{quantity}"]["local"] for quantity in ("elastic_jump", "plastic_jump", "traction")]
-    text = ["  ".join(f"{round(value, 9) + 0:.5g}" for value in vector) for vector in vectors]  # + 0: no "-0"
-    return f"{time:<5g} {name:<10}" + "".join(f"{share:5.0f}%" for share in shares) + "   " + " | ".join(text)
+    return f"{time:<5g} {name:<10}" + "".join(f"{share:5.0f}%" for share in shares) + "   " + " | ".join(map(words, vectors))
 
 
+if len(sys.argv) < 2:
+    sys.exit(__doc__.strip())
 directory, *names = sys.argv[1:]
-with open(directory + "/results.json") as file:
-    steps = json.load(file)["steps"]
-print("t     fracture   open stick  slip   elastic jump | plastic jump | traction")
+try:
+    with open(directory + "/results.json") as file:
+        steps = json.load(file)["steps"]
+except OSError as error:
+    sys.exit(f"{error.filename}: {error.strerror}; it takes the directory of a run")
 steps = [step for step in steps if "fractures" in step]  # a last one that failed at once has none
+for name in names:
+    if not all(name in step["fractures"] for step in steps):
+        sys.exit(f"{directory}: there is no fracture \"{name}\", but {', '.join(steps[-1]['fractures']) or 'none'}")
+print("t     fracture   open stick  slip   elastic jump | plastic jump | traction")
 for step in steps if names else steps[-1:]:
     for name in names or step["fractures"]:
         print(row(step["time"], name, step["fractures"][name]))
+for boundary, force in steps[-1]["reactions"].items() if steps else ():
+    print(f"reaction at {boundary}: {words(force)}")

@@ -9,10 +9,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 namespace sprekk::io {
@@ -22,12 +23,11 @@ using nlohmann::json;
 
 namespace {
 
-/// Size and checksum, by which a file is known to be the one that was written.
-using Seal = std::array<long long, 2>;
-
-Seal seal_of(const std::string& content) {
+/// The seal of what has the seal `before`, and then `content`.
+Seal seal_of(const std::string& content, const Seal& before = {}) {
   const auto* bytes = reinterpret_cast<const Bytef*>(content.data());
-  return {static_cast<long long>(content.size()), static_cast<long long>(crc32_z(0, bytes, content.size()))};
+  return {before[0] + static_cast<long long>(content.size()),
+          static_cast<long long>(crc32_z(static_cast<uLong>(before[1]), bytes, content.size()))};
 }
 
 std::string read_file(const std::string& path) {
@@ -43,13 +43,25 @@ void write_durably(const std::string& path, const std::string& content) {
 
 std::string piece_file(const std::string& folder, int rank) { return fmt::format("{}/piece_{}.h5", folder, rank); }
 
-/// The manifest's text, the same on all ranks.
-std::string read_manifest(const Comm& comm, const std::string& path) {
+/// The text of a file that rank 0 reads, on all ranks; with a seal, only as many bytes as it says.
+std::string read_once(const Comm& comm, const std::string& path, const std::optional<Seal>& seal = {}) {
   std::string text;
   base::collectively(comm, [&] {
-    if (comm.getRank() == 0) text = read_file(path);
+    if (comm.getRank() != 0) return;
+    text = read_file(path);
+    if (!seal) return;
+    text.resize(std::min<std::size_t>(text.size(), (*seal)[0]));
+    SPREKK_CHECK(seal_of(text) == *seal, "{}: is damaged", path);
   });
   return from_rank_0(comm, text);
+}
+
+/// An entry a line.
+std::vector<json> entries_of(const std::string& journal) {
+  std::vector<json> entries;
+  std::istringstream lines(journal);
+  for (std::string line; std::getline(lines, line);) entries.push_back(json::parse(line));
+  return entries;
 }
 
 }  // namespace
@@ -78,6 +90,7 @@ std::vector<long long> Checkpoints::numbers() const {
 
 void Checkpoints::clear() {
   last_ = -1;
+  journal_ = {};
   base::collectively(*comm_, [&] {
     std::error_code none;  // where there is no such directory
     if (comm_->getRank() == 0 && fs::is_directory(path_, none)) fs::remove_all(path_);
@@ -87,7 +100,10 @@ void Checkpoints::clear() {
 void Checkpoints::write(const Checkpoint& checkpoint) {
   const auto before = numbers();
   const long long number = before.empty() ? 0 : before.back() + 1;
-  if (last_ < 0 && !before.empty()) last_ = before.back();
+  std::string news;
+  for (const auto& entry : checkpoint.journal)
+    news += entry.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+  const Seal journal = seal_of(news, journal_);
   const std::string part = folder(number) + ".part";
   const bool first = comm_->getRank() == 0;
   const auto remove_parts = [&] {
@@ -111,7 +127,8 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
     Teuchos::gatherAll(*comm_, 2, seal.data(), 2 * comm_->getSize(), seals.front().data());
     base::collectively(*comm_, [&] {
       if (!first) return;
-      json sealed = {{"content", checkpoint.content}, {"pieces", seals}};
+      append_durably(path_ + "/journal", journal_[0], news);
+      json sealed = {{"content", checkpoint.content}, {"pieces", seals}, {"journal", journal}};
       for (const auto& [name, vector] : checkpoint.vectors) sealed["vectors"].push_back(name);
       write_durably(part + "/manifest.json", json{{"sealed", sealed}, {"seal", seal_of(sealed.dump())}}.dump());
       bring_to_disk(part);
@@ -124,6 +141,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
     throw;
   }
   const long long kept = std::exchange(last_, number);
+  journal_ = journal;
   base::collectively(*comm_, [&] {
     if (!first) return;
     for (const auto old : before)
@@ -136,8 +154,10 @@ Checkpoint Checkpoints::read(std::vector<std::string>& damaged) {
   const auto candidates = numbers();
   for (auto number = candidates.rbegin(); number != candidates.rend(); ++number) {
     try {
-      auto checkpoint = read(*number);
+      Seal journal;
+      auto checkpoint = read(*number, journal);
       last_ = *number;
+      journal_ = journal;
       return checkpoint;
     } catch (const Error& error) {
       damaged.push_back(error.what());
@@ -147,11 +167,12 @@ Checkpoint Checkpoints::read(std::vector<std::string>& damaged) {
                           damaged.empty() ? "" : fmt::format("; {}", fmt::join(damaged, "; "))));
 }
 
-Checkpoint Checkpoints::read(long long number) const {
+Checkpoint Checkpoints::read(long long number, Seal& journal) const {
   const std::string manifest_file = folder(number) + "/manifest.json";
-  const std::string text = read_manifest(*comm_, manifest_file);
+  const std::string text = read_once(*comm_, manifest_file);
   const json manifest = json::parse(text, nullptr, false);
   SPREKK_CHECK(manifest.is_object() && manifest.contains("seal") && manifest.contains("sealed") &&
+                   manifest["sealed"].contains("journal") &&
                    manifest["seal"] == json(seal_of(manifest["sealed"].dump())),
                "{}: is damaged", manifest_file);
   const auto& pieces = manifest["sealed"]["pieces"];
@@ -163,7 +184,8 @@ Checkpoint Checkpoints::read(long long number) const {
       from_hdf5(content, file, values);
     }
   });
-  Checkpoint checkpoint{{}, manifest["sealed"]["content"]};
+  journal = manifest["sealed"]["journal"];
+  Checkpoint checkpoint{{}, manifest["sealed"]["content"], entries_of(read_once(*comm_, path_ + "/journal", journal))};
   for (const auto& name : manifest["sealed"]["vectors"]) {
     const auto& here = values[name];
     const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();

@@ -39,7 +39,23 @@ void bring_to_disk(const std::string& path) {
   const bool done = file >= 0 && ::fsync(file) == 0;
   const int error = errno;
   if (file >= 0) ::close(file);
-  SPREKK_CHECK(done, "{}: cannot be brought to the disk: {}", path, std::generic_category().message(error));
+  std::error_code none;
+  const bool not_offered = file >= 0 && (error == EINVAL || error == ENOTSUP);  // on some network file systems
+  SPREKK_CHECK(done || (not_offered && std::filesystem::is_directory(path, none)),
+               "{}: cannot be brought to the disk: {}", path, std::generic_category().message(error));
+}
+
+void append_durably(const std::string& path, long long length, const std::string& content) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT, 0666);
+  int error = file < 0 || ::ftruncate(file, length) != 0 || ::lseek(file, 0, SEEK_END) != length ? errno : 0;
+  for (std::size_t done = 0; error == 0 && done < content.size();) {
+    const auto n = ::write(file, content.data() + done, content.size() - done);
+    if (n > 0) done += n;
+    if (n < 0 && errno != EINTR) error = errno;
+  }
+  if (error == 0 && ::fsync(file) != 0) error = errno;
+  if (file >= 0) ::close(file);
+  SPREKK_CHECK(error == 0, "{}: cannot be written: {}", path, std::generic_category().message(error));
 }
 
 std::string from_rank_0(const Comm& comm, std::string text) {

@@ -11,11 +11,15 @@ namespace sprekk::io {
 /// Error: the path and the system's reason; the file beside is removed and an earlier `path` stays as it was.
 void write_file(const std::string& path, const std::string& content);
 
+/// Makes the file its first `length` bytes, 0 if there is none, and then `content`, and brings it to the disk. Not
+/// collective. Error: the path and the system's reason; the first `length` bytes stay.
+void append_durably(const std::string& path, long long length, const std::string& content);
+
 /// The text that rank 0 has, on every rank. Collective.
 std::string from_rank_0(const Comm& comm, std::string text);
 
-/// Returns when a file's content, or a directory's names, would outlive a failure of power. Not collective; Error: the
-/// path and the system's reason.
+/// Returns when a file's content, or a directory's names, would outlive a failure of power; at once for a directory
+/// that the file system cannot bring to the disk by itself. Not collective; Error: the path and the system's reason.
 void bring_to_disk(const std::string& path);
 
 /// Makes the directory with its parents; one that exists is fine. Collective, with the same error on every rank.

@@ -7,13 +7,14 @@ namespace sprekk::model {
 Checkpointing::Checkpointing(Model& model, const std::string& directory, base::Log& log)
     : model_(model), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
 
-nlohmann::json Checkpointing::restore() {
+EarlierResults Checkpointing::restore() {
   std::vector<std::string> damaged;
-  const auto checkpoint = checkpoints_.read(damaged);
+  auto checkpoint = checkpoints_.read(damaged);
   for (const auto& what : damaged) log_.warning("{}; going on from the checkpoint before", what);
   model_.restore(checkpoint);
   log_.info("going on from t = {}", model_.time());
-  return checkpoint.content.at("results");
+  n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
+  return {std::move(checkpoint.journal), checkpoint.content.at("restarts")};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -30,9 +31,11 @@ void Checkpointing::after_step(const Results& results, bool last) {
   if (!is_due(results.n_steps(), last)) return;
   const auto scope = model_.timers().scope("checkpoints");
   auto checkpoint = model_.save();
-  checkpoint.content["results"] = results.save();
+  checkpoint.content["restarts"] = results.restarts();
+  checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);
+    n_saved_steps_ = results.n_steps();
   } catch (const Error& error) {
     log_.warning("no checkpoint at t = {}: {}", model_.time(), error.what());
   }

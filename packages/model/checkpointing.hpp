@@ -15,9 +15,9 @@ class Checkpointing {
 
   /// Removes the checkpoints of an earlier run.
   void start_anew() { checkpoints_.clear(); }
-  /// Brings the model to the last checkpoint that is undamaged, warns of damaged ones, and returns its results. Error:
-  /// there is none, or it is of another scene.
-  nlohmann::json restore();
+  /// Brings the model to the last checkpoint that is undamaged, warns of damaged ones, and returns what the results
+  /// were. Error: there is none, or it is of another scene.
+  EarlierResults restore();
 
   /// Writes a checkpoint if Output of the scene asks for one after this step. If it cannot be written, warns, and the
   /// run goes on.
@@ -29,6 +29,7 @@ class Checkpointing {
   Model& model_;
   base::Log& log_;
   io::Checkpoints checkpoints_;
+  int n_saved_steps_ = 0;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 

@@ -153,7 +153,7 @@ json block_summary(const assembly::System& system) {
   return summary;
 }
 
-Results::Results(Model& model, std::string directory, const json& earlier)
+Results::Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier)
     : model_(model), directory_(std::move(directory)) {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
@@ -163,7 +163,10 @@ Results::Results(Model& model, std::string directory, const json& earlier)
     if (comm->getRank() == 0) io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
   });
   if (model_.scene().output.vtu) {
-    const auto written = earlier.is_null() ? std::vector<Real>() : earlier.at("written").get<std::vector<Real>>();
+    std::vector<Real> written;
+    if (earlier)
+      for (const auto& entry : earlier->journal)
+        if (entry.at("written")) written.push_back(entry.at("step").at("time"));
     bulk_.emplace(comm, directory_, "bulk", written);
     if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures", written);
   }
@@ -186,19 +189,24 @@ Results::Results(Model& model, std::string directory, const json& earlier)
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
   json_["steps"] = json::array();
-  if (!earlier.is_null()) {
-    json_["steps"] = earlier.at("steps");
-    json_["restarts"] = earlier.at("restarts");
+  if (earlier) {
+    for (const auto& entry : earlier->journal) json_["steps"].push_back(entry.at("step"));
+    json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
   write_json();
 }
 
-json Results::save() const {
-  return {{"steps", json_.at("steps")},
-          {"restarts", json_.value("restarts", json::array())},
-          {"written", bulk_ ? bulk_->times() : std::vector<Real>()}};
+std::vector<json> Results::journal(int begin) const {
+  std::vector<json> entries;
+  for (int k = begin; k < n_steps_; ++k) {
+    const auto& step = json_["steps"][k];
+    const bool written =
+        bulk_ && std::binary_search(bulk_->times().begin(), bulk_->times().end(), step["time"].get<Real>());
+    entries.push_back({{"step", step}, {"written", written}});
+  }
+  return entries;
 }
 
 std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {

@@ -13,21 +13,28 @@
 
 namespace sprekk::model {
 
+/// The results of the runs that a run goes on from.
+struct EarlierResults {
+  std::vector<nlohmann::json> journal;                ///< what Results::journal() gave for all their steps
+  nlohmann::json restarts = nlohmann::json::array();  ///< the times at which they went on
+};
+
 /// Writes a model's states into a directory, step by step. Everything in it is complete after every write. All members
 /// are collective; Errors name the path, on every rank.
 class Results {
  public:
-  /// `earlier` is what save() gave: its steps stay, and those that were written after it go.
-  Results(Model& model, std::string directory, const nlohmann::json& earlier = {});
+  /// The steps of `earlier` stay, and those that were written after them go.
+  Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier = {});
 
-  /// What these results are so far, besides the files of fields. Stored data.
-  nlohmann::json save() const;
+  /// The steps from number `begin` on, each with whether its fields were written. Stored data.
+  std::vector<nlohmann::json> journal(int begin) const;
+  nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
   int n_steps() const { return n_steps_; }
 
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
   /// fracture faces are open, stick and slip.
   std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
-  /// "completed" or "failed", with the reason of a failure.
+  /// "completed", "interrupted" or "failed", with the reason of a failure.
   void finish(const std::string& status, const std::string& reason = "");
 
  private:

@@ -14,7 +14,8 @@ void LinearSolverOptions::describe(base::Section& section) {
   section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
   section.entry(reproducible, "reproducible", "-",
-                "direct: factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary");
+                "direct: factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary; "
+                "absent: true if checkpoints are asked for");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
   section.passthrough(muelu, "MueLu", "parameters of MueLu");
@@ -36,12 +37,14 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
   }
   const long long limit = is_3d ? options.direct_limit_3d : options.direct_limit_2d;
   const bool direct = options.type == "direct" || (options.type == "auto" && n <= limit);
-  const std::string reason = options.type == "auto"
-                                 ? fmt::format("{}: {} with {} unknowns; direct up to {}",
-                                               direct ? "direct" : "iterative", is_3d ? "3D" : "2D", n, limit)
-                                 : fmt::format("{}: asked for; {} unknowns", options.type, n);
-  return {direct ? make_direct_solver(options.mumps, options.reproducible) : make_iterative_solver(options, blocks),
-          reason};
+  std::string reason = options.type == "auto"
+                           ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
+                                         is_3d ? "3D" : "2D", n, limit)
+                           : fmt::format("{}: asked for; {} unknowns", options.type, n);
+  const bool on_one_rank =
+      direct && options.reproducible.value_or(false) && blocks.front().map->getComm()->getSize() > 1;
+  if (on_one_rank) reason += "; reproducible: factored on rank 0";
+  return {direct ? make_direct_solver(options.mumps, on_one_rank) : make_iterative_solver(options, blocks), reason};
 }
 
 Real relative_residual(const CrsMatrix& matrix, const Vector& b, const Vector& x, Vector& r) {

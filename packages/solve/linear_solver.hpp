@@ -3,6 +3,7 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct LinearSolverOptions {
   Real tolerance = 1e-12;              ///< relative residual that is asked for
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
   long long direct_limit_3d = 20000;   ///< auto: the same in 3D
-  bool reproducible = false;           ///< the direct solver runs on one rank
+  std::optional<bool> reproducible;    ///< the direct solver factors on one rank; absent: no
   Teuchos::ParameterList mumps, belos, muelu;
 
   void describe(base::Section& section);

@@ -17,7 +17,6 @@ N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
 CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
 QUIET = "Output.vtu=false"
 EVERY_STEP = "Output.checkpoints.steps=1"
-REPRODUCIBLE = "Solver.Linear solver.reproducible=true"
 
 
 def small_files(size):
@@ -53,11 +52,12 @@ class Restart(ProgramTest):
         return sorted((f for f in folder.glob("*") if f.name.isdigit()), key=lambda f: int(f.name))
 
     def last(self, output="out"):
-        """What the last checkpoint holds: its numbers and the bytes of all values."""
+        """What the last checkpoint holds: its numbers, the journal up to it and the bytes of all values."""
         folder = self.checkpoints(output)[-1]
-        content = json.loads((folder / "manifest.json").read_text())["sealed"]["content"]
-        content["results"].pop("restarts")
-        return content, [piece.read_bytes() for piece in sorted(folder.glob("piece_*.h5"))]
+        sealed = json.loads((folder / "manifest.json").read_text())["sealed"]
+        sealed["content"].pop("restarts")
+        journal = (folder.parent / "journal").read_bytes()[:sealed["journal"][0]]
+        return sealed["content"], journal, [piece.read_bytes() for piece in sorted(folder.glob("piece_*.h5"))]
 
     def expect_same_bits(self, a, b):
         self.assertEqual(self.results(a)["status"], "completed")
@@ -69,10 +69,11 @@ class Restart(ProgramTest):
         past_the_largest_load = "1, 2, 4", ", 4.5"
         for scene, ranks, (first, then), options in (
                 (CYCLIC, 1, past_the_largest_load, []), (CYCLIC, 2, ("1, 2, 3", ", 4, 5"), []),
-                (CROSSING, 3, ("1, 2", ", 3"), []), (CROSSING, 1, ("2", ", 3"), multigrid),
-                (CROSSING, 2, ("2", ", 3"), multigrid)):
+                (CROSSING, 2, ("1, 2", ", 3"), []), (CROSSING, 3, ("1, 2", ", 3"), []),
+                (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),
+                (CROSSING, 3, ("2", ", 3"), multigrid)):
             with self.subTest(scene=scene, ranks=ranks, options=options):
-                options = [*options, REPRODUCIBLE, EVERY_STEP, QUIET]
+                options = [*options, EVERY_STEP, QUIET]
                 whole = f"Time.schedule={{{first}{then}}}"
                 self.go(scene, *options, whole, ranks=ranks, output="whole")
                 self.go(scene, *options, f"Time.schedule={{{first}}}", ranks=ranks, output="parts")
@@ -81,30 +82,6 @@ class Restart(ProgramTest):
                 self.assertEqual(self.results("parts")["restarts"], [int(first[-1])])
                 shutil.rmtree(self.folder / "whole")
                 shutil.rmtree(self.folder / "parts")
-
-    def test_other_numbers_of_ranks(self):
-        options = ["Solver.tolerance=1e-13", EVERY_STEP, QUIET]
-        self.go(CROSSING, *options, output="whole")
-        for before, after in ((2, 1), (1, 3)):
-            output = f"from_{before}_to_{after}"
-            self.go(CROSSING, *options, "Time.end=2", "Time.steps=2", ranks=before, output=output)
-            self.go(CROSSING, *options, ranks=after, output=output, restart=True)
-            content, pieces = self.last(output)
-            self.assertEqual(len(pieces), after)
-            steps, others = self.results("whole")["steps"], self.results(output)["steps"]
-            self.assertEqual([s["time"] for s in steps], [s["time"] for s in others])
-            for step, other in zip(steps[2:], others[2:]):
-                for fracture, values in step["fractures"].items():
-                    self.expect_close(values, other["fractures"][fracture], content["scales"])
-
-    def expect_close(self, values, others, scales):
-        self.assertEqual(values.keys(), others.keys())
-        for key, value in values.items():
-            scale = scales["stress"] if "traction" in key else 1 if key.startswith(("area", "fraction")) else scales["length"]
-            for frame in ("global", "local") if isinstance(value, dict) else (None,):
-                pairs = zip(value[frame], others[key][frame]) if frame else [(value, others[key])]
-                for x, y in pairs:
-                    self.assertAlmostEqual(x, y, delta=1e-10 * scale, msg=key)
 
     def test_killed_at_any_moment(self):
         scene = [CYCLIC, "Time.steps=32", "Mesh.cells={4, 4}", EVERY_STEP, QUIET]
@@ -133,6 +110,60 @@ class Restart(ProgramTest):
         self.assertGreater(progress, 0)
         self.go(*scene, output="parts", restart=bool(self.checkpoints("parts")))
         self.expect_same_bits("whole", "parts")
+
+    def start(self, *arguments, **options):
+        """A run that has begun with its steps."""
+        run = subprocess.Popen(self.command(*arguments, **options), cwd=self.folder, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+        self.addCleanup(run.stderr.close)
+        while not (self.folder / "out/results.json").exists():
+            self.assertIsNone(run.poll())
+            time.sleep(0.01)
+        return run
+
+    def expect_interrupted(self, run, n_steps):
+        """Ends with a status of its own, between two steps, with a checkpoint of the last."""
+        words = run.stderr.read()
+        self.assertEqual(run.wait(), 4, words)
+        self.assertRegex(words, "sprekk: stopping after this step.*\n"
+                                "warning: interrupted after the step to t = .*; --restart goes on from the last checkpoint")
+        results = self.results()
+        self.assertEqual(results["status"], "interrupted")
+        self.assertIn(len(results["steps"]), range(1, n_steps))
+        self.assertEqual(self.last()[0]["time"], results["steps"][-1]["time"])
+
+    def test_interrupted(self):
+        n_steps = 150
+        scene = [CYCLIC, f"Time.steps={n_steps}", QUIET]
+        self.go(*scene, EVERY_STEP, output="whole")
+        for number, every in ((signal.SIGINT, EVERY_STEP), (signal.SIGTERM, "Output.checkpoints.minutes=1000")):
+            run = self.start(*scene, every)
+            run.send_signal(number)
+            self.expect_interrupted(run, n_steps)
+            self.go(*scene, every, restart=True)
+            if every == EVERY_STEP:
+                self.expect_same_bits("whole", "out")
+            self.assertEqual(len(self.results()["steps"]), n_steps)
+            shutil.rmtree(self.folder / "out")
+        run = self.start(*scene, EVERY_STEP, ranks=3)
+        run.send_signal(signal.SIGUSR1)  # mpirun hands it on
+        self.expect_interrupted(run, n_steps)
+
+    def test_interrupted_twice(self):
+        run = self.start(CYCLIC, "Mesh.cells={200, 200}", EVERY_STEP, QUIET)
+        run.send_signal(signal.SIGINT)
+        self.assertIn("a second signal stops at once", run.stderr.readline())
+        run.send_signal(signal.SIGINT)
+        self.assertEqual(run.wait(timeout=10), -signal.SIGINT)
+        self.assertEqual(self.results()["status"], "running")
+
+    def test_cost_of_a_checkpoint(self):
+        size = {}
+        for n in (4, 40):
+            self.go(CYCLIC, f"Time.steps={n}", EVERY_STEP, QUIET)
+            size[n] = sum(file.stat().st_size for file in self.checkpoints()[-1].iterdir())
+            self.assertEqual((self.folder / "out/checkpoints/journal").read_text().count("\n"), n)
+        self.assertLess(abs(size[40] - size[4]), 100)  # digits
 
     def test_one_of_three_ranks_is_killed(self):
         scene = [CYCLIC, "Time.steps=200", EVERY_STEP, QUIET]
@@ -168,7 +199,7 @@ class Restart(ProgramTest):
         self.assertRegex(words, "warning: no checkpoint at t = 4: .*piece_0.h5: cannot be written: File too large")
         self.assertEqual(self.results()["steps"], self.results("whole")["steps"])
         self.assertEqual(self.last(), before)
-        self.assertEqual([f.name for f in (self.folder / "out/checkpoints").iterdir() if not f.name.isdigit()], [])
+        self.assertEqual([f.name for f in (self.folder / "out/checkpoints").iterdir() if not f.name.isdigit()], ["journal"])
 
         self.go(*scene, restart=True)
         self.expect_same_bits("whole", "out")
@@ -208,12 +239,13 @@ class Restart(ProgramTest):
         for damage in (lambda f: (f / "piece_0.h5").write_bytes((f / "piece_0.h5").read_bytes()[:-1]),
                        lambda f: (f / "piece_0.h5").unlink(),
                        lambda f: (f / "manifest.json").write_text((f / "manifest.json").read_text().replace("4", "5", 1)),
-                       lambda f: (f / "manifest.json").write_text("")):
+                       lambda f: (f / "manifest.json").write_text(""),
+                       lambda f: os.truncate(f.parent / "journal", (f.parent / "journal").stat().st_size - 1)):
             self.go(*scene, "Time.end=3", "Time.steps=3")
             self.assertEqual(len(self.checkpoints()), 2)
             damage(self.checkpoints()[-1])
             words = self.go(*scene, restart=True)
-            self.assertRegex(words, "warning: out/checkpoints/[0-9]+/[a-z0-9_.]+: (is damaged|cannot be read); "
+            self.assertRegex(words, "warning: out/checkpoints/([0-9]+/[a-z0-9_.]+|journal): (is damaged|cannot be read); "
                                     "going on from the checkpoint before")
             self.expect_same_bits("whole", "out")
             shutil.rmtree(self.folder / "out")

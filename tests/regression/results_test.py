@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """What a run leaves behind: results_test.py PROGRAM ROOT MPIEXEC"""
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree
 
-from program import ProgramTest, main
+from program import ROOT, ProgramTest, main
 
 CROSSING = "verification/crossing_2d.xml"
 QUIET = "Output.vtu=false"
@@ -171,6 +173,19 @@ class Results(ProgramTest):
         for word in ("unsmoothed", "Num Blocks = 7"):
             self.assertIn(word, other["solver"]["parameters"])
             self.assertNotIn(word, usual["solver"]["parameters"])
+
+    def test_script_that_reads_them(self):
+        def read(*words):
+            return subprocess.run([sys.executable, str(ROOT / "docs/read_results.py"), *words], cwd=self.folder,
+                                  capture_output=True, text=True)
+        for boundary, force in self.run_scene(CROSSING, QUIET)["steps"][-1]["reactions"].items():
+            line = re.search(f"^reaction at {boundary}: (.*)$", read("out").stdout, re.MULTILINE)[1]
+            for word, value in zip(line.split(), force, strict=True):
+                self.assertAlmostEqual(float(word), value, delta=1e-4 * abs(value) + 1e-9)
+        for words, message in ((["nowhere"], "nowhere/results.json: No such file or directory; it takes the directory of a run\n"),
+                               (["out", "flatt"], 'out: there is no fracture "flatt", but flat, steep\n')):
+            done = read(*words)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", message))
 
 
 if __name__ == "__main__":

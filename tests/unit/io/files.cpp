@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <Tpetra_Core.hpp>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <limits>
 #include <string>
 #include <vector>
@@ -48,6 +51,36 @@ TEST(Json, MissingDirectoryIsAnErrorOnEveryRank) {
   const auto message = error_of<Error>([&] { io::write_json(*comm, path, {}); });
   EXPECT_TRUE(contains(message, path)) << message;
   EXPECT_TRUE(contains(message, "No such file")) << message;
+}
+
+TEST(AppendDurably, KeepsWhatWasBefore) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::string path = scratch / "journal";
+  scratch.on_rank_0([&] {
+    io::append_durably(path, 0, "one\ntwo\nthr");
+    io::append_durably(path, 8, "three\n");
+    EXPECT_EQ(content(path), "one\ntwo\nthree\n");
+    ::rlimit before;
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const ::rlimit little{1000, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &little);
+    const auto message = error_of<Error>([&] { io::append_durably(path, 8, std::string(2000, 'x')); });
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(message, path + ": cannot be written: File too large");
+    EXPECT_EQ(content(path).substr(0, 9), "one\ntwo\nx");
+    io::append_durably(path, 8, "four\n");
+    EXPECT_EQ(content(path), "one\ntwo\nfour\n");
+    EXPECT_THROW(io::append_durably(scratch / "nowhere/journal", 0, ""), Error);
+  });
+}
+
+TEST(BringToDisk, ToleratesOnlyDirectoriesThatCannotBe) {
+  io::bring_to_disk("/proc");                                                  // answers EINVAL
+  for (const std::string path : {"/dev/null", "/proc/self/stat", "/nowhere"})  // EINVAL but no directories; absent
+    EXPECT_TRUE(contains(error_of<Error>([&] { io::bring_to_disk(path); }), path)) << path;
 }
 
 TEST(MakeDirectory, MakesParentsAndKeepsContent) {

@@ -1,0 +1,93 @@
+// Runs that go on from a checkpoint on another number of ranks.
+#include "base/check.hpp"
+#include "io/checkpoints.hpp"
+#include "model/run.hpp"
+
+#include <gtest/gtest.h>
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace sprekk::tests {
+namespace {
+
+using Values = std::map<std::string, std::map<GlobalIndex, Real>>;  ///< of each vector, by global number
+
+/// Runs on the first `ranks` of all; the others wait.
+void run(int ranks, const std::string& output, std::vector<std::string> overrides, bool restart) {
+  const auto world = Tpetra::getDefaultComm();
+  std::vector<int> members(ranks);
+  std::iota(members.begin(), members.end(), 0);
+  const auto comm = world->createSubcommunicator(members);
+  if (!comm.is_null()) {
+    overrides.insert(overrides.end(), {"Output.checkpoints.steps=1", "Output.vtu=false", "Solver.tolerance=1e-13"});
+    model::RunOptions options;
+    options.scene = SPREKK_SOURCE_DIR "/xml/verification/crossing_3d.xml";
+    options.output = output;
+    options.overrides = overrides;
+    options.restart = restart;
+    EXPECT_EQ(model::run(options, comm), model::Ending::completed);
+  }
+  world->barrier();
+}
+
+Values last_checkpoint(const std::string& output, int ranks) {
+  std::vector<std::string> damaged;
+  const auto checkpoint = io::Checkpoints(rcp(new Teuchos::SerialComm<int>), output + "/checkpoints").read(damaged);
+  EXPECT_TRUE(damaged.empty());
+  EXPECT_TRUE(std::filesystem::exists(fmt::format("{}/checkpoints/3/piece_{}.h5", output, ranks - 1)));
+  EXPECT_FALSE(std::filesystem::exists(fmt::format("{}/checkpoints/3/piece_{}.h5", output, ranks)));
+  Values values;
+  for (const auto& [name, vector] : checkpoint.vectors) {
+    const auto view = vector->getData();
+    for (LocalIndex i = 0; i < view.size(); ++i)
+      EXPECT_TRUE(values[name].emplace(vector->getMap()->getGlobalElement(i), view[i]).second) << "held twice";
+  }
+  return values;
+}
+
+TEST(Restart, OnOtherNumbersOfRanksEveryValueAgrees) {
+  const auto world = Tpetra::getDefaultComm();
+  int id = static_cast<int>(::getpid());
+  Teuchos::broadcast(*world, 0, 1, &id);
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("sprekk_restart_{}", id);
+  const auto output = [&](int before, int after) { return (folder / fmt::format("{}_{}", before, after)).string(); };
+  run(1, output(1, 1), {}, false);
+  for (const auto& [before, after] : std::vector<std::array<int, 2>>{{1, 2}, {2, 1}, {1, 3}, {3, 2}}) {
+    if (std::max(before, after) > world->getSize()) continue;
+    SCOPED_TRACE(fmt::format("from {} ranks to {}", before, after));
+    run(before, output(before, after), {"Time.end=2", "Time.steps=2"}, false);
+    run(after, output(before, after), {}, true);
+    if (world->getRank() != 0) continue;
+    const auto whole = last_checkpoint(output(1, 1), 1), parts = last_checkpoint(output(before, after), after);
+    ASSERT_EQ(whole.size(), 5);
+    ASSERT_EQ(parts.size(), whole.size());
+    for (const auto& [name, values] : whole) {
+      SCOPED_TRACE(name);
+      const auto& others = parts.at(name);
+      ASSERT_EQ(others.size(), values.size());
+      Real largest = 0, difference = 0;
+      for (const auto& [number, value] : values) {
+        ASSERT_TRUE(others.count(number)) << number;
+        largest = std::max(largest, std::abs(value));
+        difference = std::max(difference, std::abs(value - others.at(number)));
+      }
+      EXPECT_GT(largest, 0);
+      EXPECT_LE(difference, 1e-10 * largest) << "largest " << largest;
+    }
+  }
+  world->barrier();
+  if (world->getRank() == 0) std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace sprekk::tests
