@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <unistd.h>
 
 #ifndef SPREKK_VERSION
 #define SPREKK_VERSION "unknown"
@@ -17,73 +18,108 @@
 
 namespace {
 
-int run_command(int argc, char** argv, sprekk::RCP<const sprekk::Comm> comm) {
-  using namespace sprekk;
-  const bool speaks = comm->getRank() == 0;
-  model::RunOptions options;
-  const char* terminal = std::getenv("SPREKK_TERMINAL");
-  options.terminal = terminal && std::string(terminal) == "1";
+using namespace sprekk;
 
-  CLI::App app{"Sprekk: deformation of fractured rock", "sprekk"};
+volatile std::sig_atomic_t stop_asked = 0;
+
+void handle_stop_signals(void (*handler)(int)) {
+  for (int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, handler);  // mpirun hands on SIGUSR1
+}
+
+/// The first signal asks to stop, a second one ends the program.
+void ask_to_stop(int) {
+  handle_stop_signals(SIG_DFL);
+  stop_asked = 1;
+}
+
+void ask_to_stop_aloud(int signal) {
+  ask_to_stop(signal);
+  constexpr char words[] = "sprekk: stopping after this step; a second signal stops at once\n";
+  [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, words, sizeof words - 1);
+}
+
+struct Arguments {
+  model::RunOptions options;
+  std::string mesh_file;
+  std::vector<std::string> fractures;
+  bool schema = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  auto& options = arguments.options;
   app.set_version_flag("--version", std::string("sprekk ") + SPREKK_VERSION);
   app.require_subcommand(1);
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
-  auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
-  const auto* schema = reference->add_flag("--schema", "print a RELAX NG schema of scenes instead, for editors");
-  auto* materials = app.add_subcommand("materials", "print the material library");
+  app.add_subcommand("reference", "print all parameters of a scene")
+      ->add_flag("--schema", arguments.schema, "print a RELAX NG schema of scenes instead, for editors");
+  app.add_subcommand("materials", "print the material library");
   auto* point = app.add_subcommand("point", "drive one point of a joint along a path, print CSV");
-  std::string mesh_file;
-  std::vector<std::string> fractures;
   auto* mesh_info = app.add_subcommand("mesh-info", "describe a mesh of gmsh");
-  mesh_info->add_option("file", mesh_file, "gmsh file")->required();
-  mesh_info->add_option("--fractures", fractures, "physical groups that are fractures, a,b,c")->delimiter(',');
+  mesh_info->add_option("file", arguments.mesh_file, "gmsh file")->required();
+  mesh_info->add_option("--fractures", arguments.fractures, "physical groups that are fractures, a,b,c")
+      ->delimiter(',');
   for (auto* command : {run, check, point}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
-        ->allow_extra_args(false)
-        ->check([](const std::string& text) {
-          const auto equals = text.find('=');
-          return equals != 0 && equals != text.npos ? "" : "\"" + text + "\" is not of the form Path.To.Entry=value";
-        });
+        ->allow_extra_args(false);
   }
-  run->add_option("--output", options.output, "directory for the results; default output/SCENE");
+  run->add_option("--output", options.output, "directory for the results; default output/SCENE")
+      ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
+}
+
+/// What is wrong with the command line, and where the shell may have split an argument.
+std::string message(const CLI::ParseError& error, const Arguments& arguments) {
+  const bool split = dynamic_cast<const CLI::ExtrasError*>(&error) && !arguments.options.overrides.empty();
+  return std::string(error.what()) + (split ? "; blanks and braces need quotes: --set \"Mesh.cells={8, 8}\"" : "");
+}
+
+/// Runs the scene until a signal asks to stop; the exit status.
+int run_scene(model::RunOptions options, RCP<const Comm> comm) {
+  handle_stop_signals(comm->getRank() == 0 ? ask_to_stop_aloud : ask_to_stop);
+  options.should_stop = [] { return stop_asked != 0; };
+  const auto ending = model::run(options, comm);
+  return ending == model::Ending::completed ? 0 : ending == model::Ending::failed ? 3 : 4;
+}
+
+/// Runs the command; the exit status.
+int execute(const std::string& command, const Arguments& arguments, RCP<const Comm> comm) {
+  const auto& options = arguments.options;
+  const bool speaks = comm->getRank() == 0;
+  if (command == "run") return run_scene(options, comm);
+  if (command == "reference" && speaks) std::cout << (arguments.schema ? model::schema() : model::reference());
+  if (command == "materials" && speaks) std::cout << model::library_markdown();
+  if (command == "mesh-info")
+    base::collectively(*comm, [&] {
+      if (speaks) std::cout << model::mesh_info(arguments.mesh_file, arguments.fractures);
+    });
+  if (command == "point") {
+    const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
+    if (speaks) model::write_csv(std::cout, states);
+  }
+  if (command == "check") {
+    model::check(options, comm);
+    if (speaks) std::cout << options.scene << ": no errors\n";
+  }
+  return 0;
+}
+
+int run_command(int argc, char** argv, RCP<const Comm> comm) {
+  const bool speaks = comm->getRank() == 0;
+  Arguments arguments;
+  const char* terminal = std::getenv("SPREKK_TERMINAL");
+  arguments.options.terminal = terminal && std::string(terminal) == "1";
+  CLI::App app{"Sprekk: deformation of fractured rock", "sprekk"};
+  declare(app, arguments);
   try {
     app.parse(argc, argv);
+    return execute(app.get_subcommands().front()->get_name(), arguments, comm);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     if (speaks && asked_for_help) app.exit(error);
-    if (speaks && !asked_for_help) std::cerr << "sprekk: " << error.what() << " (see sprekk --help)\n";
+    if (speaks && !asked_for_help) std::cerr << "sprekk: " << message(error, arguments) << " (see sprekk --help)\n";
     return asked_for_help ? 0 : 2;
-  }
-
-  try {
-    if (reference->parsed()) {
-      if (speaks) std::cout << (schema->count() ? model::schema() : model::reference());
-      return 0;
-    }
-    if (materials->parsed()) {
-      if (speaks) std::cout << model::library_markdown();
-      return 0;
-    }
-    if (mesh_info->parsed()) {
-      base::collectively(*comm, [&] {
-        if (speaks) std::cout << model::mesh_info(mesh_file, fractures);
-      });
-      return 0;
-    }
-    if (point->parsed()) {
-      const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
-      if (speaks) model::write_csv(std::cout, states);
-      return 0;
-    }
-    if (check->parsed()) {
-      model::check(options, comm);
-      if (speaks) std::cout << options.scene << ": no errors\n";
-      return 0;
-    }
-    return model::run(options, comm) ? 0 : 3;
   } catch (const Error& error) {  // thrown alike on all ranks
     if (speaks) std::cerr << "sprekk: " << error.what() << std::endl;
     return 1;
@@ -100,5 +136,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
   int n_libraries_may_read = 1;   // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
-  return run_command(argc, argv, Tpetra::getDefaultComm());
+  const int status = run_command(argc, argv, Tpetra::getDefaultComm());
+  handle_stop_signals(SIG_DFL);  // mpirun ends the ranks that are still there when one has ended with an error
+  return status;
 }

@@ -2,74 +2,110 @@
 
 #include "base/check.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 
 namespace sprekk::assembly {
+
+namespace {
+
+/// What conditions on a field hold of the unknowns below n_owned, on a mesh or a rank's part of it. Nodes are those of
+/// faces, of the cell that has the face.
+template <class AnyMesh>
+Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
+               const std::vector<DirichletCondition>& conditions) {
+  Held held;
+  std::unordered_map<GlobalIndex, int> first;  // entry of an unknown
+  const int dim = mesh.dim();
+  const auto add = [&](GlobalIndex node, int condition, int component) {
+    const GlobalIndex unknown = GlobalIndex(mesh.free_node(node)) * n_components + component;
+    if (unknown >= n_owned) return;
+    Held::Entry entry{unknown, condition, component, {0, 0, 0}};
+    std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
+    const auto [found, is_new] = first.emplace(unknown, static_cast<int>(held.entries.size()));
+    if (is_new)
+      held.entries.push_back(entry);
+    else if (held.entries[found->second].condition != condition)
+      held.repeated.emplace_back(found->second, entry);
+  };
+  for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
+    for (const auto& face : mesh.boundary_faces) {
+      const int region = conditions[k].region;
+      if (face.boundary != conditions[k].boundary || (region >= 0 && mesh.cell_region[face.cell] != region)) continue;
+      for (int a = 0; a < mesh::n_face_nodes(mesh.shape); ++a) {
+        const int corner = mesh::face_nodes(mesh.shape)[face.local_face][a];
+        const auto node = mesh.cells[face.cell * mesh::n_nodes(mesh.shape) + corner];
+        for (int c = 0; c < n_components; ++c)
+          if (conditions[k].values[c]) add(node, k, c);
+      }
+    }
+  return held;
+}
+
+Real largest_of(const std::vector<Real>& values) {
+  Real largest = 0;
+  for (Real value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+}  // namespace
+
+std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
+                                    std::vector<std::string>& conflicts) {
+  const auto value = [&](const Held::Entry& entry) {
+    return (*conditions[entry.condition].values[entry.component])(entry.x, t);
+  };
+  std::vector<Real> values;
+  for (const auto& entry : held.entries) values.push_back(value(entry));
+  const Real largest = largest_of(values);
+  std::map<std::array<int, 3>, std::string> found;  // one of each pair of conditions and component
+  for (const auto& [number, entry] : held.repeated) {
+    const Real first = values[number], second = value(entry);
+    if (std::abs(first - second) <= 1e-12 * largest) continue;
+    const int condition = held.entries[number].condition;
+    found.try_emplace(
+        {condition, entry.condition, entry.component},
+        fmt::format(
+            "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
+            "where they meet they must agree or leave the component free",
+            conditions[condition].name, conditions[entry.condition].name, first, second, "xyz"[entry.component],
+            conditions[condition].field, entry.x[0], entry.x[1], entry.x[2], t));
+  }
+  for (const auto& [place, conflict] : found) conflicts.push_back(conflict);
+  return values;
+}
+
+std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
+                                        Real t) {
+  std::vector<std::string> conflicts;
+  prescribed_values(find_held(mesh, mesh.dim(), mesh.n_free_nodes() * mesh.dim(), conditions), conditions, t,
+                    conflicts);
+  return conflicts;
+}
 
 Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
                          std::vector<DirichletCondition> conditions)
     : conditions_(std::move(conditions)),
+      held_(find_held(mesh, layout.field().n_components, layout.n_owned(), conditions_)),
       mask_("constrained", layout.n_owned()),
       values_("prescribed", layout.n_owned()) {
-  const int dim = mesh.dim(), n_components = layout.field().n_components;
-  std::vector<int> first_entry(layout.n_owned(), -1);
-  const auto add = [&](LocalIndex node, int condition, int component) {
-    const LocalIndex unknown = mesh.free_node(node) * n_components + component;
-    if (unknown >= layout.n_owned()) return;
-    Entry entry{unknown, condition, component, {0, 0, 0}};
-    std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
-    if (first_entry[unknown] < 0) {
-      first_entry[unknown] = static_cast<int>(entries_.size());
-      entries_.push_back(entry);
-    } else if (entries_[first_entry[unknown]].condition != condition) {
-      repeated_.emplace_back(first_entry[unknown], entry);
-    }
-  };
-  for (int k = 0; k < static_cast<int>(conditions_.size()); ++k)
-    for (const auto& face : mesh.boundary_faces) {
-      const int region = conditions_[k].region;
-      if (face.boundary != conditions_[k].boundary || (region >= 0 && mesh.cell_region[face.cell] != region)) continue;
-      for (int a = 0; a < mesh::n_face_nodes(mesh.shape); ++a) {
-        const int corner = mesh::face_nodes(mesh.shape)[face.local_face][a];
-        const LocalIndex node = mesh.cells[face.cell * mesh.nodes_per_cell() + corner];
-        for (int c = 0; c < n_components; ++c)
-          if (conditions_[k].values[c]) add(node, k, c);
-      }
-    }
   auto mask = Kokkos::create_mirror_view(mask_);
-  for (const auto& entry : entries_) mask(entry.unknown) = 1;
+  for (const auto& entry : held_.entries) mask(entry.unknown) = 1;
   Kokkos::deep_copy(mask_, mask);
 }
 
-Real Constraints::value(const Entry& entry, Real t) const {
-  return (*conditions_[entry.condition].values[entry.component])(entry.x, t);
-}
-
 void Constraints::evaluate(Real t) {
+  std::vector<std::string> conflicts;
+  const auto prescribed = prescribed_values(held_, conditions_, t, conflicts);
+  SPREKK_CHECK(conflicts.empty(), "{}", fmt::join(conflicts, "\n"));
+  largest_ = largest_of(prescribed);
   auto values = Kokkos::create_mirror_view(values_);
-  largest_ = 0;
-  for (const auto& entry : entries_) {
-    values(entry.unknown) = value(entry, t);
-    largest_ = std::max(largest_, std::abs(values(entry.unknown)));
-  }
-  std::map<std::array<int, 3>, std::string> conflicts;  // one of each pair of conditions and component
-  for (const auto& [number, entry] : repeated_) {
-    const Real first = values(entry.unknown), second = value(entry, t);
-    if (std::abs(first - second) <= 1e-12 * largest_) continue;
-    conflicts.try_emplace(
-        {entries_[number].condition, entry.condition, entry.component},
-        fmt::format(
-            "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
-            "where they meet they must agree or leave the component free",
-            conditions_[entries_[number].condition].name, conditions_[entry.condition].name, first, second,
-            "xyz"[entry.component], conditions_[entry.condition].field, entry.x[0], entry.x[1], entry.x[2], t));
-  }
-  std::string message;
-  for (const auto& [place, conflict] : conflicts) message += (message.empty() ? "" : "\n") + conflict;
-  SPREKK_CHECK(conflicts.empty(), "{}", message);
+  for (std::size_t k = 0; k < prescribed.size(); ++k) values(held_.entries[k].unknown) = prescribed[k];
   Kokkos::deep_copy(values_, values);
 }
 

@@ -21,15 +21,29 @@ struct DirichletCondition {
   int region = -1;  ///< only on faces of cells of this region; -1: all
 };
 
-/// All conditions on one node field: which owned unknowns they hold and to what value.
-class Constraints {
- public:
+/// The unknowns that conditions on one node field hold.
+struct Held {
   struct Entry {
-    LocalIndex unknown;
+    GlobalIndex unknown;  ///< free node * components + component, by the numbers of the mesh that it was found on
     int condition, component;
     std::array<Real, 3> x;
   };
+  std::vector<Entry> entries;                   ///< one per unknown
+  std::vector<std::pair<int, Entry>> repeated;  ///< (number of the first entry, a second condition on its unknown)
+};
 
+/// The values of the entries at time t. Where two conditions ask different values of one unknown, `conflicts` gets a
+/// line that names both; one for each pair of conditions and component.
+std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
+                                    std::vector<std::string>& conflicts);
+
+/// The conflicts at time t on a whole mesh, of conditions on the displacement. Not collective.
+std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
+                                        Real t);
+
+/// All conditions on one node field: which owned unknowns they hold and to what value.
+class Constraints {
+ public:
   /// Boundary values are taken face by face at the nodes of the owning cell. `conditions` are those on this field.
   Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions);
 
@@ -38,17 +52,14 @@ class Constraints {
   void evaluate(Real t);
 
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }
-  const std::vector<Entry>& entries() const { return entries_; }  ///< one per constrained owned unknown
-  ConstView<char*> mask() const { return mask_; }                 ///< [owned unknown] 1 if constrained
+  const std::vector<Held::Entry>& entries() const { return held_.entries; }  ///< one per constrained owned unknown
+  ConstView<char*> mask() const { return mask_; }                            ///< [owned unknown] 1 if constrained
   ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time, else 0
   Real largest() const { return largest_; }            ///< largest |value| at the last evaluated time
 
  private:
-  Real value(const Entry& entry, Real t) const;
-
   std::vector<DirichletCondition> conditions_;
-  std::vector<Entry> entries_;
-  std::vector<std::pair<int, Entry>> repeated_;  ///< (number of the first entry, a second condition on its unknown)
+  Held held_;  ///< owned
   View<char*> mask_;
   View<Real*> values_;
   Real largest_ = 0;

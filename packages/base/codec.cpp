@@ -105,9 +105,14 @@ void decode_expression(Reading& reading, const std::string& suffix, const std::s
   if (const auto quantity = parse_quantity(text)) {  // no expression opens like one
     const std::string defect = defect_of_unit(quantity->unit);
     if (defect.empty()) return decode_expression(reading, suffix, unit, *quantity, target);
-    return reading.fail(suffix,
-                        fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", text, defect));
+    const bool calculates = quantity->unit.find_first_of("*+-(") != std::string::npos;
+    return reading.fail(
+        suffix, calculates
+                    ? fmt::format("is \"{}\": {}; {}", text, defect, no_units_in_expressions)
+                    : fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", text, defect));
   }
+  if (const auto hint = hint_on_digits(text); !hint.empty())
+    return reading.fail(suffix, fmt::format("is \"{}\", neither a number nor an expression{}", text, hint));
   try {
     Expression expression(text, reading.place + suffix);
     if (reading.tables && reading.bounds.word() != text) expression.compile(reading.tables);
@@ -138,13 +143,15 @@ void decode(const ParameterEntry& entry, Reading reading, double& target) {
   const auto use_quantity = [&](const Quantity& quantity) { convert(reading, "", reading.unit, quantity, use); };
   if (if_type<double>(entry, use) || if_type<int>(entry, use) || if_type<long long>(entry, use)) return;
   if (if_type<Quantity>(entry, use_quantity)) return;
+  std::string hint;
   if (entry.isType<std::string>()) {
     const auto& text = Teuchos::getValue<std::string>(entry);
     if (text == "infinite") return use(*parse_number(text));
     const auto quantity = parse_quantity(text);
     if (quantity && defect_of_unit(quantity->unit).empty()) return use_quantity(*quantity);
+    hint = hint_on_digits(text);
   }
-  wrong_type(entry, reading, "a number, e.g. type=\"double\"");
+  wrong_type(entry, reading, "a number, e.g. type=\"double\"" + hint);
 }
 
 void decode(const ParameterEntry& entry, Reading reading, int& target) {

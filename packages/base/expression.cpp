@@ -7,6 +7,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "base/units.hpp"
 
 namespace sprekk::base {
 
@@ -72,8 +73,12 @@ void check_names(const std::string& text, const mu::Parser& parser) {
     const auto end = std::find_if_not(word, text.end(), in_word);
     const std::string name(word, end);
     const bool known = std::count(names.begin(), names.end(), name) || parser.GetConst().count(name);
+    const auto help = [&] {
+      const bool is_unit = defect_of_unit(name).empty();
+      return is_unit ? fmt::format("; {}", no_units_in_expressions) : did_you_mean(name, names);
+    };
     SPREKK_CHECK(name.empty() || !is_letter(name[0]) || known, "unknown name \"{}\" at position {}{}", name,
-                 word - text.begin(), did_you_mean(name, names));
+                 word - text.begin(), help());
     word = std::max(end, word + 1);
   }
 }

@@ -1,6 +1,7 @@
 #include "base/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
+#include <fmt/ranges.h>
 #include <algorithm>
 
 #include "base/text.hpp"
@@ -16,7 +17,7 @@ void Section::passthrough(Teuchos::ParameterList& target, const std::string& nam
   else if (mode_ == Mode::write)
     output_->sublist(name).setParameters(target);
   else if (const auto* list = find_list(name)) {
-    for (const auto& message : unreadable(*list)) errors_->push_back(message);
+    for (const auto& message : unreadable(*list)) report_->errors.push_back(message);
     refuse_units(*list, path_ + " > " + name);
     target.setParameters(*list);
   }
@@ -28,7 +29,7 @@ void Section::refuse_units(const Teuchos::ParameterList& list, const std::string
     const auto& entry = named_entry.second;
     if (entry.isList()) refuse_units(list.sublist(name), path + " > " + name);
     if (entry.isType<Quantity>() || entry.isType<Teuchos::Array<Quantity>>())
-      errors_->push_back(
+      report_->errors.push_back(
           fmt::format("{}: {} > \"{}\": is {}, must be without a unit", file_, path, name, base::describe(entry)));
   }
 }
@@ -48,23 +49,23 @@ void Section::expressions_call(const Tables& tables) {
 }
 
 void Section::fail(const std::string& what) {
-  if (mode_ == Mode::read) errors_->push_back(fmt::format("{}: {}: {}", file_, path_, what));
+  if (mode_ == Mode::read) report_->errors.push_back(fmt::format("{}: {}: {}", file_, path_, what));
 }
 
 void Section::fail(const std::string& entry, const std::string& what) {
-  if (mode_ == Mode::read) errors_->push_back(place(entry) + ": " + what);
+  if (mode_ == Mode::read) report_->errors.push_back(place(entry) + ": " + what);
 }
 
 void Section::fail_inside(const std::string& what) {
-  if (mode_ == Mode::read) errors_->push_back(fmt::format("{}: {} > {}", file_, path_, what));
+  if (mode_ == Mode::read) report_->errors.push_back(fmt::format("{}: {} > {}", file_, path_, what));
 }
 
 Section Section::child(const std::string& name) const {
   Section inner(mode_, path_ + " > " + name);
   inner.file_ = file_;
-  inner.errors_ = errors_;
+  inner.report_ = report_;
   inner.tables_ = tables_;
-  if (errors_) inner.n_errors_before_ = errors_->size();
+  if (report_) inner.n_errors_before_ = report_->errors.size();
   return inner;
 }
 
@@ -76,13 +77,13 @@ const Teuchos::ParameterEntry* Section::find(const Spec& spec) {
   const auto* entry = input_->getEntryPtr(spec.name);
   const std::string unit = spec.unit == "-" ? "" : fmt::format(" ({})", spec.unit);
   if (!entry && spec.required)
-    errors_->push_back(fmt::format("{}{}: missing; it is required: {}", place(spec.name), unit, spec.meaning));
+    report_->errors.push_back(fmt::format("{}{}: missing; it is required: {}", place(spec.name), unit, spec.meaning));
   return entry && is_unreadable(*entry) ? nullptr : entry;
 }
 
 bool Section::is_unreadable(const Teuchos::ParameterEntry& entry) {
   if (!entry.isType<Unreadable>()) return false;
-  errors_->push_back(Teuchos::getValue<Unreadable>(entry).message);
+  report_->errors.push_back(Teuchos::getValue<Unreadable>(entry).message);
   return true;
 }
 
@@ -90,6 +91,7 @@ const Teuchos::ParameterList* Section::find_list(const std::string& name) {
   const auto* entry = input_->getEntryPtr(name);
   if (!entry) return nullptr;
   if (entry->isList()) return &input_->sublist(name);
+  report_->defective.insert(path_ + " > " + name);
   if (is_unreadable(*entry)) return nullptr;
   fail(name, fmt::format("is {}, expected a section, e.g. <ParameterList name=\"{}\">", base::describe(*entry), name));
   return nullptr;
@@ -120,7 +122,7 @@ std::vector<std::string> Section::unknown_names() const {
 }
 
 bool Section::complete() const {
-  return mode_ == Mode::read && errors_->size() == n_errors_before_ && unknown_names().empty();
+  return mode_ == Mode::read && report_->errors.size() == n_errors_before_ && unknown_names().empty();
 }
 
 void Section::finish(const std::string& meaning) {
@@ -131,14 +133,17 @@ void Section::finish(const std::string& meaning) {
     std::string help = did_you_mean(name, names_);
     if (help.empty()) help = names_.empty() ? "; nothing is allowed here" : "; allowed are " + quoted_list(names_);
     fail(name, "unknown" + help);
+    report_->with_unknown_names.insert(path_);
   }
+  note_defects();
 }
 
-void Section::throw_errors() const {
-  if (errors_->empty()) return;
-  std::string text;
-  for (const auto& error : *errors_) text += (text.empty() ? "" : "\n") + error;
-  throw Error(text);
+void Section::note_defects() {
+  if (report_->errors.size() > n_errors_before_) report_->defective.insert(path_);
+}
+
+void throw_errors(const std::vector<std::string>& errors) {
+  SPREKK_CHECK(errors.empty(), "{}", fmt::join(errors, "\n"));
 }
 
 }  // namespace sprekk::base

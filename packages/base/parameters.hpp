@@ -5,6 +5,7 @@
 #include <Teuchos_ParameterList.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -16,6 +17,22 @@
 #include "base/value.hpp"
 
 namespace sprekk::base {
+
+/// What is wrong with the input.
+struct Report {
+  std::vector<std::string> errors;           ///< a line each
+  std::set<std::string> defective;           ///< paths of the sections that have errors in them, `Sprekk > Mesh`
+  std::set<std::string> with_unknown_names;  ///< of those with unknown names: what they lack may be there, misspelt
+
+  bool is_sound(const std::string& section) const { return !defective.count(section); }
+};
+
+/// An S as far as it could be read: what could not be is what it was before.
+template <class S>
+struct Draft {
+  S value{};
+  Report report;
+};
 
 /// One section of the input, as a struct's `void describe(Section&)` sees it.
 ///
@@ -85,8 +102,8 @@ class Section {
   bool complete() const;
 
   template <class S>
-  static S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
-                std::vector<std::string> errors);
+  static Draft<S> draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+                        std::vector<std::string> errors);
   template <class S>
   static Teuchos::ParameterList effective(S& target, const std::string& root);
   template <class S>
@@ -122,7 +139,7 @@ class Section {
   void document(const Spec& spec, const std::string& type, const Teuchos::ParameterList& defaults);
   std::vector<std::string> unknown_names() const;
   void finish(const std::string& meaning);  ///< reports names that are unknown; completes the specification
-  void throw_errors() const;
+  void note_defects();                      ///< that were reported since this section was opened
 
   Mode mode_;
   std::string path_;                ///< `Sprekk > Materials > joint`
@@ -130,7 +147,7 @@ class Section {
   // reading
   std::string file_;
   const Teuchos::ParameterList* input_ = nullptr;
-  std::vector<std::string>* errors_ = nullptr;
+  Report* report_ = nullptr;
   std::size_t n_errors_before_ = 0;
   std::shared_ptr<const Tables> tables_;
   // writing
@@ -139,12 +156,24 @@ class Section {
   SectionSpecification specification_;
 };
 
-/// An S filled from `list`; `file` and `root` open the paths in messages. Throws one Error with a line for each thing
-/// that is wrong, after `errors` that are known before. The same on all ranks if the list is.
+/// An S filled from `list` as far as possible, and what is wrong, after `errors` that are known before; `file` and
+/// `root` open the paths in messages. The same on all ranks if the list is.
+template <class S>
+Draft<S> draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+               std::vector<std::string> errors = {}) {
+  return Section::draft<S>(list, file, root, std::move(errors));
+}
+
+/// Throws one Error with all lines, if there are any.
+void throw_errors(const std::vector<std::string>& errors);
+
+/// The same, where everything must be right: throws one Error with a line for each thing that is wrong.
 template <class S>
 S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
        std::vector<std::string> errors = {}) {
-  return Section::read<S>(list, file, root, std::move(errors));
+  auto result = draft<S>(list, file, root, std::move(errors));
+  throw_errors(result.report.errors);
+  return std::move(result.value);
 }
 
 /// All parameters with their values, defaults included; read() turns it back into an equal S. Every required entry of
@@ -166,7 +195,7 @@ void Section::visit(T& target, const Spec& spec) {
   if (mode_ == Mode::read) {
     const auto* entry = find(spec);
     if (entry && is_a_choice(spec, *entry))
-      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, *errors_}, target);
+      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, report_->errors}, target);
   } else if (mode_ == Mode::write) {
     encode(*output_, spec.name, target);
   } else {
@@ -229,22 +258,23 @@ void Section::named_sections(std::map<std::string, S>& target, const std::string
       const auto& key = named_entry.first;
       if (const auto* list = middle.find_list(key)) middle.descend(target[key], key, list, nullptr, meaning);
     }
+    middle.note_defects();
   }
 }
 
 template <class S>
-S Section::read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
-                std::vector<std::string> errors) {
+Draft<S> Section::draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
+                        std::vector<std::string> errors) {
+  Draft<S> result;
+  result.report.errors = std::move(errors);
   Section section(Mode::read, root);
   section.file_ = file;
   section.input_ = &list;
-  section.errors_ = &errors;
-  section.n_errors_before_ = errors.size();
-  S target{};
-  target.describe(section);
+  section.report_ = &result.report;
+  section.n_errors_before_ = result.report.errors.size();
+  result.value.describe(section);
   section.finish("");
-  section.throw_errors();
-  return target;
+  return result;
 }
 
 template <class S>

@@ -150,6 +150,17 @@ std::string counted(std::size_t n, const std::string& what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
 
+std::string hint_on_digits(std::string_view text) {
+  const auto digits = "0123456789";
+  text = trimmed(text);
+  if (!text.empty() && (text[0] == '+' || text[0] == '-')) text.remove_prefix(1);
+  const auto end = text.find_first_not_of(digits);
+  if (end == 0 || end == text.npos) return "";
+  const auto next = text.find_first_not_of(text[end] == ',' || text[end] == '\'' ? text.substr(end, 1) : " ", end);
+  if (next == end || next == text.npos || text.find_first_of(digits, next) != next) return "";
+  return "; numbers have a decimal point and no separators of thousands: 1.5, 30000";
+}
+
 std::optional<std::size_t> where_not_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   for (std::size_t i = 0; i < text.size();) {

@@ -34,6 +34,10 @@ std::string xml_escaped(const std::string& text);
 /// "1 value", "2 values"
 std::string counted(std::size_t n, const std::string& what);
 
+/// What helps where `text`, which is no number, opens like one with groups of digits: "30,000 MPa", "1,5", "30 000";
+/// else empty.
+std::string hint_on_digits(std::string_view text);
+
 /// Where `text` stops being UTF-8; nothing if it is UTF-8 from end to end.
 std::optional<std::size_t> where_not_utf8(std::string_view text);
 

@@ -95,13 +95,15 @@ void for_each_symbol(const Use& use) {
 
 Unit unit_called(const std::string& name) {
   std::optional<Unit> found;
-  std::vector<std::string> names;
   for_each_symbol([&](const std::string& candidate, const Unit& unit) {
-    names.push_back(candidate);
     if (candidate == name && !found) found = unit;
   });
-  SPREKK_CHECK(found, "unknown unit \"{}\"{}", name, did_you_mean(name, names));
-  return *found;
+  if (found) return *found;
+  std::vector<std::string> usual;  // nobody means "Gs"
+  for (const auto& row : offered)
+    for (const char* unit : row)
+      if (unit) usual.emplace_back(unit);
+  throw Error(fmt::format("unknown unit \"{}\"{}", name, did_you_mean(name, usual)));
 }
 
 /// a b^power

@@ -32,6 +32,10 @@ std::string quantity_text(const Quantity& quantity);
 /// without a prefix n, u, m, c, k, M, G, and min, h, hour, day, year (365.25 days), degree, deg.
 std::string defect_of_unit(const std::string& unit);
 
+/// For messages about them.
+constexpr const char* no_units_in_expressions =
+    "a unit can only follow a number, not be within an expression: write the expression in SI units";
+
 /// The number that `quantity` is in `unit`, "-" for none: 30 GPa is 3e10 in Pa, exactly the number that 30e9 is. Throws
 /// an Error that tells which units are allowed if it measures something else; angles are no pure numbers.
 Real value_in(const std::string& unit, const Quantity& quantity);

@@ -42,7 +42,7 @@ void parse(const std::string& text, int& value) {
 void parse(const std::string& text, Quantity& value) {
   const auto number = parse_number(text);
   const auto quantity = number ? Quantity{*number, ""} : parse_quantity(text);
-  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds", text);
+  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds{}", text, hint_on_digits(text));
   const std::string defect = number ? "" : defect_of_unit(quantity->unit);
   SPREKK_CHECK(defect.empty(), "is \"{}\", not a number: {}", text, defect);
   value = *quantity;

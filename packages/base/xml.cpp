@@ -230,12 +230,13 @@ void apply_override(ParameterList& list, const std::string& text) {
   set_value(*section, path, value);
 }
 
-std::vector<std::string> apply_overrides(ParameterList& list, const std::vector<std::string>& texts) {
+std::vector<std::string> apply_overrides(ParameterList& list, const std::string& file,
+                                         const std::vector<std::string>& texts) {
   std::vector<std::string> errors;
   for (const auto& text : texts) try {
       apply_override(list, text);
     } catch (const Error& error) {
-      errors.push_back(error.what());
+      errors.push_back(file + ": " + error.what());
     }
   return errors;
 }

@@ -33,7 +33,9 @@ std::string to_xml(const Teuchos::ParameterList& list);
 /// section or leads through an entry.
 void apply_override(Teuchos::ParameterList& list, const std::string& text);
 
-/// Applies all that can be applied, in their order; what apply_override throws of the others.
-std::vector<std::string> apply_overrides(Teuchos::ParameterList& list, const std::vector<std::string>& texts);
+/// Applies all that can be applied to a list, in their order; of the others what apply_override throws, after `file`,
+/// which the list was read from.
+std::vector<std::string> apply_overrides(Teuchos::ParameterList& list, const std::string& file,
+                                         const std::vector<std::string>& texts);
 
 }  // namespace sprekk::base

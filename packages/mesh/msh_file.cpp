@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/check.hpp"
+#include "base/file.hpp"
 #include "mesh/msh_scanner.hpp"
 
 namespace sprekk::mesh {
@@ -268,8 +269,12 @@ std::string MshFile::group_name(int dim, int number) const {
   return found == group_names.end() ? std::to_string(number) : found->second;
 }
 
-void check_msh_start(std::string_view start, const std::string& file) { Parser(start, file).read_start(); }
-
 MshFile parse_msh_file(std::string_view text, const std::string& file) { return Parser(text, file).parse(); }
+
+MshFile read_msh_file(const std::string& path) {
+  const auto text = base::read_file(path, "a gmsh mesh", std::numeric_limits<std::size_t>::max(),
+                                    [&](std::string_view start) { Parser(start, path).read_start(); });
+  return parse_msh_file(text, path);
+}
 
 }  // namespace sprekk::mesh

@@ -51,7 +51,7 @@ struct MshFile {
 /// number of the node or element, if something is missing, is not a number, or cannot be. Not collective.
 MshFile parse_msh_file(std::string_view text, const std::string& file);
 
-/// Throws an Error unless the file that starts so says that it is of gmsh, in a version that Sprekk reads.
-void check_msh_start(std::string_view start, const std::string& file);
+/// The same from the file at `path`; throws an Error, too, if there is none, or if it is of another kind or version.
+MshFile read_msh_file(const std::string& path);
 
 }  // namespace sprekk::mesh

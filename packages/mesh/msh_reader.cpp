@@ -10,7 +10,6 @@
 #include <unordered_set>
 
 #include "base/check.hpp"
-#include "base/file.hpp"
 #include "base/text.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/msh_file.hpp"
@@ -67,6 +66,8 @@ class Builder {
   std::vector<GlobalIndex> neighbour_;                ///< see face_neighbours()
   std::vector<MarkedFace> marked_;                    ///< of the fractures
   std::unordered_map<GlobalIndex, int> fracture_at_;  ///< [cell face]
+  std::vector<std::string> inside_;                   ///< groups with faces inside of the mesh that are no fractures
+  std::string first_inside_;                          ///< an element of the first of them
 
   template <class... Arguments>
   [[noreturn]] void fail(fmt::format_string<Arguments...> message, Arguments&&... arguments) const {
@@ -322,6 +323,15 @@ class Builder {
         if (known.emplace(face, name).second) add_face(element, face, name);
       }
     }
+    if (inside_.empty()) return;
+    const std::vector<std::string> others(inside_.begin() + 1, inside_.end());
+    fail(
+        "{} of the physical group \"{}\" lies inside of the mesh, where a boundary cannot be{}; if {}, list {} among "
+        "the "
+        "fractures; boundaries are {}",
+        first_inside_, inside_[0], others.empty() ? "" : ", as do " + base::quoted_list(others),
+        others.empty() ? "it is a fracture" : "these are fractures", base::quoted_list(inside_),
+        mesh_.boundary_names.empty() ? "none" : base::quoted_list(mesh_.boundary_names));
   }
 
   bool is_grouped_face(const Element& element) const {
@@ -335,13 +345,10 @@ class Builder {
     const auto fracture = std::find(fractures.begin(), fractures.end(), name);
     const auto where = [&] { return text(centre(face)); };
     if (fracture == fractures.end()) {
-      if (neighbour_[face] >= 0)
-        fail(
-            "element {} at {} of the physical group \"{}\" lies inside of the mesh, where a boundary cannot be; if it "
-            "is a "
-            "fracture, list \"{}\" among the fractures",
-            element.tag, where(), name, name);
-      mesh_.boundary_faces.push_back({index_of(name, mesh_.boundary_names), cell, local_face});
+      if (neighbour_[face] < 0)
+        mesh_.boundary_faces.push_back({index_of(name, mesh_.boundary_names), cell, local_face});
+      else if (index_of(name, inside_) == 0 && first_inside_.empty())
+        first_inside_ = fmt::format("element {} at {}", element.tag, where());
       return;
     }
     if (neighbour_[face] < 0)
@@ -371,9 +378,7 @@ GlobalMesh parse_msh(std::string_view text, const std::string& file, const MshOp
 }
 
 GlobalMesh read_msh(const std::string& path, const MshOptions& options) {
-  const auto text = base::read_file(path, "a gmsh mesh", std::numeric_limits<std::size_t>::max(),
-                                    [&](std::string_view start) { check_msh_start(start, path); });
-  return parse_msh(text, path, options);
+  return Builder(read_msh_file(path), path, options).build();
 }
 
 }  // namespace sprekk::mesh

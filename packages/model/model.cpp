@@ -1,17 +1,15 @@
 #include "model/model.hpp"
 
-#include "assembly/free_motion.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
 #include "model/fingerprint.hpp"
+#include "model/scene_check.hpp"
 #include "physics/bulk_momentum.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "physics/interface_traction_balance.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
-
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -93,21 +91,6 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   return force;
 }
 
-/// By the numbers of a global mesh or a part of it, which are the same.
-template <class Mesh>
-std::vector<assembly::DirichletCondition> dirichlet_conditions(const Scene& scene, const Mesh& mesh) {
-  std::vector<assembly::DirichletCondition> conditions;
-  for (const auto& [name, given] : scene.boundary_conditions) {
-    if (given.displacement.empty()) continue;
-    assembly::DirichletCondition condition{name, "displacement", index_of(mesh.boundary_names, given.boundary), {}};
-    if (given.region) condition.region = index_of(mesh.region_names, *given.region);
-    for (const auto& value : given.displacement)
-      condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
-    conditions.push_back(condition);
-  }
-  return conditions;
-}
-
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
   Real here = 0, modulus = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
@@ -118,15 +101,6 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
   const auto extents = mesh::domain_extents(mesh);
   return {modulus, *std::max_element(extents.begin(), extents.end())};
-}
-
-/// The scene's mesh, if the scene fits to it.
-mesh::GlobalMesh checked_mesh(const Scene& scene) {
-  auto mesh = scene.make_mesh();
-  const auto misfits = scene.misfits({mesh.dim(), mesh.region_names, mesh.boundary_names, mesh.fracture_names});
-  const std::string place = scene.origin + ": Sprekk > ";
-  SPREKK_CHECK(misfits.empty(), "{}{}", place, fmt::join(misfits, "\n" + place));
-  return mesh;
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -176,28 +150,27 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
 }
 
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
-    : scene_(prepared(scene)), timers_(rcp(new base::Timers)), time_(scene.time.start) {
+    : timers_(rcp(new base::Timers)), time_(scene.time.start) {
+  auto draft = prepared(scene);
   RCP<const mesh::Mesh> mesh;
-  std::string unheld;  // by the scene; known where the whole mesh is
+  std::string unheld;  // by the scene, but perhaps by modules; known where the whole mesh is
   {
     const auto scope = timers_->scope("mesh");
-    const auto make = [&] {
-      auto whole = checked_mesh(scene_);
-      unheld = assembly::unheld(whole, dirichlet_conditions(scene_, whole));
-      return whole;
-    };
-    mesh = mesh::make_distributed(make, comm);
+    mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
   }
+  scene_ = std::move(draft.value);
   std::vector<std::unique_ptr<assembly::Module>> modules;
   base::collectively(*comm, [&] {
     modules = make_modules(scene_, *mesh);
     if (more_modules)
       for (auto& module : more_modules(*mesh)) modules.push_back(std::move(module));
     const bool held = std::any_of(modules.begin(), modules.end(), [](const auto& m) { return m->holds_bodies(); });
-    SPREKK_CHECK(unheld.empty() || held, "{}", unheld);
+    SPREKK_CHECK(unheld.empty() || held, "{}: {}", scene_.origin, unheld);
   });
-  system_ = std::make_unique<assembly::System>(mesh, std::move(modules), dirichlet_conditions(scene_, *mesh),
-                                               reference(scene_, *mesh), timers_);
+  system_ = std::make_unique<assembly::System>(
+      mesh, std::move(modules),
+      dirichlet_conditions(scene_.boundary_conditions, mesh->boundary_names, mesh->region_names),
+      reference(scene_, *mesh), timers_);
   x_ = system_->initial();
   start_solver();
 }

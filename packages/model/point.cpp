@@ -239,7 +239,9 @@ void PointScene::describe(base::Section& s) {
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
   auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
-  const auto errors = base::apply_overrides(list, overrides);
+  SPREKK_CHECK(list.isParameter("Point") || !list.isParameter("Bulk"),
+               "{}: is a scene for `sprekk run`: it has the section \"Bulk\" and no \"Point\"", path);
+  const auto errors = base::apply_overrides(list, path, overrides);
   return base::read<PointScene>(list, path, "Sprekk", errors);
 }
 

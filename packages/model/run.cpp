@@ -1,15 +1,19 @@
 #include "model/run.hpp"
 
+#include "base/text.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace sprekk::model {
 
@@ -45,6 +49,15 @@ std::vector<Real> times_after(const Time& time, Real t) {
   return times;
 }
 
+/// Whether any rank's answer is yes. Collective.
+bool any_rank(const Comm& comm, const std::function<bool()>& question) {
+  if (!question) return false;
+  const int here = question();
+  int any = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &any);
+  return any != 0;
+}
+
 /// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
 template <class Work>
 auto naming_file(const std::string& file, const Work& work) {
@@ -71,60 +84,86 @@ auto or_finished(Results& results, const Work& work) {
   }
 }
 
-}  // namespace
-
-bool run(const RunOptions& options, RCP<const Comm> comm) {
-  base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
-  const std::string directory =
-      options.output.empty() ? "output/" + std::filesystem::path(options.scene).stem().string() : options.output;
+/// Reads the scene and makes its model. If that fails, results of an earlier run do not pass for those of this one;
+/// what a restart was to go on from stays.
+std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& directory, RCP<const Comm> comm) {
   bool has_scene = false;
-  // So that results of an earlier run do not pass for those of this one; what a restart was to go on from stays.
-  const auto or_told = [&](const auto& work) {
-    try {
-      return naming_file(options.scene, work);
-    } catch (const Error& error) {
-      if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
-      throw;
-    }
-  };
-  const Scene scene = or_told([&] { return read_scene(*comm, options.scene, options.overrides); });
-  has_scene = true;
-  const auto made = or_told([&] { return std::make_unique<Model>(scene, comm); });
-  Model& model = *made;
-  log.info("{}: {} cells, {} nodes, {} fracture faces, {} ranks", options.scene, model.mesh().n_global_cells,
-           model.mesh().n_global_nodes, model.mesh().n_global_fracture_faces, comm->getSize());
-  const auto& partition = model.mesh().partition;
-  if (comm->getSize() > 1)
+  try {
+    return naming_file(options.scene, [&] {
+      const Scene scene = read_scene(*comm, options.scene, options.overrides);
+      has_scene = true;
+      return std::make_unique<Model>(scene, comm);
+    });
+  } catch (const Error& error) {
+    if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
+    throw;
+  }
+}
+
+void describe(const Model& model, base::Log& log) {
+  const auto& mesh = model.mesh();
+  const int n_ranks = mesh.comm->getSize();
+  log.info("{}: {} cells, {} nodes, {} fracture faces, {} ranks", model.scene().origin, mesh.n_global_cells,
+           mesh.n_global_nodes, mesh.n_global_fracture_faces, n_ranks);
+  const auto& partition = mesh.partition;
+  if (n_ranks > 1)
     log.info("partition: {} to {} cells per rank (largest/mean {:.3f}), {} to {} fracture faces ({:.3f}); {} cut edges",
              partition.cells[0], partition.cells[1], partition.cell_imbalance, partition.fracture_faces[0],
              partition.fracture_faces[1], partition.fracture_face_imbalance, partition.edge_cut);
   log.info("linear solver: {}", model.newton().linear().solver().describe());
-  Checkpointing checkpoints(model, directory, log);
-  if (!options.restart) checkpoints.start_anew();
-  const auto earlier =
-      options.restart ? naming_file(options.scene, [&] { return checkpoints.restore(); }) : nlohmann::json();
-  Results results(model, directory, earlier);
+}
+
+/// Takes the steps that are ahead of the model, until one fails or the run is to stop.
+Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, base::Log& log,
+                  const std::function<bool()>& should_stop) {
+  const Scene& scene = model.scene();
   const auto times = times_after(scene.time, model.time());
   if (times.empty()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Real begin = model.time();
-    const bool last = k + 1 == times.size();
+    bool last = k + 1 == times.size(), interrupted = false;
     const auto report = or_finished(results, [&] {
-      const auto step = naming_file(options.scene, [&] { return model.step_to(times[k]); });
+      const auto step = naming_file(scene.origin, [&] { return model.step_to(times[k]); });
+      interrupted = !last && step.converged && any_rank(*model.mesh().comm, should_stop);
+      last = last || interrupted;
       const auto faces = results.add_step(step, last || !step.converged);
       progress.add(step, times[k] - begin, faces);
       if (step.converged) checkpoints.after_step(results, last);
       return step;
     });
+    if (interrupted) {
+      results.finish("interrupted");
+      log.warning("interrupted after the step to t = {}; {}", times[k],
+                  scene.output.checkpoints ? "--restart goes on from the last checkpoint"
+                                           : "the scene asks for no checkpoints");
+      return Ending::interrupted;
+    }
     if (report.converged) continue;
     results.finish("failed", report.reason);
     log.warning("step to t = {} failed at t = {} after {} cuts: {}", times[k], report.time, report.cuts, report.reason);
-    return false;
+    return Ending::failed;
   }
   results.finish("completed");
-  log.info("results in {}", directory);
-  return true;
+  return Ending::completed;
+}
+
+}  // namespace
+
+Ending run(const RunOptions& options, RCP<const Comm> comm) {
+  base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
+  const std::string directory =
+      options.output.empty() ? "output/" + std::filesystem::path(options.scene).stem().string() : options.output;
+  const auto model = make_model(options, directory, comm);
+  describe(*model, log);
+  Checkpointing checkpoints(*model, directory, log);
+  if (!options.restart) checkpoints.start_anew();
+  std::optional<EarlierResults> earlier;
+  if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
+  Results results(*model, directory, earlier);
+  const auto ending = take_steps(*model, results, checkpoints, log, options.should_stop);
+  if (ending == Ending::completed) log.info("results in {}", directory);
+  return ending;
 }
 
 void check(const RunOptions& options, RCP<const Comm> comm) {
@@ -137,7 +176,7 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
 
 std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures) {
   mesh::MshOptions options;
-  for (const auto& name : fractures) options.fractures[name];
+  for (const auto& name : fractures) options.fractures[std::string(base::trimmed(name))];
   return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/types.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,19 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
   bool restart = false;                ///< go on from the last checkpoint in the output directory
   bool terminal = false;               ///< print a line per time step
+  std::function<bool()> should_stop;   ///< if not empty: asked on every rank after each step; true on any ends the run
 };
 
-/// Runs the scene, from its beginning or from a checkpoint, and writes its results. Returns true if all steps
-/// converged; a step that did not is reported, and what was computed before is kept. Throws an Error for bad input, the
-/// same on every rank. Collective.
-bool run(const RunOptions& options, RCP<const Comm> comm);
+enum class Ending {
+  completed,
+  failed,      ///< a step did not converge
+  interrupted  ///< should_stop said so before the last step
+};
+
+/// Runs the scene, from its beginning or from a checkpoint, and writes its results. A step that did not converge is
+/// reported, and what was computed before is kept. An interrupted run writes a checkpoint if the scene asks for any.
+/// Throws an Error for bad input, the same on every rank. Collective.
+Ending run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().
 /// Collective.

@@ -6,24 +6,18 @@
 #include "mesh/msh_reader.hpp"
 #include "mesh/periodic.hpp"
 #include "model/material_library.hpp"
+#include "model/scene_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
+#include <tuple>
 
 namespace sprekk::model {
 
 namespace {
 
 constexpr Real degree = 3.14159265358979323846 / 180;
-
-template <class T>
-std::vector<std::string> names_of(const std::map<std::string, T>& map) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : map) names.push_back(name);
-  return names;
-}
 
 void check_constant_in_time(base::Section& s, const std::string& entry, const base::Expression& value) {
   if (!value.constant_in_time())
@@ -246,83 +240,11 @@ void Scene::describe(base::Section& s) {
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");
-  const bool complete = s.complete();
+  if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
   std::vector<std::string> used = {bulk.material};
   for (const auto& [name, region] : regions) used.push_back(region.material);
   for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
   add_library_materials(materials, used);
-  const auto dim = mesh.lower_corner.size();
-  if (mesh_file || (!complete && dim != 2 && dim != 3)) return;
-  MeshNames names{static_cast<int>(dim), names_of(mesh.regions), {}, names_of(mesh.fractures)};
-  names.regions.push_back("bulk");
-  names.boundaries = {"west", "east", "south", "north"};
-  if (names.dim == 3) names.boundaries.insert(names.boundaries.end(), {"bottom", "top"});
-  for (const auto& misfit : misfits(names, complete)) s.fail_inside(misfit);
-}
-
-std::vector<std::string> Scene::misfits(const MeshNames& names, bool complete) const {
-  std::vector<std::string> errors;
-  const auto known = [&](const std::string& place, const std::string& name, const std::vector<std::string>& allowed) {
-    if (!complete && (name.empty() || allowed.empty())) return false;
-    for (const auto& a : allowed)
-      if (a == name) return true;
-    errors.push_back(allowed.empty() ? fmt::format("{}: is \"{}\", but the mesh has none with a name", place, name)
-                                     : fmt::format("{}: is \"{}\", must be one of {}{}", place, name,
-                                                   base::quoted_list(allowed), base::did_you_mean(name, allowed)));
-    return false;
-  };
-  const auto is_material = [&](const std::string& place, const std::string& name, const std::string& type) {
-    const auto found = materials.find(name);
-    if (!complete && (name.empty() || materials.empty())) return false;
-    if (!complete && found != materials.end() && found->second.type.empty()) return false;
-    const std::string wrong = wrong_material(name, type, materials);
-    if (!wrong.empty()) errors.push_back(fmt::format("{} > \"material\": {}", place, wrong));
-    return wrong.empty();
-  };
-  const auto has_length = [&](const std::string& place, std::size_t n, std::size_t wanted) {
-    if (n != 0 && n != wanted)
-      errors.push_back(fmt::format("{}: has {}, must have {}", place, base::counted(n, "value"), wanted));
-  };
-  const std::size_t dim = names.dim;
-  const bool has_rock = is_material("Bulk", bulk.material, "elastic");
-  has_length("Bulk > \"body force\"", bulk.body_force.size(), dim);
-  has_length("Bulk > \"gravity\"", bulk.gravity.size(), dim);
-  has_length("Bulk > \"initial stress\"", bulk.initial_stress.size(), dim == 2 ? 4 : 6);
-  for (const auto& [name, region] : regions)
-    if (known(fmt::format("Regions > \"{}\"", name), name, names.regions))
-      is_material("Regions > " + name, region.material, "elastic");
-  for (const auto& [name, fracture] : fractures)
-    if (known(fmt::format("Fractures > \"{}\"", name), name, names.fractures))
-      is_material("Fractures > " + name, fracture.material, "joint");
-  for (const auto& name : names.fractures)
-    if (!fractures.count(name) && (complete || !fractures.empty()))
-      errors.push_back(fmt::format("Fractures: \"{}\" is in the mesh and has no section here", name));
-  for (const auto& [name, condition] : boundary_conditions) {
-    const std::string place = "Boundary conditions > " + name;
-    known(place + " > \"boundary\"", condition.boundary, names.boundaries);
-    if (condition.region) known(place + " > \"region\"", *condition.region, names.regions);
-    has_length(place + " > \"displacement\"", condition.displacement.size(), dim);
-    has_length(place + " > \"traction\"", condition.traction.size(), dim);
-  }
-  if (complete && !bulk.gravity.empty()) {
-    std::set<std::string> rocks;
-    auto heavy = names.regions;
-    if (bulk.lithostatic_stress) heavy.push_back("bulk");  // whose density it takes
-    for (const auto& name : heavy) rocks.insert(regions.count(name) ? regions.at(name).material : bulk.material);
-    for (const auto& name : rocks)
-      if (const auto rock = materials.find(name);
-          rock != materials.end() && rock->second.type == "elastic" && !rock->second.density)
-        errors.push_back(fmt::format("Materials > {} > \"density\": missing; it is required with \"gravity\"", name));
-  }
-  if (bulk.lithostatic_stress && has_rock && bulk.gravity.size() == dim) {
-    if (const auto& density = material_of("bulk").density; density && !density->is_constant())
-      errors.push_back(
-          "Bulk > lithostatic stress: needs a density that is a number; give an \"initial stress\" instead");
-    for (std::size_t i = 0; i + 1 < dim; ++i)
-      if (bulk.gravity[i] != 0)
-        errors.push_back("Bulk > lithostatic stress: needs gravity along the last coordinate only");
-  }
-  return errors;
 }
 
 mesh::GlobalMesh Scene::make_mesh() const {
@@ -366,28 +288,50 @@ const Material& Scene::material_of(const std::string& region) const {
 
 namespace {
 
-Scene from_list(const Teuchos::ParameterList& list, const std::string& origin,
-                const std::vector<std::string>& errors = {}) {
-  Scene scene = base::read<Scene>(list, origin, "Sprekk", errors);
-  scene.origin = origin;
-  return scene;
+base::Draft<Scene> from_list(const Teuchos::ParameterList& list, const std::string& origin,
+                             const std::vector<std::string>& errors = {}) {
+  auto draft = base::draft<Scene>(list, origin, "Sprekk", errors);
+  draft.value.origin = origin;
+  return draft;
+}
+
+/// Adds to a material's list its entries of the other type, which effective() leaves out: so that they are refused.
+void add_stray_entries(Teuchos::ParameterList& list, const Material& material) {
+  Material other = material, none;
+  other.type = none.type = material.type == "joint" ? "elastic" : "joint";
+  const auto defaults = base::effective(none, "");
+  for (const auto& named_entry : base::effective(other, "")) {
+    const auto& [name, entry] = std::tie(named_entry.first, named_entry.second);
+    if (!defaults.isParameter(name) || base::value_text(defaults.getEntry(name)) != base::value_text(entry))
+      list.setEntry(name, entry);
+  }
 }
 
 }  // namespace
 
-Scene prepared(const Scene& scene) {
+base::Draft<Scene> prepared(const Scene& scene) {
   Scene copy = scene;  // which describe() could change
-  return from_list(base::effective(copy, "Sprekk"), scene.origin);
+  auto list = base::effective(copy, "Sprekk");
+  for (const auto& [name, material] : scene.materials)
+    add_stray_entries(list.sublist("Materials").sublist(name), material);
+  return from_list(list, scene.origin);
 }
 
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
   auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
-  const auto errors = base::apply_overrides(list, overrides);
-  Scene scene = from_list(list, path, errors);
-  if (scene.mesh_file)
-    scene.mesh_file->path =
-        std::filesystem::absolute(std::filesystem::path(path).parent_path() / scene.mesh_file->path).string();
-  return scene;
+  const bool has_body = list.isParameter("Mesh") || list.isParameter("Mesh file") || list.isParameter("Bulk");
+  SPREKK_CHECK(has_body || !list.isParameter("Point"),
+               "{}: is a scene for `sprekk point`: it has the section \"Point\" and neither mesh nor \"Bulk\"", path);
+  const auto errors = base::apply_overrides(list, path, overrides);
+  auto draft = from_list(list, path, errors);
+  auto& file = draft.value.mesh_file;
+  if (file && !file->path.empty())
+    file->path = std::filesystem::absolute(std::filesystem::path(path).parent_path() / file->path).string();
+  base::collectively(comm, [&] {
+    const bool is_wrong = !draft.report.errors.empty() || !misfits(draft, names_in_scene(draft)).empty();
+    if (is_wrong && comm.getRank() == 0) checked_mesh(draft);
+  });
+  return std::move(draft.value);
 }
 
 }  // namespace sprekk::model

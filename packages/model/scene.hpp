@@ -120,12 +120,6 @@ struct Output {
   void describe(base::Section& section);
 };
 
-/// What a scene must fit to.
-struct MeshNames {
-  int dim;
-  std::vector<std::string> regions, boundaries, fractures;
-};
-
 struct Scene {
   std::string origin = "scene";  ///< opens messages about it: the file that it was read from
   mesh::BoxMesh mesh;
@@ -145,19 +139,16 @@ struct Scene {
   mesh::GlobalMesh make_mesh() const;
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
-
-  /// What names and lengths do not fit to a mesh, a line each; empty if nothing. If the scene is not `complete`,
-  /// because entries could not be read, what they leave empty is no misfit.
-  std::vector<std::string> misfits(const MeshNames& names, bool complete = true) const;
 };
 
 /// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,
-/// expressions made ready. What holds for one that was read does not change. Throws one Error with a line for each
-/// thing that is wrong. Not collective.
-Scene prepared(const Scene& scene);
+/// expressions made ready; and what is wrong with its entries. What holds for one that was read does not change. Not
+/// collective.
+base::Draft<Scene> prepared(const Scene& scene);
 
-/// Reads a scene file, applies overrides "Path.To.Entry=value", checks everything that can be checked without running,
-/// and makes the expressions ready. Throws one Error with a line for each thing that is wrong. Collective.
+/// Reads a scene file, applies overrides "Path.To.Entry=value", checks its entries, and makes the expressions ready.
+/// Where an entry is wrong, the mesh is made to check the rest as well; throws one Error with a line for each thing
+/// that is wrong, see checked_mesh(). Collective.
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
 
 }  // namespace sprekk::model

@@ -217,8 +217,10 @@ class Meshes(BadInput):
                          replaced(SQUARES, ("20 1 2 1 1 2 5", "20 1 2 1 1 2 4")))
         outside = replaced(SQUARES, ("\n6\n1 0 0 0", "\n7\n7 1 2 0\n1 0 0 0"), ("20 1 2 1 1 2 5", "20 1 2 1 1 5 7"))
         self.refuse_mesh(['element 20 at (1, 1, 0) of the physical group "f1" is no face of a cell'], outside)
-        self.refuse_mesh(['element 20 at (1, 0.5, 0) of the physical group "f1" lies inside', 'list "f1" among the fractures'],
-                         SQUARES, fractures="")
+        self.refuse_mesh(['element 20 at (1, 0.5, 0) of the physical group "f1" lies inside', 'if it is a fracture, list "f1" among the fractures',
+                          'boundaries are "south", "north", "outer"'], SQUARES, fractures="")
+        self.refuse(['"f1" lies inside', 'as do "f2"', 'list "f1", "f2" among', 'boundaries are "south", "east", "north", "west"'],
+                    "mesh-info", self.scene("gmsh/crossing.msh"))
 
     def test_names_that_the_mesh_lacks(self):
         moved = "Boundary conditions.moved.boundary"
@@ -304,6 +306,101 @@ class Scenes(BadInput):
                         "Mesh.cells={1, 2}")
 
 
+    def test_numbers_with_commas(self):
+        """Each hint helps where it is due, and is silent elsewhere."""
+        hint = "numbers have a decimal point and no separators of thousands"
+        for value in ("30,000 MPa", "30 000", "30'000", "-1,5"):
+            self.refuse_set([f'"shear modulus": is "{value}"', hint], f"Materials.rock.shear modulus={value}")
+        self.refuse_set(['"end": is the string "1,5"', hint], "Time.end=1,5")
+        err = self.refuse_set(['"soon"'], "Time.end=soon")
+        self.assertNotIn(hint, err)
+        xml = self.scene_with(('<Parameter name="end" type="double" value="1"/>', '<Parameter name="end" type="double" value="1,5"/>'))
+        self.refuse(['"end": is "1,5", not a number', hint], "check", xml)
+
+    def test_units(self):
+        moved = "Boundary conditions.moved."
+        self.refuse_set(['"30 GPs"', 'unknown unit "GPs". Did you mean "GPa"?'], "Materials.rock.shear modulus=30 GPs")
+        for value in ("-10 mm*t", "t*10*mm"):
+            self.refuse_set([value, "a unit can only follow a number, not be within an expression", "in SI units"],
+                            moved + f"displacement={{0, {value}}}")
+
+    def test_scene_of_the_other_kind(self):
+        point = "point/cyclic_shear.xml"
+        for command in ("run", "check"):
+            err = self.refuse([point, "is a scene for `sprekk point`"], command, self.scene(point))
+            self.assertEqual(err.count("\n"), 1, err)
+        err = self.refuse([PUSH, "is a scene for `sprekk run`"], "point", self.scene(PUSH))
+        self.assertEqual(err.count("\n"), 1, err)
+
+
+class AllAtOnce(BadInput):
+    """What is wrong with entries, names, the mesh and the conditions is told together, and nothing that only follows."""
+
+    def refuse_all(self, lines, *arguments):
+        """Every one of the lines has the words of one of `lines`, and opens with the scene's name."""
+        for command in ("check", "run"):
+            err = self.refuse([], command, *arguments)
+            told = err.removeprefix("sprekk: ").splitlines()
+            self.assertEqual(len(told), len(lines), err)
+            for words in lines:
+                self.assertEqual(sum(all(word in line for word in words) for line in told), 1, (words, err))
+            for line in told:
+                self.assertTrue(line.startswith(f"{arguments[0]}: "), err)
+
+    def sets(self, *overrides):
+        return [word for override in overrides for word in ("--set", override)]
+
+    TYPO = "Solver.tolerence=1"
+    TYPO_TOLD = ['"tolerence"', "unknown"]
+    CLASH = ("Boundary conditions.third.boundary=south", "Boundary conditions.third.displacement={0.5, free}")
+    CLASH_TOLD = ['"fixed" and "third" prescribe', "component x"]
+
+    def test_box(self):
+        scene = self.scene(PUSH)
+        conflict = self.sets(self.TYPO, *self.CLASH)
+        self.refuse_all([self.TYPO_TOLD, self.CLASH_TOLD], scene, *conflict)
+        self.refuse_all([self.TYPO_TOLD, self.CLASH_TOLD, ['moved > "boundary"', '"nort"'], ['Regions > "rok"', '"bulk"'],
+                         ['Bulk > "material"', '"rok"'], ['fourth > "displacement"', "3 values"], ['"density": missing']],
+                        scene, *conflict,
+                        *self.sets("Boundary conditions.moved.boundary=nort", "Regions.rok.material=rock", "Bulk.material=rok",
+                                   "Boundary conditions.fourth.boundary=east", "Boundary conditions.fourth.displacement={0, 0, 0}",
+                                   "Bulk.gravity={0, -1}", "Regions.bulk.material=rock"))
+        loose = ("Boundary conditions.fixed.displacement={free, 0}", "Boundary conditions.moved.displacement={free, -1}")
+        self.refuse_all([self.TYPO_TOLD, ["nothing holds the rock"]], scene, *self.sets(self.TYPO, *loose))
+        both = ("Boundary conditions.fourth.boundary=north", "Boundary conditions.fourth.displacement={free, 1}")
+        self.refuse_all([['"fourth" and "moved" prescribe', "component y"], ["nothing holds the rock"]], scene, *self.sets(*loose, *both))
+        self.refuse_all([self.TYPO_TOLD, ['"displacement"[1]: "0/(t-1)"', "is nan"]], scene,
+                        *self.sets(self.TYPO, "Boundary conditions.moved.displacement={0, 0/(t-1)}"))
+
+    def test_what_only_follows_is_not_told(self):
+        scene = self.scene(PUSH)
+        moved = "Boundary conditions.moved."
+        unknown = ['moved > "displacment"', "unknown"]
+        loose = ("Boundary conditions.fixed.displacement={free, 0}", moved + "displacement={free, -1}")
+        self.refuse_all([unknown], scene, *self.sets(*loose, moved + "displacment=1"))  # it may hold the rock
+        self.refuse_all([['"endd"', "unknown"]], scene, *self.sets(
+            "Time.endd=2", "Boundary conditions.third.boundary=west", "Boundary conditions.third.displacement={t-2, 0}"))
+        self.refuse_all([['"cels"', "unknown"]], scene, *self.sets(*self.CLASH, "Mesh.cels={2, 2}"))
+        text = self.scene(PUSH).read_text()
+        for section in ("Boundary conditions", "Fractures", "Materials"):
+            (self.folder / "a.xml").write_text(replaced(text, (f'<ParameterList name="{section}">', f'<ParameterList name="{section}s">')))
+            self.refuse_all([[f'"{section}s"', "unknown"]], "a.xml")
+        (self.folder / "a.xml").write_text(replaced(text, ('<ParameterList name="Mesh">', '<ParameterList name="Msh">')))
+        self.refuse_all([['"Msh"', "unknown"], *[[f'Mesh > "{name}"', "missing"] for name in ("cell", "cells", "lower corner", "upper corner")]],
+                        "a.xml")
+
+    def test_mesh_file(self):
+        scene = self.scene("gmsh/crossing.xml")
+        absent = ("Mesh file.path=absent.msh", ["absent.msh: there is no such file"])
+        rok = ("Bulk.material=rok", ['Bulk > "material"', '"rok"'])
+        self.refuse_all([absent[1], rok[1], self.TYPO_TOLD, ['Fractures > "f3"', '"f2"']], scene,
+                        *self.sets(absent[0], rok[0], self.TYPO, "Fractures.f3.material=joint"))
+        self.refuse_all([absent[1], ['"ordr"', "unknown"]], scene, *self.sets(absent[0], "Mesh file.ordr=1"))
+        self.refuse_all([rok[1], self.TYPO_TOLD, ['third > "boundary"', '"nort"', '"north"'], ['"a" and "held" prescribe', "component x"]], scene,
+                        *self.sets(rok[0], self.TYPO, "Boundary conditions.third.boundary=nort", "Boundary conditions.third.traction={0, 0}",
+                                   "Boundary conditions.a.boundary=south", "Boundary conditions.a.displacement={1, free}"))
+
+
 class Outputs(BadInput):
     def test_directory(self):
         (self.folder / "file").write_text("")
@@ -353,10 +450,15 @@ class Outputs(BadInput):
 class CommandLine(BadInput):
     def test_status_2(self):
         scene = self.scene(PUSH)
-        self.refuse(['"foo" is not of the form Path.To.Entry=value'], "check", scene, "--set", "foo", status=2)
-        self.refuse(['"=3" is not of the form'], "check", scene, "--set", "=3", status=2)
         self.refuse(["--sett"], "run", scene, "--sett", "a=1", status=2)
         self.refuse(["scene"], "run", status=2)
+        self.refuse(["--output: is empty, must name a directory"], "run", scene, "--output", "", status=2)
+        self.refuse(["not expected: 4}; blanks and braces need quotes: --set "], "check", scene, "--set", "a={4,", "4}", status=2)
+
+    def test_overrides_are_input(self):
+        scene = self.scene(PUSH)
+        self.refuse(['override "foo": has no "="'], "check", scene, "--set", "foo")
+        self.refuse(['override "=3": has an empty name'], "check", scene, "--set", "=3")
 
     def test_missing_files_are_wrong_input(self):
         for command in ("run", "check", "point", "mesh-info"):

@@ -208,6 +208,7 @@ class Commands(ProgramTest):
     def test_mesh_info(self):
         meshes = ROOT / "tests" / "data" / "meshes"
         flat, _ = self.call("mesh-info", meshes / "x_order1_v41.msh", "--fractures", "f1,f2")
+        self.assertEqual(self.call("mesh-info", meshes / "x_order1_v41.msh", "--fractures", " f1, f2")[0], flat)
         for line in ("cells         82 triangles of order 1", "nodes         65, 7 of them copies along fractures",
                      'region        "rock": 82 cells, area 16', 'boundary      "south": 8 faces, length 4',
                      'fracture      "f1": 4 faces, length 3.2', "tips          4 points", "intersections 1 points",

@@ -79,6 +79,7 @@ TEST(Units, texts_that_are_no_units) {
   EXPECT_NE(defect_of_unit(std::string(100000, '(')), "");
   EXPECT_EQ(defect_of_unit("gpa"), "unknown unit \"gpa\". Did you mean \"GPa\"?");
   EXPECT_EQ(defect_of_unit("mpa/m"), "unknown unit \"mpa\". Did you mean \"MPa\"?");
+  EXPECT_EQ(defect_of_unit("GPs"), "unknown unit \"GPs\". Did you mean \"GPa\"?");
   EXPECT_EQ(defect_of_unit("degre"), "unknown unit \"degre\". Did you mean \"degree\"?");
   for (const char* text : {"", "Pa", "1", "1e5", "1 *x", "1, 2", "nan m", "infinite m", "1e999 m", "--1 m"})
     EXPECT_FALSE(parse_quantity(text)) << text;
@@ -106,7 +107,7 @@ struct Rock {
 
 Rock rock_with(const std::string& entries, const std::vector<std::string>& overrides = {}) {
   auto list = parse_xml("<ParameterList name=\"R\">" + entries + "</ParameterList>", "f", "R", Defects::keep);
-  return read<Rock>(list, "f", "R", apply_overrides(list, overrides));
+  return read<Rock>(list, "f", "R", apply_overrides(list, "f", overrides));
 }
 std::string entry(const std::string& name, const std::string& type, const std::string& value) {
   return fmt::format("<Parameter name=\"{}\" type=\"{}\" value=\"{}\"/>", name, type, value);

@@ -1,0 +1,276 @@
+#include "model/scene_check.hpp"
+
+#include "assembly/free_motion.hpp"
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "mesh/msh_file.hpp"
+#include "model/material_library.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace sprekk::model {
+
+namespace {
+
+using Draft = base::Draft<Scene>;
+using Names = std::vector<std::string>;
+
+/// Whether a section was read without an error in it.
+bool is_sound(const Draft& draft, const std::string& section) { return draft.report.is_sound("Sprekk > " + section); }
+
+/// Whether the scene has no such section; else it may have one that could not be read, or with a misspelt name.
+bool is_absent(const Draft& draft, const std::string& section) {
+  return is_sound(draft, section) && !draft.report.with_unknown_names.count("Sprekk");
+}
+
+bool has(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+int index_of(const Names& names, const std::string& name) {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+template <class T>
+Names names_of(const std::map<std::string, T>& map) {
+  Names names;
+  for (const auto& [name, value] : map) names.push_back(name);
+  return names;
+}
+
+/// Compares the parts of a scene; what could not be read is passed over.
+class Comparison {
+ public:
+  Comparison(const Draft& draft, const MeshNames& names) : draft_(draft), scene_(draft.value), names_(names) {}
+
+  std::vector<std::string> misfits() {
+    compare_bulk();
+    compare_regions();
+    compare_fractures();
+    compare_boundary_conditions();
+    compare_gravity();
+    compare_lithostatic_stress();
+    return std::move(errors_);
+  }
+
+ private:
+  bool is_sound(const std::string& section) const { return model::is_sound(draft_, section); }
+
+  void fail(const std::string& place, const std::string& what) {
+    errors_.push_back(fmt::format("{}: Sprekk > {}: {}", scene_.origin, place, what));
+  }
+
+  /// Whether a name in `section` may be one of those allowed.
+  bool check_name(const std::string& section, const std::string& place, const std::string& name,
+                  const std::optional<Names>& allowed) {
+    if (!allowed || has(*allowed, name) || (name.empty() && !is_sound(section))) return true;
+    fail(place, allowed->empty() ? fmt::format("is \"{}\", but the mesh has none with a name", name)
+                                 : fmt::format("is \"{}\", must be one of {}{}", name, base::quoted_list(*allowed),
+                                               base::did_you_mean(name, *allowed)));
+    return false;
+  }
+
+  void check_material(const std::string& section, const std::string& name, const std::string& type) {
+    const auto found = scene_.materials.find(name);
+    const bool unreadable =
+        found == scene_.materials.end()
+            ? !is_sound("Materials > " + name) || (scene_.materials.empty() && !is_absent(draft_, "Materials"))
+            : found->second.type.empty();
+    if (unreadable || (name.empty() && !is_sound(section))) return;
+    const std::string wrong = wrong_material(name, type, scene_.materials);
+    if (!wrong.empty()) fail(section + " > \"material\"", wrong);
+  }
+
+  /// Nothing given has no length.
+  void check_length(const std::string& place, std::size_t n, const std::optional<int>& wanted) {
+    if (wanted && n != 0 && n != static_cast<std::size_t>(*wanted))
+      fail(place, fmt::format("has {}, must have {}", base::counted(n, "value"), *wanted));
+  }
+
+  void compare_bulk() {
+    check_material("Bulk", scene_.bulk.material, "elastic");
+    check_length("Bulk > \"body force\"", scene_.bulk.body_force.size(), names_.dim);
+    check_length("Bulk > \"gravity\"", scene_.bulk.gravity.size(), names_.dim);
+    std::optional<int> n_stresses;
+    if (names_.dim) n_stresses = *names_.dim == 2 ? 4 : 6;
+    check_length("Bulk > \"initial stress\"", scene_.bulk.initial_stress.size(), n_stresses);
+  }
+
+  void compare_regions() {
+    for (const auto& [name, region] : scene_.regions)
+      if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions))
+        check_material("Regions > " + name, region.material, "elastic");
+  }
+
+  void compare_fractures() {
+    for (const auto& [name, fracture] : scene_.fractures)
+      if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
+        check_material("Fractures > " + name, fracture.material, "joint");
+    if (!names_.fractures || (scene_.fractures.empty() && !is_absent(draft_, "Fractures"))) return;
+    for (const auto& name : *names_.fractures)
+      if (!scene_.fractures.count(name) && is_sound("Fractures > " + name))
+        fail("Fractures", fmt::format("\"{}\" is in the mesh and has no section here", name));
+  }
+
+  void compare_boundary_conditions() {
+    for (const auto& [name, condition] : scene_.boundary_conditions) {
+      const std::string section = "Boundary conditions > " + name;
+      check_name(section, section + " > \"boundary\"", condition.boundary, names_.boundaries);
+      if (condition.region) check_name(section, section + " > \"region\"", *condition.region, names_.regions);
+      check_length(section + " > \"displacement\"", condition.displacement.size(), names_.dim);
+      check_length(section + " > \"traction\"", condition.traction.size(), names_.dim);
+    }
+  }
+
+  /// The material of a region, if it is rock.
+  const Material* rock_of(const std::string& region) const {
+    const auto own = scene_.regions.find(region);
+    const auto found = scene_.materials.find(own == scene_.regions.end() ? scene_.bulk.material : own->second.material);
+    return found == scene_.materials.end() || found->second.type != "elastic" ? nullptr : &found->second;
+  }
+
+  void compare_gravity() {
+    if (scene_.bulk.gravity.empty() || !names_.regions || !is_sound("Regions")) return;
+    std::set<const Material*> heavy;
+    for (const auto& name : *names_.regions) heavy.insert(rock_of(name));
+    if (scene_.bulk.lithostatic_stress) heavy.insert(rock_of("bulk"));  // whose density it takes
+    for (const auto& [name, material] : scene_.materials)
+      if (heavy.count(&material) && !material.density && is_sound("Materials > " + name))
+        fail(fmt::format("Materials > {} > \"density\"", name), "missing; it is required with \"gravity\"");
+  }
+
+  void compare_lithostatic_stress() {
+    const auto& gravity = scene_.bulk.gravity;
+    if (!scene_.bulk.lithostatic_stress || gravity.empty()) return;
+    const std::string place = "Bulk > lithostatic stress";
+    if (const auto* rock = rock_of("bulk"); rock && rock->density && !rock->density->is_constant())
+      fail(place, "needs a density that is a number; give an \"initial stress\" instead");
+    if (std::any_of(gravity.begin(), gravity.end() - 1, [](Real g) { return g != 0; }))
+      fail(place, "needs gravity along the last coordinate only");
+  }
+
+  const Draft& draft_;
+  const Scene& scene_;
+  const MeshNames& names_;
+  std::vector<std::string> errors_;
+};
+
+/// The conditions that could be read and fit to the mesh.
+std::map<std::string, BoundaryCondition> fitting_conditions(const Draft& draft, const mesh::GlobalMesh& mesh) {
+  std::map<std::string, BoundaryCondition> result;
+  for (const auto& [name, condition] : draft.value.boundary_conditions) {
+    const auto n = condition.displacement.size();
+    if (is_sound(draft, "Boundary conditions > " + name) && has(mesh.boundary_names, condition.boundary) &&
+        (!condition.region || has(mesh.region_names, *condition.region)) &&
+        (n == 0 || n == static_cast<std::size_t>(mesh.dim())))
+      result.emplace(name, condition);
+  }
+  return result;
+}
+
+/// Whether the values of a condition at the end of the first step are known.
+bool can_be_evaluated(const Draft& draft, const BoundaryCondition& condition) {
+  return (is_sound(draft, "Time") && is_sound(draft, "Tables")) ||
+         std::all_of(condition.displacement.begin(), condition.displacement.end(),
+                     [](const auto& value) { return value.text() == "free" || value.is_constant(); });
+}
+
+std::vector<std::string> conflicts(const Draft& draft, const mesh::GlobalMesh& mesh,
+                                   std::map<std::string, BoundaryCondition> conditions) {
+  for (auto it = conditions.begin(); it != conditions.end();)
+    it = can_be_evaluated(draft, it->second) ? std::next(it) : conditions.erase(it);
+  return assembly::find_conflicts(mesh, dirichlet_conditions(conditions, mesh.boundary_names, mesh.region_names),
+                                  is_sound(draft, "Time") ? draft.value.time.times().front() : 0);
+}
+
+/// What nothing holds, if all conditions are known.
+std::string unheld_rock(const Draft& draft, const mesh::GlobalMesh& mesh,
+                        const std::map<std::string, BoundaryCondition>& conditions) {
+  const bool all = conditions.size() == draft.value.boundary_conditions.size() &&
+                   (conditions.empty() ? is_absent : is_sound)(draft, "Boundary conditions");
+  return all ? assembly::unheld(mesh, dirichlet_conditions(conditions, mesh.boundary_names, mesh.region_names)) : "";
+}
+
+}  // namespace
+
+MeshNames names_in_scene(const Draft& draft) {
+  const Scene& scene = draft.value;
+  MeshNames names;
+  if (scene.mesh_file) {
+    if (is_sound(draft, "Mesh file")) names.fractures = names_of(scene.mesh_file->fractures);
+    return names;
+  }
+  const auto& box = scene.mesh;
+  const bool sound = is_sound(draft, "Mesh");
+  const auto n = box.cells.size();
+  const bool was_read = sound || box.cells != mesh::BoxMesh{}.cells;
+  if (was_read && (n == 2 || n == 3) && box.lower_corner.size() == n && box.upper_corner.size() == n) {
+    names.dim = static_cast<int>(n);
+    names.boundaries = {"west", "east", "south", "north"};
+    if (n == 3) names.boundaries->insert(names.boundaries->end(), {"bottom", "top"});
+  }
+  if (sound || (is_sound(draft, "Mesh > regions") && !box.regions.empty())) {
+    names.regions = names_of(box.regions);
+    names.regions->push_back("bulk");
+  }
+  if (sound || (is_sound(draft, "Mesh > fractures") && !box.fractures.empty()))
+    names.fractures = names_of(box.fractures);
+  return names;
+}
+
+std::vector<std::string> misfits(const Draft& draft, const MeshNames& names) {
+  return Comparison(draft, names).misfits();
+}
+
+std::vector<assembly::DirichletCondition> dirichlet_conditions(const std::map<std::string, BoundaryCondition>& given,
+                                                               const Names& boundary_names, const Names& region_names) {
+  std::vector<assembly::DirichletCondition> conditions;
+  for (const auto& [name, one] : given) {
+    if (one.displacement.empty()) continue;
+    assembly::DirichletCondition condition{name, "displacement", index_of(boundary_names, one.boundary), {}};
+    if (one.region) condition.region = index_of(region_names, *one.region);
+    for (const auto& value : one.displacement)
+      condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
+    conditions.push_back(condition);
+  }
+  return conditions;
+}
+
+mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unheld) {
+  const Scene& scene = draft.value;
+  auto errors = draft.report.errors;
+  const auto attempt = [&](const auto& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      errors.push_back(scene.origin + ": " + error.what());
+    }
+  };
+  std::optional<mesh::GlobalMesh> mesh;
+  if (is_sound(draft, scene.mesh_file ? "Mesh file" : "Mesh"))
+    attempt([&] { mesh = scene.make_mesh(); });
+  else if (scene.mesh_file && !scene.mesh_file->path.empty())
+    attempt([&] { mesh::read_msh_file(scene.mesh_file->path); });
+  for (const auto& misfit :
+       misfits(draft, mesh ? MeshNames{mesh->dim(), mesh->region_names, mesh->boundary_names, mesh->fracture_names}
+                           : names_in_scene(draft)))
+    errors.push_back(misfit);
+  if (mesh) {
+    const auto conditions = fitting_conditions(draft, *mesh);
+    try {
+      for (const auto& conflict : conflicts(draft, *mesh, conditions)) errors.push_back(scene.origin + ": " + conflict);
+    } catch (const Error& error) {  // an expression has no value there; alone, it is told by a step that goes there
+      if (!errors.empty()) errors.push_back(scene.origin + ": " + error.what());
+    }
+    const std::string loose = unheld_rock(draft, *mesh, conditions);
+    if (unheld)
+      *unheld = loose;
+    else if (!loose.empty())
+      errors.push_back(scene.origin + ": " + loose);
+  }
+  base::throw_errors(errors);
+  return std::move(*mesh);
+}
+
+}  // namespace sprekk::model
