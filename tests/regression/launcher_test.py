@@ -2,10 +2,13 @@
 """The launcher ./sprekk: launcher_test.py PROGRAM ROOT MPIEXEC
 
 A copy of it, where building is replaced: words go to the program, statuses come back, wrong words are refused."""
+import fcntl
 import os
 import re
 import shutil
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 import program
@@ -32,10 +35,12 @@ class Launcher(ProgramTest):
             stub.write_text("#!/usr/bin/env bash\n" + content + "\n")
             stub.chmod(0o755)
 
-    def launch(self, *words, expect=0):
         path = os.pathsep.join([str(self.folder / "stubs"), str(Path(program.MPIEXEC).parent), os.environ["PATH"]])
-        done = subprocess.run(["timeout", "60", "./sprekk", *words], cwd=self.folder, env={**os.environ, "PATH": path},
-                              capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        self.surroundings = {"cwd": self.folder, "env": {**os.environ, "PATH": path}, "text": True,
+                             "stdin": subprocess.DEVNULL}
+
+    def launch(self, *words, expect=0):
+        done = subprocess.run(["timeout", "60", "./sprekk", *words], capture_output=True, **self.surroundings)
         self.assertEqual(done.returncode, expect, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout, done.stderr
 
@@ -51,9 +56,31 @@ class Launcher(ProgramTest):
         for ranks in ("1", "3"):
             _, err = self.launch("run", PUSH, "--ranks", ranks, "--set", "Bulk.material=rok", expect=1)
             self.assertIn('"rok"', err)
-            self.launch("run", PUSH, "--ranks", ranks, "--set=Time", expect=2)
+            self.launch("run", PUSH, "--ranks", ranks, "--set=Time", expect=1)
+            self.launch("run", PUSH, "--ranks", ranks, "--steps", "3", expect=2)
             self.launch("run", PUSH, "--ranks", ranks, "--set", "Solver.maximum iterations=1", "--set",
                         "Solver.tolerance=1e-300", "--set", "Time.maximum halvings=0", expect=3)
+
+    def test_interrupted(self):
+        """Ctrl-C reaches all processes of the terminal's group. A second one ends a step that takes long."""
+        for ranks, cells, times, status in (("1", "{2, 2}", 1, 4), ("2", "{2, 2}", 1, 4), ("2", "{150, 150}", 2, 1)):
+            with self.subTest(ranks=ranks, cells=cells):
+                run = subprocess.Popen(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set",
+                                        "Time.steps=2000", "--set", "Output.vtu=false", "--set", "Mesh.cells=" + cells],
+                                       stderr=subprocess.PIPE, start_new_session=True, **self.surroundings)
+                while not (self.folder / "out/results.json").exists():
+                    self.assertIsNone(run.poll())
+                    time.sleep(0.01)
+                os.killpg(run.pid, signal.SIGINT)
+                while "stopping after this step" not in (line := run.stderr.readline()):
+                    self.assertTrue(line)
+                if times == 2:
+                    os.killpg(run.pid, signal.SIGINT)
+                self.assertEqual(run.wait(timeout=20), status)
+                if times == 1:
+                    self.assertEqual(self.results()["status"], "interrupted")
+                run.communicate()
+                shutil.rmtree(self.folder / "out")
 
     def test_words_that_are_refused(self):
         for words in ([], ["walk"], ["run"], ["run", PUSH, PUSH], ["run", PUSH, "--ranks"], ["run", PUSH, "--ranks", "0"],
@@ -74,8 +101,31 @@ class Launcher(ProgramTest):
                 self.assertIn(command, out)
         self.assertEqual(self.launch("run", "--help")[0], out)
 
+    def test_perf_runs_a_measurement(self):
+        measurement = self.folder / "perf/greet/greet.py"
+        measurement.parent.mkdir(parents=True)
+        measurement.write_text("import sys; print(sys.argv[1:]); sys.exit(3)")
+        out, _ = self.launch("perf", "greet", "--quick", "--only", "a b", expect=3)
+        self.assertEqual(out, "['--quick', '--only', 'a b']\n")
+        for words in (["perf"], ["perf", "walk"], ["perf", "--help"]):
+            self.assertIn("greet", self.launch(*words, expect=2)[1])
+
     def test_version_is_that_of_the_program(self):
         self.assertEqual(self.launch("--version")[0], self.call("--version")[0])
+
+    def test_build_of_another_user(self):
+        (self.folder / "build/.lock").mkdir()  # cannot be opened, even by root
+        _, err = self.launch("check", PUSH, expect=1)
+        self.assertRegex(err, "build cannot be written; it belongs to .*\n.*build/apps/sprekk/sprekk, or copy the tree")
+
+    def test_build_beside_another(self):
+        with open(self.folder / "build/.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            run = subprocess.Popen(["./sprekk", "check", PUSH], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   **self.surroundings)
+            self.assertIn("waiting for another build", run.stderr.readline())
+        with run:
+            self.assertEqual(run.wait(timeout=20), 0)
 
     def test_build_that_fails(self):
         (self.folder / "broken").touch()

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Robustness of the contact solver: runs scenes one after the other and prints a table.
+
+A step is one that the scene asks for; its Newton iterations are those of all its substeps, rejected ones too."""
+import argparse
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "apps/plot")]
+
+import numpy as np  # noqa: E402
+
+import violation  # noqa: E402
+from scenes import scenes  # noqa: E402
+
+TIME_LIMIT = 60  # seconds, of one scene
+BOUNDS = {"median": 5, "p90": 15, "max": 30, "worst_violation": 1e-8}  # what --quick as a test demands
+COLUMNS = ("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures", "residual", "violation", "by program",
+           "error", "undirected", "seconds")
+SMALL = ("residual", "violation", "by program", "error")
+
+
+@dataclass
+class Run:
+    """What is known of a scene that has been run. `failures` says in words what is wrong."""
+    scene: object
+    directory: Path
+    seconds: float = 0
+    words: str = ""
+    results: dict = field(default_factory=dict)
+    input: object = None
+    faces: list = field(default_factory=list)
+    scales: object = None
+    worst: object = None
+    undirected: int = 0
+    error: float = None
+    failures: list = field(default_factory=list)
+
+    @property
+    def steps(self):
+        return self.results.get("steps", [])
+
+    @property
+    def newton(self):
+        return [step["newton_iterations"] for step in self.steps]
+
+    @property
+    def dim(self):
+        return self.results["mesh"]["dimension"]
+
+    @property
+    def unknowns(self):
+        return next(f["unknowns"] for f in self.results["blocks"]["fields"] if f["name"] == "displacement")
+
+    @property
+    def measured(self):
+        """Whether the run belongs into the counts."""
+        return bool(self.steps) and not self.scene.refused
+
+
+def start(options, scene, ranks):
+    """Runs the scene; the status is None after the time limit."""
+    directory = options.output / re.sub(r"[^\w.+-]+", "_", scene.name) / f"{ranks}"
+    shutil.rmtree(directory, ignore_errors=True)
+    command = [str(options.binary), "run", str(ROOT / "xml" / scene.file), "--output", str(directory)]
+    command += [word for entry in scene.sets for word in ("--set", entry)]
+    if ranks > 1:
+        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
+    run, begin = Run(scene, directory), time.monotonic()
+    done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    run.words, status = done.stdout + done.stderr, None if done.returncode in (124, 137) else done.returncode
+    run.seconds = time.monotonic() - begin
+    if (directory / "results.json").is_file():
+        run.results = json.loads((directory / "results.json").read_text())
+    return run, status
+
+
+def judge(run, status):
+    """Fills in what follows from the results, and what is wrong with them."""
+    scene = run.scene
+    if scene.refused:
+        said = re.search(scene.refused, run.words + run.results.get("reason", ""), re.IGNORECASE)
+        if status in (0, None) or not said:
+            run.failures.append(f"not refused as it should be: status {status}, {last_line(run.words)}")
+        return run
+    if status != 0:
+        run.failures.append(f"no end within {TIME_LIMIT} s" if status is None else f"status {status}: {last_line(run.words)}")
+    if not run.steps:
+        return run
+    if (run.directory / "fractures.pvd").is_file():
+        run.input = violation.Input(run.directory / "effective_input.xml")
+        run.faces, run.scales, run.worst, run.undirected = violation.largest(run.directory, run.results, run.input)
+    if status != 0:
+        return run
+    if scene.exact:
+        run.error = scene.exact(run)
+        if not run.error <= scene.tolerance:
+            run.failures.append(f"error {run.error:.1e}, allowed is {scene.tolerance:.0e}")
+    if scene.newton and max(run.newton) > scene.newton:
+        run.failures.append(f"{max(run.newton)} Newton iterations in a step, allowed are {scene.newton}")
+    return run
+
+
+def last_line(words):
+    return (words.strip().splitlines() or ["no word"])[-1]
+
+
+def compare(run, other):
+    """States on one rank and on several, face by face; returns lines that name the faces."""
+    if len(run.faces) != len(other.faces):
+        run.failures.append(f"{len(run.faces)} steps written on one rank, {len(other.faces)} on several")
+        return []
+    found = violation.differing(run.faces, other.faces, run.scales) if run.faces else []
+    if not all(near for *_, near in found):
+        run.failures.append("states depend on the number of ranks")
+    return [f"  t = {t:g}, face at ({', '.join(f'{x:g}' for x in place)}): state {states[0]} on one rank, {states[1]} on "
+            f"several, {away:.0e} from the limit" for t, place, states, away, _ in found]
+
+
+def row(run):
+    """The values of COLUMNS."""
+    values = [run.scene.name] + [None] * (len(COLUMNS) - 1)
+    if run.results.get("mesh") and run.results.get("blocks"):
+        values[1:3] = run.dim, run.unknowns
+    if run.steps:
+        own = [np.max(list(step["violation"].values())) for step in run.steps if step.get("violation")]
+        values[3:7] = len(run.steps), float(np.median(run.newton)), max(run.newton), sum(s["cuts"] for s in run.steps)
+        values[8] = max(max(step["measures"].values(), default=0) for step in run.steps)
+        values[9] = None if run.worst is None else float(run.worst.max())
+        values[10] = max(own) if own else None
+    values[7], values[11:] = len(run.failures), [run.error, run.undirected, run.seconds]
+    return values
+
+
+def line(values):
+    words = [v if isinstance(v, str) else "-" if v is None else f"{v:.1f}" if column == "seconds"
+             else f"{v:.0e}" if column in SMALL else f"{v:g}" for column, v in zip(COLUMNS, values)]
+    return f"{words[0]:28}" + "".join(f"{word:>{max(8, len(COLUMNS[k + 1]) + 2)}}" for k, word in enumerate(words[1:]))
+
+
+def same_counts(runs):
+    """Scenes of a group must need the same numbers of iterations."""
+    groups = {}
+    for run in runs:
+        if run.scene.group and run.steps:
+            groups.setdefault(run.scene.group, run)
+            if run.newton != groups[run.scene.group].newton:
+                run.failures.append(f"{run.newton} Newton iterations, {groups[run.scene.group].newton} in \"{groups[run.scene.group].scene.name}\"")
+
+
+def summary(runs):
+    counted = [run.newton for run in runs if run.measured]
+    violations = [run.worst.max() for run in runs if run.worst is not None and run.measured]
+    if not counted:
+        counted = [[0]]
+    largest = [max(newton) for newton in counted]
+    return {"failures": sum(bool(run.failures) for run in runs), "median": np.median([np.median(n) for n in counted]),
+            "p90": np.percentile(largest, 90, method="higher"), "max": max(largest), "worst_violation": max(violations, default=0)}
+
+
+def bar_chart(runs, file, most=40):
+    """Median and largest number of iterations of each scene; bars end at `most`, with the number beside them."""
+    import style
+    counted = [run for run in runs if run.measured]
+    figure, axes = style.plt.subplots(figsize=(7, 0.6 + 0.14 * len(counted)))
+    heights = range(len(counted), 0, -1)
+    for run, height in zip(counted, heights):
+        axes.barh(height, min(max(run.newton), most), color=style.LINES[0])
+        axes.barh(height, min(np.median(run.newton), most), color=style.LINES[4])
+        axes.text(min(max(run.newton), most) + 0.3, height, max(run.newton), va="center", fontsize=5)
+    axes.set_yticks(heights, [run.scene.name for run in counted], fontsize=6)
+    for run, label in zip(counted, axes.get_yticklabels()):
+        label.set_color(style.LINES[3] if run.failures else style.INK)
+    axes.set_xlabel("Newton iterations in a step: median (light), largest (dark); names of scenes that failed are red")
+    axes.set(xlim=(0, most + 3), ylim=(0, len(counted) + 1))
+    figure.savefig(file, dpi=150)
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="sprekk perf contact", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a third of the scenes; the status is 1 above a stated bound, too")
+    parser.add_argument("--ranks", type=int, default=1, metavar="N", help="also run on N ranks, and compare the states")
+    parser.add_argument("--only", metavar="PATTERN", help="scenes whose name matches this regular expression")
+    parser.add_argument("--output", type=Path, default=Path("output/perf/contact"), metavar="DIR")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    return parser.parse_args(words)
+
+
+def main(words):
+    options = arguments(words)
+    chosen = [s for s in scenes() if (s.quick or not options.quick) and re.search(options.only or "", s.name)]
+    if not chosen:
+        sys.exit(f'contact: no scene matches "{options.only}"')
+    options.output.mkdir(parents=True, exist_ok=True)
+    print(line(COLUMNS))
+    runs = []
+    for scene in chosen:
+        run, notes = judge(*start(options, scene, 1)), []
+        if options.ranks > 1:
+            other = judge(*start(options, scene, options.ranks))
+            run.failures += [f"on {options.ranks} ranks: {what}" for what in other.failures]
+            notes = compare(run, other) if not run.failures else []
+        runs.append(run)
+        print("\n".join([line(row(run))] + [f"  {what}" for what in run.failures] + notes), flush=True)
+    same_counts(runs)
+    with open(options.output / "contact.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(COLUMNS + violation.PARTS + ("what failed",))
+        writer.writerows(row(run) + ([""] * len(violation.PARTS) if run.worst is None else run.worst.tolist())
+                         + ["; ".join(run.failures)] for run in runs)
+    bar_chart(runs, options.output / "contact.png")
+    total = summary(runs)
+    print(f"\n{len(runs)} scenes in {sum(run.seconds for run in runs):.0f} s, {sum(len(run.faces) for run in runs)} steps written, "
+          f"{sum(run.undirected for run in runs)} of them not judged by direction; contact.csv and contact.png in {options.output}")
+    above = [f"{key} = {total[key]:g}, the bound is {bound:g}" for key, bound in BOUNDS.items() if total[key] > bound]
+    for what in [f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures] + above:
+        print(what)
+    print("failures={failures} median={median:g} p90={p90:g} max={max} worst_violation={worst_violation:.1e}".format(**total))
+    return 1 if total["failures"] or (options.quick and above) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""The measurement perf/contact: perf_contact_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+
+Runs that are right have no violation; states that are wrong in a known way have the violation that follows."""
+import copy
+import subprocess
+import sys
+from pathlib import Path
+
+import program
+from program import ROOT, ProgramTest, main
+
+if ROOT:
+    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact")]
+try:
+    import numpy as np
+    import exact
+    import violation
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+
+class Violation(ProgramTest):
+    def steps(self, name, *overrides):
+        """Each step with the one before it, and the scales."""
+        results = self.run_scene(name, *overrides)
+        self.input = violation.Input(self.folder / "out/effective_input.xml")
+        steps, self.scales, worst, skipped = violation.largest(self.folder / "out", results, self.input)
+        self.assertLess(worst.max(), 1e-10)
+        self.assertEqual(skipped, sum(step["substeps"] > 1 for step in results["steps"]))
+        return steps
+
+    def parts(self, step, before, **changes):
+        """The violation with some arrays replaced."""
+        step = copy.deepcopy(step)
+        for name, value in changes.items():
+            getattr(step, name)[:] = value
+        return dict(zip(violation.PARTS, violation.violation(step, before, self.scales)))
+
+    def test_a_wrong_state_is_seen_by_the_part_that_it_violates(self):
+        stick, slip, opened, _ = self.steps("contact/all_change_3d.xml")
+        length, traction = self.scales.length, self.scales.traction
+        self.assertAlmostEqual(length, np.hypot(0.5, 0.1), places=12)  # of the top, in the step that slips
+        deeper = self.parts(slip, stick, distance=slip.distance - 0.01)
+        self.assertAlmostEqual(deeper["penetration"], 0.01 / length)
+        gap = self.parts(slip, stick, distance=slip.distance + 0.01)
+        self.assertAlmostEqual(gap["gap under load"], 0.01 / length)
+        pulled = self.parts(opened, slip, traction=opened.traction + [0.01, 0, 0])
+        self.assertAlmostEqual(pulled["tension"], 0.01 / traction)
+        steep = self.parts(slip, stick, bound=slip.bound - 0.01)
+        self.assertAlmostEqual(steep["beyond friction"], 0.01 / traction)
+        self.assertAlmostEqual(self.parts(slip, stick, bound=slip.bound + 0.01)["direction"], 0.01 / traction)
+        sideways = self.parts(slip, stick, plastic=slip.plastic + [0, 0.01, 0])
+        self.assertAlmostEqual(sideways["direction"], 0.01 / length)
+        backward = self.parts(slip, stick, plastic=2 * stick.plastic - slip.plastic)
+        self.assertGreater(backward["direction"], 0.1)
+        crept = self.parts(stick, stick, plastic=stick.plastic + [0, 0, 0.01])
+        self.assertAlmostEqual(crept["direction"], 0.01 / length)
+
+    def test_the_law_is_that_of_the_input(self):
+        steps = self.steps("contact/all_change_2d.xml")
+        joint, slip = self.input.joints[0], steps[1]
+        p, N = abs(slip.plastic[0, 1]), -slip.traction[0, 0]
+        self.assertAlmostEqual(joint.closed_gap(p, -N), 0.01 + np.tan(np.radians(10)) * p - 0.1 * N / (0.5 + N), places=14)
+        self.assertTrue(np.allclose(slip.bound, 0.6 * N, rtol=1e-14))
+
+    def test_states_that_differ(self):
+        one = self.steps("contact/all_change_2d.xml")
+        other = copy.deepcopy(one)
+        self.assertEqual(violation.differing(one, other, self.scales), [])
+        other[1].state[0] = violation.STICK  # where it slips: on the limit
+        (found,) = violation.differing(one, other, self.scales)
+        self.assertEqual((found[0], found[2], found[4]), (2.0, (violation.SLIP, violation.STICK), True))
+        other[0].state[1] = violation.SLIP  # where it sticks: far from it
+        self.assertEqual([near for *_, near in violation.differing(one, other, self.scales)], [False, True])
+
+    def test_exact_column(self):
+        """Rows of the table of a block whose law closes and dilates: H = G = lambda = 1, computed with 60 digits."""
+        class R1:
+            stiffness, friction, dilation, gap, closure, normal_stiffness = 2, 0.6, np.tan(np.radians(10)), 0.01, 0.1, 5
+            closed_gap = violation.Joint.closed_gap
+        rock = {"G": 1, "lam": 1}
+        for d, slipped, row in (((0.2, 0.2), 0, (0, 0, 0, 0.2, 0.2)),
+                                ((0.05, -0.1), 0, (1, 0.033333333333, -0.234281365494, 0, -0.021906211502)),
+                                ((0.5, -0.1), 0, (2, 0.193791423668, -0.322985706114, 0.209312864497, 0.007661902038)),
+                                ((0.3, 0.05), 0, (2, 0.011301447522, -0.018835745870, 0.283047828717, 0.056278581957)),
+                                ((0.35, -0.1), 0.209312864497, (1, 0.093791423668, -0.322985706114, 0.209312864497, 0.007661902038))):
+            self.assertTrue(np.allclose(exact.column(R1(), rock, 1, *d, slipped), row, rtol=0, atol=2e-12), (d, row))
+
+
+class Table(ProgramTest):
+    def contact(self, *words, expect):
+        done = subprocess.run([sys.executable, "-B", ROOT / "perf/contact/contact.py", "--binary", program.PROGRAM, "--output",
+                               self.folder / "out", *words], cwd=self.folder, capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done.stdout.splitlines()
+
+    def test_lines_and_files(self):
+        lines = self.contact("--only", "^(block 2D K_t=1e12|seed pull 2D)$", "--ranks", "2", expect=0)
+        self.assertEqual([line.split()[:2] for line in lines[:3]], [["scene", "dim"], ["seed", "pull"], ["block", "2D"]])
+        self.assertRegex(lines[-1], r"^failures=0 median=\S+ p90=\d+ max=\d+ worst_violation=\S+e-\d+$")
+        self.assertEqual(len((self.folder / "out/contact.csv").read_text().splitlines()), 3)
+        self.assertTrue((self.folder / "out/contact.png").is_file())
+        self.assertTrue(Path(self.folder / "out/block_2D_K_t_1e12/2/results.json").is_file())
+
+
+if __name__ == "__main__":
+    main()
