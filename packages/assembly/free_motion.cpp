@@ -5,7 +5,6 @@
 #include "mesh/bodies.hpp"
 #include "mesh/union_find.hpp"
 
-#include <Teuchos_LAPACK.hpp>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -23,17 +22,10 @@ using mesh::operator*;
 
 namespace {
 
-using Row = std::array<Real, 6>;  // of the modes of one body: translations, then rotations times the body's size
-
-/// The part of a motion that is below this, relative to its largest, is round-off. Eigenvalues are squares of it.
+/// The part of a motion that is below this, relative to its largest, is round-off.
 constexpr Real negligible = 1e-6;
 
-struct Frame {
-  Vector centre{};
-  Real size = 0;  ///< largest extent
-};
-
-std::vector<Frame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodies) {
+std::vector<RigidFrame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodies) {
   constexpr Real far = std::numeric_limits<Real>::max();
   std::vector<std::array<Vector, 2>> box(bodies.n(), {Vector{far, far, far}, Vector{-far, -far, -far}});
   const int n = mesh::n_nodes(mesh.shape);
@@ -45,7 +37,7 @@ std::vector<Frame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodies) {
       upper[i] = std::max(upper[i], x[i]);
     }
   }
-  std::vector<Frame> result;
+  std::vector<RigidFrame> result;
   for (const auto& [lower, upper] : box) {
     const Vector extent = upper - lower;
     result.push_back({0.5 * (lower + upper), *std::max_element(extent.begin(), extent.end())});
@@ -56,33 +48,22 @@ std::vector<Frame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodies) {
 /// Sums of products of the rows of all constraints, by pairs of bodies that a constraint joins.
 class Gram {
  public:
-  using Block = std::array<Row, 6>;
-
   Gram(const GlobalMesh& mesh, const mesh::Bodies& bodies, const std::vector<DirichletCondition>& conditions)
       : mesh_(mesh), bodies_(bodies), frames_(frames(mesh, bodies)) {
     add_held(conditions);
     add_shared();
   }
 
-  const std::vector<Frame>& body_frames() const { return frames_; }
-  const std::map<std::pair<int, int>, Block>& blocks() const { return blocks_; }
+  const std::vector<RigidFrame>& body_frames() const { return frames_; }
+  const std::map<std::pair<int, int>, RigidBlock>& blocks() const { return blocks_; }
 
  private:
-  /// Component i of the displacement at a node under each mode of a body.
-  Row row(int body, GlobalIndex node, int i) const {
-    const auto& frame = frames_[body];
-    const Vector arm = (1 / frame.size) * (mesh::point(mesh_, node) - frame.centre);
-    Row result{};
-    result[i] = 1;
-    result[3 + (i + 1) % 3] = arm[(i + 2) % 3];  // (e_k x arm)_i
-    result[3 + (i + 2) % 3] = -arm[(i + 1) % 3];
-    return result;
+  RigidRow row(int body, GlobalIndex node, int i) const {
+    return rigid_row(frames_[body], mesh::point(mesh_, node), i);
   }
 
-  void add(int body_a, const Row& a, int body_b, const Row& b, Real sign) {
-    auto& block = blocks_[{body_a, body_b}];
-    for (int k = 0; k < 6; ++k)
-      for (int l = 0; l < 6; ++l) block[k][l] += sign * a[k] * b[l];
+  void add(int body_a, const RigidRow& a, int body_b, const RigidRow& b, Real sign) {
+    add_product(blocks_[{body_a, body_b}], a, b, sign);
   }
 
   void add_held(const std::vector<DirichletCondition>& conditions) {
@@ -97,7 +78,7 @@ class Gram {
         for (int k = 0; k < mesh::n_face_nodes(mesh_.shape); ++k)
           for (int i = 0; i < mesh_.dim(); ++i) {
             if (!condition.values[i]) continue;
-            const Row held = row(body, nodes[k], i);
+            const RigidRow held = row(body, nodes[k], i);
             add(body, held, body, held, 1);
           }
       }
@@ -114,7 +95,7 @@ class Gram {
       if (other.first < 0) other = here;
       if (other == here) continue;
       for (int i = 0; i < mesh_.dim(); ++i) {
-        const Row a = row(here.first, here.second, i), b = row(other.first, other.second, i);
+        const RigidRow a = row(here.first, here.second, i), b = row(other.first, other.second, i);
         add(here.first, a, here.first, a, 1);
         add(here.first, a, other.first, b, -1);
         add(other.first, b, here.first, a, -1);
@@ -125,21 +106,9 @@ class Gram {
 
   const GlobalMesh& mesh_;
   const mesh::Bodies& bodies_;
-  std::vector<Frame> frames_;
-  std::map<std::pair<int, int>, Block> blocks_;
+  std::vector<RigidFrame> frames_;
+  std::map<std::pair<int, int>, RigidBlock> blocks_;
 };
-
-/// Vectors that span the null space of a symmetric, positive semi-definite n x n matrix.
-std::vector<std::vector<Real>> null_space(std::vector<Real> matrix, int n) {
-  std::vector<Real> eigenvalues(n), work(8 * n);
-  int info = 0;
-  Teuchos::LAPACK<int, Real>().SYEV('V', 'U', n, matrix.data(), n, eigenvalues.data(), work.data(), 8 * n, &info);
-  SPREKK_CHECK(info == 0, "rigid motions: LAPACK's SYEV failed with {}", info);
-  std::vector<std::vector<Real>> vectors;
-  for (int k = 0; k < n && eigenvalues[k] <= negligible * negligible * eigenvalues[n - 1]; ++k)
-    vectors.emplace_back(matrix.begin() + k * n, matrix.begin() + (k + 1) * n);
-  return vectors;
-}
 
 /// Gauss-Jordan elimination with the largest pivots, first in columns for which `first` holds: so that motions come out
 /// along coordinates where that is possible, and translations apart from rotations.
@@ -170,14 +139,6 @@ void reduce(std::vector<std::vector<Real>>& rows, const First& first) {
     }
 }
 
-/// A point or vector in words; components that are round-off next to `scale` are zero.
-std::string text(const Vector& x, int dim, Real scale) {
-  std::vector<std::string> components;
-  for (int i = 0; i < dim; ++i)
-    components.push_back(fmt::format("{:.6g}", std::abs(x[i]) > negligible * scale ? x[i] : 0));
-  return fmt::format("({})", fmt::join(components, ", "));
-}
-
 }  // namespace
 
 std::vector<FreeMotion> free_motions(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {
@@ -187,7 +148,7 @@ std::vector<FreeMotion> free_motions(const GlobalMesh& mesh, const std::vector<D
   for (const auto& [pair, block] : gram.blocks()) joined.join(pair.first, pair.second);
   std::map<GlobalIndex, std::vector<int>> groups;
   for (int body = 0; body < bodies.n(); ++body) groups[joined.find(body)].push_back(body);
-  const std::vector<int> modes = mesh.dim() == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
+  const auto modes = rigid_modes(mesh.dim());
   const int m = static_cast<int>(modes.size());
   std::vector<FreeMotion> result;
   for (const auto& [first, members] : groups) {
@@ -201,31 +162,13 @@ std::vector<FreeMotion> free_motions(const GlobalMesh& mesh, const std::vector<D
     reduce(vectors, [&](std::size_t c) { return modes[c % m] >= 3; });
     for (std::size_t k = 0; k < members.size(); ++k)
       for (const auto& vector : vectors) {
-        const auto& frame = gram.body_frames()[members[k]];
-        FreeMotion motion{members[k], {}, {}, frame.centre};
-        Real largest = 0;
-        for (int c = 0; c < m; ++c) {
-          const Real value = std::abs(vector[k * m + c]) > negligible ? vector[k * m + c] : 0;
-          largest = std::max(largest, std::abs(value));
-          (modes[c] < 3 ? motion.translation[modes[c]] : motion.rotation[modes[c] - 3]) =
-              modes[c] < 3 ? value : value / frame.size;
-        }
-        if (largest > 0) result.push_back(motion);
+        RigidRow q{};
+        for (int c = 0; c < m; ++c)
+          if (std::abs(vector[k * m + c]) > negligible) q[modes[c]] = vector[k * m + c];
+        if (q != RigidRow{}) result.push_back(free_motion(members[k], gram.body_frames()[members[k]], q));
       }
   }
   return result;
-}
-
-std::string to_text(const FreeMotion& motion, int dim) {
-  const Vector &t = motion.translation, &w = motion.rotation;
-  const Real speed = mesh::norm(t), turning = mesh::norm(w);
-  if (turning == 0) return "can move along " + text((1 / speed) * t, dim, 1);
-  const Vector axis = (1 / turning) * w, to_axis = (1 / turning) * mesh::cross(axis, t);
-  const auto through = text(motion.centre + to_axis, dim, mesh::norm(motion.centre) + mesh::norm(to_axis));
-  if (dim == 2) return "can rotate about " + through;
-  const bool screws = std::abs(mesh::dot(axis, t)) > negligible * speed;
-  return fmt::format("can rotate about the axis {} through {}{}", text(axis, dim, 1), through,
-                     screws ? " while it moves along it" : "");
 }
 
 std::string unheld(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {
@@ -253,7 +196,7 @@ std::string unheld(const GlobalMesh& mesh, const std::vector<DirichletCondition>
       "boundary conditions: nothing holds the rock of {} around {} ({} cells of {}){}: it {}. Contact holds a block "
       "only against others that are held; prescribe the displacements that are missing, in at least one direction on "
       "a boundary of it, or tie its sides by \"periodic\"",
-      base::quoted_list(regions), text(centre, mesh.dim(), mesh::norm(centre)), bodies.n_cells[body], mesh.n_cells(),
+      base::quoted_list(regions), to_text(centre, mesh.dim(), mesh::norm(centre)), bodies.n_cells[body], mesh.n_cells(),
       others > 0 ? fmt::format(" and {} more bodies", others) : "", fmt::join(ways, "; it "));
 }
 

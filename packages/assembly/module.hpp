@@ -3,6 +3,7 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
+#include "assembly/loose_pieces.hpp"
 #include "fields/block_matrix.hpp"
 #include "fields/block_problem.hpp"
 #include "fields/layout.hpp"
@@ -84,6 +85,7 @@ class Context {
 /// component).
 struct State {
   Real t = 0, dt = 0;
+  Real damping = 0;  ///< see BlockProblem::damp()
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };
@@ -125,8 +127,10 @@ class Module {
   virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
   /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows; without them 1/|diagonal| is taken.
   virtual void merit_weights(const Rows& weights) const {}
-  /// The discrete state of each owned entity as (global id, state) pairs hashed and summed over this rank.
-  virtual std::size_t state_hash(const State& state) const { return 0; }
+  /// Sets the discrete states of owned fracture faces, [face].
+  virtual void states(const State& state, std::vector<char>& states) const {}
+  /// Adds to the grips [owned fracture face] how the module makes the sides of faces hold each other at `state`.
+  virtual void grip(const State& state, std::vector<Grip>& grips) const {}
   /// After elimination of the local groups, the Jacobian at `state` is symmetric as far as this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }
   /// Fills the values of the declared outputs, in their order, from a committed state. Local.

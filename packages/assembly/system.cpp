@@ -40,6 +40,7 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   create_matrices();
   assemble_linear();
   set_merit_weights();
+  watch_pieces();
 }
 
 namespace {
@@ -118,6 +119,7 @@ void System::declare_fields() {
     blocks_.push_back(block);
     ghosted_.push_back(rcp(new Vector(layout.ghosted())));
     weights_.push_back(rcp(new Vector(layout.owned())));
+    diagonals_.push_back(rcp(new Vector(layout.owned())));
     load_.push_back(rcp(new Vector(layout.owned())));
   }
   face_area_ = typical_face_area(*mesh_);
@@ -211,11 +213,23 @@ void System::set_merit_weights() {
   const auto views = rows(weights_);
   for (const auto& module : modules_) module->merit_weights(views);
   for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
-    if (weights_[b]->normInf() > 0 || linear_(b, b).is_null()) continue;
-    linear_(b, b)->getLocalDiagCopy(*weights_[b]);
+    if (linear_(b, b).is_null()) continue;
+    linear_(b, b)->getLocalDiagCopy(*diagonals_[b]);
+    if (weights_[b]->normInf() > 0) continue;
+    Tpetra::deep_copy(*weights_[b], *diagonals_[b]);
     auto w = weights_[b]->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < w.extent(0); ++i) w(i, 0) = w(i, 0) != 0 ? 1 / std::abs(w(i, 0)) : 0;
   }
+}
+
+void System::watch_pieces() {
+  const bool held = std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies(); });
+  for (int b = 0; b < static_cast<int>(blocks_.size()) && !held; ++b)
+    if (unknowns_[b].rigid_body_modes) displacement_ = b;
+  if (displacement_ < 0) return;
+  loose_ = std::make_unique<LoosePieces>(mesh_, layouts_[displacement_], constraints_[displacement_]);
+  if (!loose_->possible()) return;
+  loose_->set_stiffness(*diagonals_[displacement_]);
 }
 
 BlockVector System::initial() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/constraints.hpp"
+#include "assembly/loose_pieces.hpp"
 #include "assembly/module.hpp"
 #include "base/timer.hpp"
 #include "fields/block_problem.hpp"
@@ -37,6 +38,12 @@ class System : public fields::BlockProblem {
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
   std::size_t state_hash(const fields::BlockVector& x) override;
+  std::vector<char> states(const fields::BlockVector& x) override;  ///< [owned fracture face]
+  std::string where(const std::vector<char>& flagged) override;
+  RCP<const fields::Vector> proximal(int block) const override;
+  std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
+  std::string loose() const override;
+  void damp(Real damping) override { damping_ = damping; }
 
   /// Zero displacement, zero traction. [block]
   fields::BlockVector initial() const;
@@ -73,11 +80,15 @@ class System : public fields::BlockProblem {
   void assemble_linear();
   void set_merit_weights();
   void find_exchanges();
+  void watch_pieces();
   State state(int module) const;
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
   void update_scales(Real t);
+  bool watches_pieces() const { return loose_ && loose_->possible(); }
+  std::vector<Grip> grips();
+  Real work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
@@ -92,13 +103,16 @@ class System : public fields::BlockProblem {
   std::vector<char> needs_ghosts_;                  // [block]
   fields::BlockVector ghosted_;                     // [block] unknowns with ghosts
   fields::BlockVector weights_;                     // [block] of merit()
+  fields::BlockVector diagonals_;                   // [block] of linear_
   fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
+  std::unique_ptr<LoosePieces> loose_;              // null without displacement, or where modules hold bodies
+  int displacement_ = -1;                           // its block
   fields::BlockMatrix linear_;                      // what the linear modules write
   fields::BlockMatrix matrix_;                      // df/dx; shares the blocks that only linear modules write
   Reference reference_;
   Scales scales_;
   RCP<base::Timers> timers_;
-  Real t_ = 0, dt_ = 0, face_area_ = 1;
+  Real t_ = 0, dt_ = 0, damping_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;
 };
 

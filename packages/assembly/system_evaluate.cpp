@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, dt_, {}, history_[module]};
+  State s{t_, dt_, damping_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -154,6 +155,7 @@ void System::jacobian(const BlockVector& x) {
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &asymmetric, &anywhere);
   symmetric_ = !anywhere;
+  if (watches_pieces()) loose_->find(grips());
 }
 
 void System::commit(const BlockVector& x) {
@@ -162,21 +164,31 @@ void System::commit(const BlockVector& x) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);
   }
+  if (watches_pieces()) loose_->find(grips());
 }
 
+/// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
+/// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
+/// rock.
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
+  Real farthest = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (unknowns_[b].value == Quantity::length) farthest = std::max<Real>(farthest, x[b]->normInf());
+  const Real rounding = 64 * std::numeric_limits<Real>::epsilon() * farthest;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
+    const auto diagonal = const_view(*diagonals_[b]);
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real size = (row(i) < 0 ? -row(i) : row(i)) / (mask(i) ? held_scale : free_scale);
+          const Real noise = mask(i) ? 0 : rounding * diagonal(i), size_of_row = row(i) < 0 ? -row(i) : row(i);
+          const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / (mask(i) ? held_scale : free_scale);
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
         Kokkos::Max<Real>(largest));
@@ -210,15 +222,127 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
   return total;
 }
 
-std::size_t System::state_hash(const BlockVector& x) {
+std::vector<char> System::states(const BlockVector& x) {
   refresh_ghosts(x, false);
+  std::vector<char> states(mesh_->n_owned_fracture_faces);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->states(state(static_cast<int>(m)), states);
+  return states;
+}
+
+std::size_t System::state_hash(const BlockVector& x) {
   std::size_t here = 0;
-  for (std::size_t m = 0; m < modules_.size(); ++m) here += modules_[m]->state_hash(state(static_cast<int>(m)));
+  const auto states = this->states(x);
+  for (std::size_t f = 0; f < states.size(); ++f) {
+    std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(states[f]) + 1;
+    for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
+      h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
+      h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
+    }
+    here += h;
+  }
   // in halves: a sum modulo 2^64 does not depend on the partition, and one of signed numbers may not overflow
   const long long halves[] = {static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)};
   long long sums[2];
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 2, halves, sums);
   return static_cast<std::size_t>(sums[0]) + (static_cast<std::size_t>(sums[1]) << 32);
+}
+
+std::string System::where(const std::vector<char>& flagged) {
+  const auto& names = mesh_->fracture_names;
+  std::vector<long long> here(names.size(), 0), all(names.size());
+  std::array<Real, 3> nowhere, lowest, highest;
+  nowhere.fill(std::numeric_limits<Real>::max());
+  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere}, reach;  // smallest x and -x
+  for (std::size_t f = 0; f < flagged.size(); ++f) {
+    if (!flagged[f]) continue;
+    const auto& face = mesh_->fracture_faces[f];
+    ++here[face.fracture];
+    for (int i = 0; i < 3; ++i) {
+      ends[0][i] = std::min(ends[0][i], face.centre[i]);
+      ends[1][i] = std::min(ends[1][i], -face.centre[i]);
+    }
+  }
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MIN, 6, ends[0].data(), reach[0].data());
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k] > 0) parts.push_back(fmt::format("{} of \"{}\"", all[k], names[k]));
+  if (parts.empty()) return "";
+  for (int i = 0; i < 3; ++i) {
+    lowest[i] = reach[0][i];
+    highest[i] = -reach[1][i];
+  }
+  const Real size = mesh::norm(lowest) + mesh::norm(highest);
+  return fmt::format("{}, between {} and {}", fmt::join(parts, ", "), to_text(lowest, mesh_->dim(), size),
+                     to_text(highest, mesh_->dim(), size));
+}
+
+/// At the x of the last refresh_ghosts.
+std::vector<Grip> System::grips() {
+  std::vector<Grip> grips(mesh_->n_owned_fracture_faces);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
+  return grips;
+}
+
+RCP<const fields::Vector> System::proximal(int block) const {
+  return block == displacement_ && watches_pieces() && loose_->any() ? Teuchos::rcpFromRef(loose_->proximal())
+                                                                     : Teuchos::null;
+}
+
+std::string System::loose() const { return watches_pieces() && loose_->any() ? loose_->describe() : ""; }
+
+/// Of a motion, on what is out of balance at x; below zero where the motion is along the force.
+Real System::work(const LoosePieces::Motion& motion, const BlockVector& x) {
+  auto r = fields::create_like(x);
+  residual(x, r);
+  return loose_->work(motion, *r[displacement_], grips());
+}
+
+/// A piece that nothing holds goes as far as the full step says, 1e8 times too far. So its motion is taken out of the
+/// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks. The
+/// work on it is a scalar function of the distance that does not fall; its zero is bracketed and found by false
+/// position (Illinois). Evaluations of residuals are cheap next to the Newton steps that they save.
+std::string System::balance(const BlockVector& x, BlockVector& dx) {
+  if (!watches_pieces() || !loose_->any() || damping_ > 0) return "";
+  auto& du = *dx[displacement_];
+  const auto motion = loose_->part_of(du);
+  loose_->add(-1, motion, du);
+  const Real unit = scales_.length / motion.largest;
+  if (!(unit < 1e8)) return "";  // round-off
+  auto y = fields::create_like(x);
+  const auto at = [&](Real s) {
+    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
+    loose_->add(s, motion, *y[displacement_]);
+    return work(motion, y);
+  };
+  const Real start = at(0);
+  if (!(start < 0)) return "";
+  Real low = 0, at_low = start, high = 0.1 * unit, at_high = at(high);
+  for (; at_high < 0; at_high = at(high)) {
+    low = high;
+    at_low = at_high;
+    high *= 4;
+    if (high * motion.largest > 4 * reference_.length + 1e3 * scales_.length) {
+      loose_->add(unit, motion, du);
+      return loose_->describe();
+    }
+  }
+  Real s = high, value = at_high;
+  for (int k = 0; k < 30 && std::abs(value) > -0.1 * start; ++k) {
+    s = (low * at_high - high * at_low) / (at_high - at_low);
+    value = at(s);
+    if (value < 0) {
+      low = s;
+      at_low = value;
+      at_high /= 2;
+    } else {
+      high = s;
+      at_high = value;
+      at_low /= 2;
+    }
+  }
+  loose_->add(s, motion, du);
+  return "";
 }
 
 std::vector<OutputField> System::outputs(const BlockVector& x) {

@@ -66,9 +66,25 @@ class BlockProblem {
   virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
   /// A squared energy norm of r, for line searches.
   virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
+  /// A positive diagonal of a block [owned unknown] that linear solves add to the Jacobian of the last jacobian(), so
+  /// that it is regular also where bodies are free to move; null where none is needed. Solutions do not depend on it.
+  virtual RCP<const Vector> proximal(int block) const { return Teuchos::null; }
+  /// For a step dx from the x of the last jacobian(): replaces its share of motions that nothing resists, whose length
+  /// means nothing, by one after which something does. Empty, or which body finds no resistance wherever it goes.
+  virtual std::string balance(const BlockVector& x, BlockVector& dx) { return ""; }
+  /// What nothing holds in the state of the last jacobian() or commit(), in words; empty if all is held. Stored data.
+  virtual std::string loose() const { return ""; }
+  /// From now on jacobian() makes what is free to slide or part resist it, the more the larger this factor (1: about as
+  /// much as the rock around it does), so that steps are shorter; 0 is the derivative of f. Solutions do not depend on
+  /// it.
+  virtual void damp(Real damping) {}
   /// A hash of the discrete state (which faces are open, stick, slip) of x, the same on every rank and for any
   /// partition.
   virtual std::size_t state_hash(const BlockVector& x) = 0;
+  /// The discrete states of x on this rank, one of each owned entity that has one, in a fixed order.
+  virtual std::vector<char> states(const BlockVector& x) { return {}; }
+  /// Where the entities are that are flagged, in the order of states(), in words; empty if none is on any rank.
+  virtual std::string where(const std::vector<char>& flagged) { return ""; }
 };
 
 }  // namespace sprekk::fields

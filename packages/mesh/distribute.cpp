@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "base/check.hpp"
+#include "mesh/bodies.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/partition.hpp"
 
@@ -44,7 +45,7 @@ class Distributor {
  public:
   /// Keeps references to the arguments.
   Distributor(const GlobalMesh& global, const std::vector<int>& part, int n_ranks)
-      : global_(global), part_(part), nodes_per_cell_(n_nodes(global.shape)) {
+      : global_(global), part_(part), nodes_per_cell_(n_nodes(global.shape)), pieces_(find_pieces(global)) {
     check(n_ranks);
     node_owner_ = node_owners(n_ranks);
     report_ = report(global, part, n_ranks);
@@ -59,6 +60,7 @@ class Distributor {
     mesh_.fracture_names = global_.fracture_names;
     mesh_.n_global_nodes = global_.n_nodes();
     mesh_.n_global_cells = global_.n_cells();
+    mesh_.n_pieces = pieces_.n();
     mesh_.n_global_fracture_faces = static_cast<GlobalIndex>(global_.fracture_faces.size());
     mesh_.partition = report_;
     cells_ = number(local_cells(), part_, rank_);
@@ -74,6 +76,7 @@ class Distributor {
   const GlobalMesh& global_;
   const std::vector<int>& part_;
   const int nodes_per_cell_;
+  const Bodies pieces_;
   int rank_ = 0;
   std::vector<int> node_owner_;
   PartitionReport report_;
@@ -148,6 +151,7 @@ class Distributor {
     for (GlobalIndex id : cells_.ids) {
       mesh_.cell_owner.push_back(part_[id]);
       mesh_.cell_region.push_back(global_.cell_region[id]);
+      mesh_.cell_piece.push_back(pieces_.of_cell[id]);
       for (int k = 0; k < nodes_per_cell_; ++k) mesh_.cells.push_back(nodes_.local_of[node(id, k)]);
     }
   }
@@ -214,12 +218,13 @@ class Distributor {
 template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
-         cell_owner, coordinates, cells, cell_region, fracture_faces, boundary_faces, region_names, boundary_names,
-         fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, partition] = mesh;
+         cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
+         boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, partition] =
+      mesh;
   const auto put_all = [&](auto&... members) { (put(members), ...); };
   put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
-          cell_owner, coordinates, cells, cell_region, fracture_faces, boundary_faces, region_names, boundary_names,
-          fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, partition);
+          cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
+          boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, partition);
 }
 
 class Packer {

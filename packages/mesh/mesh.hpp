@@ -92,10 +92,12 @@ struct Mesh {
   std::vector<Real> coordinates;  ///< [node * dim + component], metre
   std::vector<LocalIndex> cells;  ///< [cell * nodes per cell + local node]
   std::vector<int> cell_region;   ///< [cell]
+  std::vector<int> cell_piece;    ///< [cell] which of the pieces of rock between fractures it is in
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
   std::vector<std::string> region_names, boundary_names, fracture_names;
   GlobalIndex n_global_nodes = 0, n_global_cells = 0, n_global_fracture_faces = 0;
+  int n_pieces = 0;             ///< see find_pieces()
   PartitionReport partition{};  ///< of the whole mesh
 
   int dim() const { return dimension(shape); }

@@ -28,6 +28,7 @@ namespace {
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
+/// | damping      | scalar                                                   | -    | see damp()                   |
 template <Shape shape>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
@@ -44,6 +45,7 @@ struct JointFace {
   ConstView<Real**> rest;
   ConstView<laws::Augmentation*> augmentation;
   View<Real**> p_old;
+  Real damping = 0;
 
   /// w = mean of R (u+ - u-) over the face.
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
@@ -83,6 +85,18 @@ struct JointFace {
     for (int i = 0; i < dim; ++i) r[i] = p.R[i];
   }
 
+  /// Lets faces that are free to slide or part resist it like a spring of damping times c_t, c_n, in derivatives alone.
+  KOKKOS_INLINE_FUNCTION void damp(int f, ContactState state, Fad (&R)[dim]) const {
+    if (damping == 0 || state == ContactState::stick) return;
+    const auto& joint = law(number(f));
+    const auto add = [&](int k, Real stiffness, Real compliance) {
+      R[k].fastAccessDx(k) -= stiffness;
+      R[k].fastAccessDx(dim + k) += stiffness * compliance;
+    };
+    for (int k = 1; k < dim; ++k) add(k, damping * augmentation(f).tangential, joint.elastic.compliance);
+    if (state == ContactState::open) add(0, damping * augmentation(f).normal, joint.gap.closure.initial_compliance());
+  }
+
   /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.
   KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&x)[Columns::size], Real (&J)[dim][Columns::size]) const {
     Real w_value[dim];
@@ -92,7 +106,7 @@ struct JointFace {
       w[i] = Fad(2 * dim, i, w_value[i]);
       traction[i] = Fad(2 * dim, dim + i, x[lambda + i]);
     }
-    evaluate(f, w, traction, R);
+    damp(f, evaluate(f, w, traction, R), R);
     for (int k = 0; k < dim; ++k) {
       for (int i = 0; i < dim; ++i) {
         Real dR_djump = 0;  // derivative in component i of the global jump
@@ -142,7 +156,9 @@ class ElasticPlasticJump final : public assembly::Module {
     faces_->add_residual(at(state), state, r);
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    faces_->add_jacobian(at(state), state, J);
+    Op op = at(state);
+    op.damping = state.damping;
+    faces_->add_jacobian(op, state, J);
   }
   void commit(assembly::State& state) const override;
   void measure(const assembly::State& state, const assembly::Scales& scales,
@@ -150,7 +166,10 @@ class ElasticPlasticJump final : public assembly::Module {
   void merit_weights(const assembly::Rows& weights) const override {
     Kokkos::deep_copy(weights[fields_[2]], merit_weight_);
   }
-  std::size_t state_hash(const assembly::State& state) const override;
+  void states(const assembly::State& state, std::vector<char>& states) const override {
+    for_each_face(state, [&](LocalIndex f, const Point& point) { states[f] = static_cast<char>(point.state); });
+  }
+  void grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const override;
   bool symmetric(const assembly::State& state) const override;
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override;
 
@@ -244,7 +263,8 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
       assembly::for_each_cell_point<shape>(
           *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
-    augmentation_h(f) = laws::augmentation(law_h(joint_of(f)), modulus / mesh::norm(extents[face.fracture]));
+    augmentation_h(f) =
+        laws::augmentation(law_h(joint_of(f)), parameters_.augmentation * modulus / mesh::norm(extents[face.fracture]));
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
   }
   Kokkos::deep_copy(frame, frame_h);
@@ -289,19 +309,30 @@ void ElasticPlasticJump<shape>::measure(const assembly::State& state, const asse
   measures.push_back({"split of the jump", largest / scales.length});
 }
 
+/// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
 template <Shape shape>
-std::size_t ElasticPlasticJump<shape>::state_hash(const assembly::State& state) const {
-  std::size_t sum = 0;
+void ElasticPlasticJump<shape>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
   for_each_face(state, [&](LocalIndex f, const Point& point) {
-    std::size_t h =
-        static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(point.state) + 1;
-    for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
-      h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-      h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-    }
-    sum += h;
+    const auto& frame = mesh_->fracture_faces[f].frame;
+    Real bound[dim - 1];  // the traction that the law answers with: along the slip where there is some
+    for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
+    const Real size = laws::norm(bound);
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) grips[f].excess[i] += point.R[k] * frame[k][i];
+    if (point.state == ContactState::open) return;
+    Real held[dim][dim] = {};
+    held[0][0] = 1;
+    for (int k = 1; k < dim; ++k)
+      for (int l = 1; l < dim; ++l)
+        if (point.state == ContactState::stick)
+          held[k][l] = k == l;
+        else if (size > 0)
+          held[k][l] = (k == l) - bound[k - 1] * bound[l - 1] / (size * size);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) grips[f].held[i][j] += held[k][l] * frame[k][i] * frame[l][j];
   });
-  return sum;
 }
 
 /// Sliding is the only source of non-symmetry.

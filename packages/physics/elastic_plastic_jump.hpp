@@ -23,6 +23,8 @@ struct ElasticPlasticJumpParameters {
   InitialStress initial_stress = {};
   std::vector<int> elasticity_of_cell = {};  ///< [local cell] which elasticity; empty: the number of the cell's region
   std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
+  /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
+  Real augmentation = 0.3;
 };
 
 /// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its

@@ -11,23 +11,42 @@
 
 namespace sprekk::solve {
 
+struct SearchReport {
+  std::string failure;           ///< why there was no step
+  std::string loose;             ///< what nothing held in one of the iterates, the last such
+  int n_accepted = 0;            ///< iterates but for the start
+  std::vector<int> last_change;  ///< [as states()] number of the iterate in which a state was last another one
+};
+
 /// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
-/// if none is, the best one tried. When a discrete state comes back and the merit is no better than then, iterates
-/// would go round in circles: from there on only the last merit counts.
+/// if none is, the best one tried. Before that the step's share of motions that nothing resists is balanced. When a
+/// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
+/// only the last merit counts.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
-  LineSearch(BlockProblem& problem, const ThyraModel& model) : problem_(problem), model_(model) {}
+  LineSearch(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
+      : problem_(problem), model_(model), report_(report) {}
 
-  /// Fails, with step 0, where the direction does: after a linear solve that did.
+  /// Fails, with step 0, where the direction does: after a linear solve that did; and when a body has found no
+  /// resistance in several steps, which is what the report says then.
   bool compute(NOX::Abstract::Group& group, double& step, const NOX::Abstract::Vector& direction,
                const NOX::Solver::Generic& solver) override;
 
  private:
+  struct Trial {
+    Real a, merit;
+    bool good;
+  };
+  Trial search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, const NOX::Abstract::Vector& dx) const;
   Real limit() const;
   void accept(const BlockVector& x, Real merit);
 
   BlockProblem& problem_;
   const ThyraModel& model_;
+  SearchReport& report_;
+  int n_unbalanced_ = 0;
+  Real damping_ = 0;
+  std::vector<char> states_;             // of the last iterate
   std::deque<Real> merits_;              // of the last iterates, at most 3
   std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
   bool monotone_ = false;
@@ -36,14 +55,16 @@ class LineSearch : public NOX::LineSearch::Generic {
 /// Lets NOX make line searches for a problem.
 class LineSearchFactory : public NOX::LineSearch::UserDefinedFactory {
  public:
-  LineSearchFactory(BlockProblem& problem, const ThyraModel& model) : problem_(problem), model_(model) {}
+  LineSearchFactory(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
+      : problem_(problem), model_(model), report_(report) {}
   RCP<NOX::LineSearch::Generic> buildLineSearch(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) const override {
-    return rcp(new LineSearch(problem_, model_));
+    return rcp(new LineSearch(problem_, model_, report_));
   }
 
  private:
   BlockProblem& problem_;
   const ThyraModel& model_;
+  SearchReport& report_;
 };
 
 /// The unknowns and the residual of a NOX group over Thyra, not copied, to be read only.

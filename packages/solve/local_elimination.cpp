@@ -37,6 +37,18 @@ void constrain(CrsMatrix& matrix, const Vector& row_flags, const Vector& column_
       });
 }
 
+void add_diagonal(const Vector& diagonal, CrsMatrix& matrix) {
+  const auto local = matrix.getLocalMatrixDevice();
+  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
+  const auto added = read(diagonal);
+  Kokkos::parallel_for(
+      "add diagonal", Policy(0, local.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
+        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+          if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
+            local.values(k) += added(row);
+      });
+}
+
 /// target <- the owned flags and those of ghosts.
 void spread(const Vector& owned, const CrsMatrix& matrix, Vector& columns) {
   const auto import = matrix.getGraph()->getImporter();
@@ -92,6 +104,9 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
     Kokkos::deep_copy(values_of(*condensed.matrix), 0.0);
     if (!condensed.copy.matrix.is_null()) condensed.copy(values_of(*condensed.matrix));
   }
+  for (int r = 0; r < n_remaining(); ++r)
+    if (const auto proximal = problem.proximal(plan_.remaining[r]); !proximal.is_null())
+      add_diagonal(*proximal, *block(r, r).matrix);
   std::string failure;
   for (auto& group : plan_.groups) set_scales(problem, group);
   for (auto& group : plan_.groups)

@@ -66,8 +66,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem,
-                                           const ThyraModel& model) {
+RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem, const ThyraModel& model,
+                                           SearchReport& found) {
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
   list->sublist("Direction").set("Method", "Newton");
@@ -77,7 +77,7 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   newton.sublist("Linear Solver").set("Tolerance", options.linear_solver.tolerance);
   auto& search = list->sublist("Line Search");
   search.set("Method", "User Defined");
-  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model));
+  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model, found));
   search.set("User Defined Line Search Factory", factory);
   const int shown = NOX::Utils::OuterIteration + NOX::Utils::OuterIterationStatusTest + NOX::Utils::Error;
   auto& printing = list->sublist("Printing");
@@ -123,20 +123,26 @@ Newton::~Newton() = default;
 NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
   model_->clear_history();
+  problem_.damp(0);
   const auto start = model_->make_vector(x);
   // NOX holds references by RCP; the model outlives the solver here
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model));
   const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, report));
-  const auto parameters = nox_parameters(options_, problem_, *model_);
+  SearchReport search;
+  const auto parameters = nox_parameters(options_, problem_, *model_, search);
   const auto solver = NOX::Solver::buildSolver(group, test, parameters);
   report.converged = solver->solve() == NOX::StatusTest::Converged;
   refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   const auto& linear = model_->linear_history();
+  report.iterations = linear.solves;
   report.linear_iterations = linear.iterations;
+  if (!search.failure.empty()) report.reason = search.failure;
   if (linear.solves > 0 && !linear.last.converged) report.reason = linear.last.reason;
   if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
+  report.loose = search.loose;
+  for (int change : search.last_change) report.unsettled.push_back(change > 0 && change + 5 > search.n_accepted);
   return report;
 }
 

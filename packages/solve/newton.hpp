@@ -32,6 +32,8 @@ struct NewtonReport {
   int iterations = 0;                         ///< Newton steps, each with one linear solve
   int linear_iterations = 0;                  ///< over all linear solves
   std::string reason;                         ///< of a failure
+  std::string loose;                          ///< what nothing held in an iterate, in words, the last such
+  std::vector<char> unsettled;                ///< [as BlockProblem::states()] changed in the last five iterates
   std::vector<Measure> measures;              ///< at the end
   std::vector<std::vector<Measure>> history;  ///< [iteration, from 0 for the start]
 };

@@ -121,6 +121,16 @@ ThyraModel::ThyraModel(BlockProblem& problem, CondensedSolve& solve)
   space_ = Thyra::productVectorSpace<Real>(spaces());
 }
 
+bool ThyraModel::direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const {
+  problem_.jacobian(x);
+  solve_.update();
+  history_->last = solve_.solve(f, dx, solve_.tolerance());
+  ++history_->solves;
+  history_->iterations += history_->last.iterations;
+  for (const auto& block : dx) block->scale(-1);
+  return history_->last.converged;
+}
+
 RCP<Thyra::VectorBase<Real>> ThyraModel::make_vector(const BlockVector& x) const {
   const auto v = Thyra::createMember(space_);
   auto blocks = blocks_of(*v);

@@ -28,6 +28,9 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
   const LinearHistory& linear_history() const { return *history_; }
   void clear_history() { *history_ = {}; }
 
+  /// dx <- -W^-1 f with the Jacobian at x, evaluated anew. False if the solve failed; the history says why.
+  bool direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const;
+
   /// A product vector that is a copy of x. [block]
   RCP<Thyra::VectorBase<Real>> make_vector(const BlockVector& x) const;
 

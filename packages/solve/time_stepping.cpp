@@ -19,6 +19,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   // in units of the smallest substep, so that substeps end exactly at t_to
   const long long whole = 1LL << options_.max_halvings;
   const Real t_from = t;
+  std::string loose;  // of a failed substep
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
   report.time = t_from;
@@ -32,6 +33,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     report.measures = newton.measures;
     if (newton.converged) {
       problem_.commit(x);
+      report.loose = problem_.loose();
       fields::copy(x, committed);
       done += size;
       committed_dt_ = end - report.time;
@@ -41,9 +43,14 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       continue;
     }
     fields::copy(committed, x);
+    if (!newton.loose.empty()) loose = newton.loose;
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
+    report.unsettled = newton.unsettled;
     if (size == 1) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // where x is
+      if (const auto where = problem_.where(report.unsettled); !where.empty())
+        report.reason += "; faces that keep changing between open, stick and slip: " + where;
+      if (!loose.empty()) report.reason = "no equilibrium found: " + loose + ", and nothing holds it; " + report.reason;
       return report;
     }
     size /= 2;

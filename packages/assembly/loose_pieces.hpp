@@ -1,0 +1,96 @@
+// Pieces of rock that neither boundary conditions nor the present contact hold.
+#pragma once
+
+#include "assembly/constraints.hpp"
+#include "assembly/rigid_motion.hpp"
+#include "fields/layout.hpp"
+#include "fields/types.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// How the sides of a fracture face hold each other.
+struct Grip {
+  std::array<mesh::Vector, 3> held{};  ///< projector on the directions in which they resist, global frame
+  mesh::Vector excess{};  ///< what the traction, an unknown, is above the one that the law answers with, Pa, global
+};
+
+/// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
+/// Jacobian is singular. Here such motions are found, from sums over faces of how pairs of pieces hold each other; a
+/// face acts at its centre. All members are collective unless they return stored data.
+class LoosePieces {
+ public:
+  /// `displacement` is the layout of the field that `constraints` are on.
+  LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const Constraints& constraints);
+
+  /// Some piece is not held by boundary conditions alone; if none, nothing else here needs to be called. Stored data.
+  bool possible() const { return !candidates_.empty(); }
+
+  /// Finds the free motions for grips [owned fracture face].
+  void find(const std::vector<Grip>& grips);
+  /// Whether find() found one. Stored data.
+  bool any() const { return !loose_.empty(); }
+
+  /// To be added to the diagonal of the Jacobian so that it is regular, [owned unknown]: 1e-4 of the stiffness that a
+  /// piece has against deformation, in proportion to volume, for the pieces that are loose; zero for others. Needs the
+  /// diagonal of the bulk. Stored data.
+  const fields::Vector& proximal() const { return *proximal_; }
+  void set_stiffness(const fields::Vector& diagonal);
+
+  /// A free motion of all loose pieces.
+  struct Motion {
+    std::vector<RigidRow> q;  ///< [loose piece]
+    Real largest = 0;         ///< bound of the displacement, m
+  };
+  /// The part of a displacement [owned unknown] that is a free motion.
+  Motion part_of(const fields::Vector& displacement) const;
+  /// Adds s times a motion to the displacement. Local.
+  void add(Real s, const Motion& motion, fields::Vector& displacement) const;
+  /// Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions on the
+  /// motion: zero if the piece is in equilibrium under the tractions that the law answers with. N m (N in 2D).
+  Real work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
+
+  /// "a piece of rock around (0, 1) (12 cells) can move along (1, 0)" for the first loose one. Stored data.
+  std::string describe() const;
+
+ private:
+  struct Pair {
+    int a, b;  ///< pieces, a < b
+  };
+  struct Neighbour {
+    int pair, piece;
+    bool first;  ///< this piece is the pair's a
+  };
+
+  void measure_pieces(const fields::Layout& displacement);
+  void pair_up();
+  void hold(const Constraints& constraints);
+  void sum_pairs(const std::vector<Grip>& grips);
+  std::vector<int> unheld() const;
+  void find_modes();
+  const RigidBlock& block(int pair, int part) const { return pairs_sum_[3 * pair + part]; }
+  mesh::Vector node(LocalIndex n) const;
+  int dim() const { return mesh_->dim(); }
+
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<RigidFrame> frames_;                  // [piece]
+  std::vector<GlobalIndex> n_cells_;                // [piece]
+  std::vector<int> piece_of_;                       // [owned node]
+  std::vector<Real> volume_;                        // [owned node] share of the cells around, m^dim
+  std::vector<Pair> pairs_;                         // that share a fracture face, on any rank
+  std::vector<int> pair_of_;                        // [owned fracture face], -1: one piece on both sides
+  std::vector<std::vector<Neighbour>> neighbours_;  // [piece]
+  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns
+  std::vector<RigidBlock> inertia_;                 // [piece] sum over nodes
+  std::vector<int> candidates_;                     // pieces that conditions alone do not hold
+  std::vector<RigidBlock> pairs_sum_;               // [3 pair + (aa, ab, bb)]
+  std::vector<int> loose_;                          // pieces
+  std::vector<int> loose_number_;                   // [piece] in loose_, -1
+  std::vector<std::vector<Real>> modes_;            // orthonormal, [mode][loose piece * modes of a body + mode]
+  RCP<fields::Vector> stiffness_, proximal_;
+};
+
+}  // namespace sprekk::assembly
