@@ -110,35 +110,6 @@ class Gram {
   std::map<std::pair<int, int>, RigidBlock> blocks_;
 };
 
-/// Gauss-Jordan elimination with the largest pivots, first in columns for which `first` holds: so that motions come out
-/// along coordinates where that is possible, and translations apart from rotations.
-template <class First>
-void reduce(std::vector<std::vector<Real>>& rows, const First& first) {
-  std::size_t done = 0;
-  for (bool wanted : {true, false})
-    for (; done < rows.size(); ++done) {
-      std::size_t pivot_row = done, pivot = 0;
-      Real largest = 0;
-      for (std::size_t r = done; r < rows.size(); ++r)
-        for (std::size_t c = 0; c < rows[r].size(); ++c)
-          if (first(c) == wanted && std::abs(rows[r][c]) > (1 + negligible) * largest) {
-            largest = std::abs(rows[r][c]);
-            pivot_row = r;
-            pivot = c;
-          }
-      if (largest <= negligible) break;
-      std::swap(rows[done], rows[pivot_row]);
-      for (Real& value : rows[done]) value /= largest;
-      if (rows[done][pivot] < 0)
-        for (Real& value : rows[done]) value = -value;
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        const Real factor = rows[r][pivot];
-        if (r == done) continue;
-        for (std::size_t c = 0; c < rows[r].size(); ++c) rows[r][c] -= factor * rows[done][c];
-      }
-    }
-}
-
 }  // namespace
 
 std::vector<FreeMotion> free_motions(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {

@@ -2,9 +2,9 @@
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
+#include "mesh/union_find.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
-#include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +62,7 @@ LoosePieces::LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displ
     : mesh_(mesh) {
   if (mesh_->n_global_fracture_faces == 0) return;
   measure_pieces(displacement);
+  find_ties(displacement);
   hold(constraints);
   for (int p = 0; p < mesh_->n_pieces; ++p)
     if (!is_regular(support_[p], rigid_modes(dim()))) candidates_.push_back(p);
@@ -97,7 +98,7 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
         corner[6 * piece + 3 + i] = std::max(corner[6 * piece + 3 + i], -x[i]);
       }
       if (owned >= displacement.n_owned_entities()) continue;
-      piece_of_[owned] = piece;
+      if (owned == here) piece_of_[owned] = piece;
       volume_[owned] += volume / n;
     }
   }
@@ -120,6 +121,20 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
   sum_over_ranks(*mesh_->comm, inertia_);
 }
 
+void LoosePieces::find_ties(const fields::Layout& displacement) {
+  fields::Vector owned(displacement.owned()), ghosted(displacement.ghosted());  // pieces of nodes
+  for (LocalIndex i = 0; i < displacement.n_owned(); ++i) owned.replaceLocalValue(i, piece_of_[i / dim()]);
+  ghosted.doImport(owned, *displacement.import(), Tpetra::REPLACE);
+  const auto piece_of = ghosted.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const int n = mesh_->nodes_per_cell();
+  for (LocalIndex k = 0; k < n * mesh_->n_owned_cells; ++k) {
+    const LocalIndex here = mesh_->cells[k], free = mesh_->free_node(here);
+    const int a = mesh_->cell_piece[k / n], b = static_cast<int>(piece_of(free * dim(), 0));
+    if (here == free && a == b) continue;
+    ties_.push_back(a <= b ? Tie{a, b, -1, node(here), node(free)} : Tie{b, a, -1, node(free), node(here)});
+  }
+}
+
 void LoosePieces::hold(const Constraints& constraints) {
   support_.assign(mesh_->n_pieces, {});
   for (const auto& entry : constraints.entries()) {
@@ -127,10 +142,17 @@ void LoosePieces::hold(const Constraints& constraints) {
     const auto row = rigid_row(frames_[piece], node(entry.unknown / dim()), entry.component);
     add_product(support_[piece], row, row);
   }
+  for (const auto& tie : ties_)
+    for (int i = 0; i < dim() && tie.a == tie.b; ++i) {
+      auto row = rigid_row(frames_[tie.a], tie.at_a, i);
+      const auto other = rigid_row(frames_[tie.a], tie.at_b, i);
+      for (int k = 0; k < 6; ++k) row[k] -= other[k];
+      add_product(support_[tie.a], row, row);
+    }
   sum_over_ranks(*mesh_->comm, support_);
 }
 
-/// The pairs of pieces on the two sides of any rank's faces, in the same order everywhere.
+/// The pairs of pieces on the two sides of any rank's faces and ties, in the same order everywhere.
 void LoosePieces::pair_up() {
   std::set<std::pair<int, int>> here;
   std::vector<std::pair<int, int>> of_face;
@@ -139,6 +161,8 @@ void LoosePieces::pair_up() {
     of_face.push_back(std::minmax(mesh_->cell_piece[cell[0]], mesh_->cell_piece[cell[1]]));
     if (of_face.back().first != of_face.back().second) here.insert(of_face.back());
   }
+  for (const auto& tie : ties_)
+    if (tie.a != tie.b) here.insert({tie.a, tie.b});
   std::vector<int> mine;
   for (const auto& [a, b] : here) mine.insert(mine.end(), {a, b});
   const Comm& comm = *mesh_->comm;
@@ -159,6 +183,8 @@ void LoosePieces::pair_up() {
     neighbours_[pair.second].push_back({index, pair.first, false});
   }
   for (const auto& pair : of_face) pair_of_.push_back(pair.first == pair.second ? -1 : number.at(pair));
+  for (auto& tie : ties_)
+    if (tie.a != tie.b) tie.pair = number.at({tie.a, tie.b});
 }
 
 void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
@@ -173,6 +199,14 @@ void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
 
 void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
   pairs_sum_.assign(3 * pairs_.size(), {});
+  const auto add = [&](int pair, const RigidRow& a, const RigidRow& b) {
+    add_product(pairs_sum_[3 * pair], a, a);
+    add_product(pairs_sum_[3 * pair + 1], a, b, -1);
+    add_product(pairs_sum_[3 * pair + 2], b, b);
+  };
+  for (const auto& tie : ties_)
+    for (int i = 0; i < dim() && tie.pair >= 0; ++i)
+      add(tie.pair, rigid_row(frames_[tie.a], tie.at_a, i), rigid_row(frames_[tie.b], tie.at_b, i));
   for (std::size_t f = 0; f < pair_of_.size(); ++f) {
     if (pair_of_[f] < 0) continue;
     const auto [a, b] = pairs_[pair_of_[f]];
@@ -186,9 +220,7 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
           row_b[k] += grips[f].held[i][j] * at_b[k];
         }
       }
-      add_product(pairs_sum_[3 * pair_of_[f]], row_a, row_a);
-      add_product(pairs_sum_[3 * pair_of_[f] + 1], row_a, row_b, -1);
-      add_product(pairs_sum_[3 * pair_of_[f] + 2], row_b, row_b);
+      add(pair_of_[f], row_a, row_b);
     }
   }
   sum_over_ranks(*mesh_->comm, pairs_sum_);
@@ -224,8 +256,11 @@ std::vector<int> LoosePieces::unheld() const {
 
 void LoosePieces::find(const std::vector<Grip>& grips) {
   sum_pairs(grips);
-  loose_ = unheld();
-  find_modes();
+  loose_.clear();
+  groups_.clear();
+  std::fill(loose_number_.begin(), loose_number_.end(), -1);
+  for (const auto& pieces : coupled(unheld())) find_motions(pieces);
+  for (std::size_t k = 0; k < loose_.size(); ++k) loose_number_[loose_[k]] = static_cast<int>(k);
   proximal_->putScalar(0);
   if (!any()) return;
   const auto to = proximal_->getLocalViewHost(Tpetra::Access::ReadWrite);
@@ -235,14 +270,27 @@ void LoosePieces::find(const std::vector<Grip>& grips) {
       for (int i = 0; i < dim(); ++i) to(k * dim() + i, 0) = from(k * dim() + i, 0);
 }
 
-/// Motions that no pair of the pieces left over resists; those that move are loose.
-void LoosePieces::find_modes() {
-  std::fill(loose_number_.begin(), loose_number_.end(), -1);
-  modes_.clear();
-  if (loose_.empty()) return;
-  for (std::size_t k = 0; k < loose_.size(); ++k) loose_number_[loose_[k]] = static_cast<int>(k);
+/// Sets of pieces that hold each other in some direction.
+std::vector<std::vector<int>> LoosePieces::coupled(const std::vector<int>& pieces) const {
+  mesh::UnionFind sets(mesh_->n_pieces);
+  std::vector<char> is_left(mesh_->n_pieces, 0);
+  for (int p : pieces) is_left[p] = 1;
+  for (int p : pieces)
+    for (const auto& n : neighbours_[p])
+      if (is_left[n.piece] && block(n.pair, 1) != RigidBlock{}) sets.join(p, n.piece);
+  std::map<GlobalIndex, std::vector<int>> by_first;
+  for (int p : pieces) by_first[sets.find(p)].push_back(p);
+  std::vector<std::vector<int>> result;
+  for (auto& [first, set] : by_first) result.push_back(std::move(set));
+  return result;
+}
+
+/// What S_a and the sums of pairs resist of the motions of these pieces, [piece * m + mode] twice.
+std::vector<Real> LoosePieces::resistance(const std::vector<int>& pieces) const {
   const auto modes = rigid_modes(dim());
-  const int m = static_cast<int>(modes.size()), n = m * static_cast<int>(loose_.size());
+  const int m = static_cast<int>(modes.size()), n = m * static_cast<int>(pieces.size());
+  std::map<int, int> number;
+  for (std::size_t k = 0; k < pieces.size(); ++k) number[pieces[k]] = static_cast<int>(k);
   std::vector<Real> matrix(static_cast<std::size_t>(n) * n, 0);
   const auto add_to = [&](int row, int column, const RigidBlock& sum, bool transposed) {
     for (int k = 0; k < m; ++k)
@@ -250,102 +298,36 @@ void LoosePieces::find_modes() {
         matrix[static_cast<std::size_t>(row * m + k) * n + column * m + l] +=
             transposed ? sum[modes[l]][modes[k]] : sum[modes[k]][modes[l]];
   };
-  for (std::size_t k = 0; k < loose_.size(); ++k) {
-    const int row = static_cast<int>(k);
-    add_to(row, row, support_[loose_[k]], false);
-    for (const auto& neighbour : neighbours_[loose_[k]]) {
+  for (const auto& [piece, row] : number) {
+    add_to(row, row, support_[piece], false);
+    for (const auto& neighbour : neighbours_[piece]) {
       add_to(row, row, block(neighbour.pair, neighbour.first ? 0 : 2), false);
-      if (loose_number_[neighbour.piece] >= 0)
-        add_to(row, loose_number_[neighbour.piece], block(neighbour.pair, 1), !neighbour.first);
+      if (const auto other = number.find(neighbour.piece); other != number.end())
+        add_to(row, other->second, block(neighbour.pair, 1), !neighbour.first);
     }
   }
-  modes_ = null_space(std::move(matrix), n);
-  if (!modes_.empty()) return;
-  std::fill(loose_number_.begin(), loose_number_.end(), -1);
-  loose_.clear();
+  return matrix;
 }
 
-LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) const {
+/// Motions that nothing resists, as a new group of the pieces that move in them.
+void LoosePieces::find_motions(const std::vector<int>& pieces) {
   const auto modes = rigid_modes(dim());
-  const int m = static_cast<int>(modes.size()), n = static_cast<int>(loose_.size());
-  std::vector<Real> q(n * m, 0);
-  const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const int number = loose_number_[piece_of_[k]];
-    if (number < 0) continue;
-    for (int i = 0; i < dim(); ++i) {
-      const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
-      for (int c = 0; c < m; ++c) q[number * m + c] += row[modes[c]] * u(k * dim() + i, 0);
-    }
+  const std::size_t m = modes.size();
+  auto motions = null_space(resistance(pieces), static_cast<int>(m * pieces.size()));
+  if (motions.empty()) return;
+  reduce(motions, [&](std::size_t c) { return modes[c % m] >= 3; });
+  Group group{static_cast<int>(loose_.size()), {}};
+  group.modes.resize(motions.size());
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const auto moves = [&](const std::vector<Real>& motion) {
+      return std::any_of(&motion[k * m], &motion[k * m] + m, [](Real q) { return std::abs(q) > 1e-6; });
+    };
+    if (std::none_of(motions.begin(), motions.end(), moves)) continue;
+    loose_.push_back(pieces[k]);
+    for (std::size_t s = 0; s < motions.size(); ++s)
+      group.modes[s].insert(group.modes[s].end(), &motions[s][k * m], &motions[s][k * m] + m);
   }
-  sum_over_ranks(*mesh_->comm, q);
-  for (int k = 0; k < n; ++k) {
-    auto matrix = dense(inertia_[loose_[k]], modes);
-    int info = 0;
-    Teuchos::LAPACK<int, Real>().POSV('U', m, 1, matrix.data(), m, &q[k * m], m, &info);
-    SPREKK_CHECK(info == 0, "rigid motions: LAPACK's POSV failed with {}", info);
-  }
-  Motion motion;
-  motion.q.assign(n, {});
-  for (const auto& mode : modes_) {
-    Real part = 0;
-    for (int c = 0; c < n * m; ++c) part += mode[c] * q[c];
-    for (int c = 0; c < n * m; ++c) motion.q[c / m][modes[c % m]] += part * mode[c];
-  }
-  for (const auto& piece : motion.q) {
-    Real square = 0;
-    for (Real value : piece) square += value * value;
-    motion.largest = std::max(motion.largest, std::sqrt(square));
-  }
-  return motion;
-}
-
-void LoosePieces::add(Real s, const Motion& motion, fields::Vector& displacement) const {
-  const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadWrite);
-  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const int piece = piece_of_[k], number = loose_number_[piece];
-    if (number < 0) continue;
-    const Vector v = rigid_displacement(frames_[piece], motion.q[number], node(static_cast<LocalIndex>(k)));
-    for (int i = 0; i < dim(); ++i) u(k * dim() + i, 0) += s * v[i];
-  }
-}
-
-Real LoosePieces::work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const {
-  const auto r = residual.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<Real> work{0};
-  const auto velocity = [&](int piece, const Vector& x) {
-    const int number = loose_number_[piece];
-    return number < 0 ? Vector{} : rigid_displacement(frames_[piece], motion.q[number], x);
-  };
-  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const Vector v = velocity(piece_of_[k], node(static_cast<LocalIndex>(k)));
-    for (int i = 0; i < dim(); ++i) work[0] += v[i] * r(k * dim() + i, 0);
-  }
-  for (std::size_t f = 0; f < pair_of_.size(); ++f) {
-    if (pair_of_[f] < 0) continue;
-    const auto& face = mesh_->fracture_faces[f];
-    const Vector jump = velocity(mesh_->cell_piece[face.cell[mesh::plus]], face.centre) -
-                        velocity(mesh_->cell_piece[face.cell[mesh::minus]], face.centre);
-    work[0] -= face.area * mesh::dot(grips[f].excess, jump);
-  }
-  sum_over_ranks(*mesh_->comm, work);
-  return work[0];
-}
-
-std::string LoosePieces::describe() const {
-  const auto modes = rigid_modes(dim());
-  const auto& mode = modes_.front();
-  const auto largest =
-      std::max_element(mode.begin(), mode.end(), [](Real a, Real b) { return std::abs(a) < std::abs(b); });
-  const std::size_t number = (largest - mode.begin()) / modes.size();
-  const int piece = loose_[number];
-  RigidRow q{};
-  for (std::size_t c = 0; c < modes.size(); ++c) q[modes[c]] = mode[number * modes.size() + c];
-  const auto& frame = frames_[piece];
-  return fmt::format("a piece of rock around {} ({} cells){} {}",
-                     to_text(frame.centre, dim(), mesh::norm(frame.centre) + frame.size), n_cells_[piece],
-                     loose_.size() > 1 ? fmt::format(" and {} more", loose_.size() - 1) : "",
-                     to_text(free_motion(piece, frame, q), dim()));
+  groups_.push_back(std::move(group));
 }
 
 }  // namespace sprekk::assembly

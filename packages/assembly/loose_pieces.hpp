@@ -6,6 +6,8 @@
 #include "fields/layout.hpp"
 #include "fields/types.hpp"
 
+#include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,30 +37,48 @@ class LoosePieces {
   bool any() const { return !loose_.empty(); }
 
   /// To be added to the diagonal of the Jacobian so that it is regular, [owned unknown]: 1e-4 of the stiffness that a
-  /// piece has against deformation, in proportion to volume, for the pieces that are loose; zero for others. Needs the
-  /// diagonal of the bulk. Stored data.
+  /// piece has against deformation, in proportion to volume, for the pieces that are loose; zero for others. Stored
+  /// data.
   const fields::Vector& proximal() const { return *proximal_; }
+  /// Before the first find(): the diagonal of the bulk, [owned unknown].
   void set_stiffness(const fields::Vector& diagonal);
+
+  /// Pieces of one group hold each other; groups move independently. Stored data.
+  int n_groups() const { return static_cast<int>(groups_.size()); }
 
   /// A free motion of all loose pieces.
   struct Motion {
-    std::vector<RigidRow> q;  ///< [loose piece]
-    Real largest = 0;         ///< bound of the displacement, m
+    std::vector<RigidRow> q;    ///< [loose piece]
+    std::vector<Real> largest;  ///< [group] size of the displacement, m
   };
   /// The part of a displacement [owned unknown] that is a free motion.
   Motion part_of(const fields::Vector& displacement) const;
-  /// Adds s times a motion to the displacement. Local.
-  void add(Real s, const Motion& motion, fields::Vector& displacement) const;
-  /// Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions on the
-  /// motion: zero if the piece is in equilibrium under the tractions that the law answers with. N m (N in 2D).
-  Real work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
+  /// Adds s [group] times a motion to the displacement. Local.
+  void add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const;
+  /// [group] Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions
+  /// on the motion: zero in equilibrium under the tractions that the law answers with. N m (N in 2D).
+  std::vector<Real> work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
 
-  /// "a piece of rock around (0, 1) (12 cells) can move along (1, 0)" for the first loose one. Stored data.
-  std::string describe() const;
+  /// The motion of some groups alone; empty if there is none. Stored data.
+  Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
+  /// One of the free motions. Stored data.
+  Motion first() const;
+  /// "a piece of rock around (0, 1) (12 cells) and 2 more can move along (1, 0)" for the piece that moves most. Stored
+  /// data.
+  std::string describe(const Motion& motion) const;
 
  private:
   struct Pair {
     int a, b;  ///< pieces, a < b
+  };
+  /// One node in two places by periodicity, or in two pieces that touch in a corner or an edge.
+  struct Tie {
+    int a, b, pair;  ///< pieces, a <= b; -1: one piece
+    mesh::Vector at_a, at_b;
+  };
+  struct Group {
+    int first;                             ///< of its loose pieces, which follow one another
+    std::vector<std::vector<Real>> modes;  ///< [mode][loose piece * modes of a body + mode of the body]
   };
   struct Neighbour {
     int pair, piece;
@@ -66,11 +86,15 @@ class LoosePieces {
   };
 
   void measure_pieces(const fields::Layout& displacement);
+  void find_ties(const fields::Layout& displacement);
   void pair_up();
   void hold(const Constraints& constraints);
   void sum_pairs(const std::vector<Grip>& grips);
   std::vector<int> unheld() const;
-  void find_modes();
+  std::vector<std::vector<int>> coupled(const std::vector<int>& pieces) const;
+  std::vector<Real> resistance(const std::vector<int>& pieces) const;
+  void find_motions(const std::vector<int>& pieces);
+  int group_of(int number) const;
   const RigidBlock& block(int pair, int part) const { return pairs_sum_[3 * pair + part]; }
   mesh::Vector node(LocalIndex n) const;
   int dim() const { return mesh_->dim(); }
@@ -80,16 +104,17 @@ class LoosePieces {
   std::vector<GlobalIndex> n_cells_;                // [piece]
   std::vector<int> piece_of_;                       // [owned node]
   std::vector<Real> volume_;                        // [owned node] share of the cells around, m^dim
-  std::vector<Pair> pairs_;                         // that share a fracture face, on any rank
+  std::vector<Tie> ties_;                           // of nodes of owned cells
+  std::vector<Pair> pairs_;                         // that share a fracture face or tied nodes, on any rank
   std::vector<int> pair_of_;                        // [owned fracture face], -1: one piece on both sides
   std::vector<std::vector<Neighbour>> neighbours_;  // [piece]
-  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns
+  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns, and ties with itself
   std::vector<RigidBlock> inertia_;                 // [piece] sum over nodes
   std::vector<int> candidates_;                     // pieces that conditions alone do not hold
   std::vector<RigidBlock> pairs_sum_;               // [3 pair + (aa, ab, bb)]
   std::vector<int> loose_;                          // pieces
   std::vector<int> loose_number_;                   // [piece] in loose_, -1
-  std::vector<std::vector<Real>> modes_;            // orthonormal, [mode][loose piece * modes of a body + mode]
+  std::vector<Group> groups_;                       // by their first pieces
   RCP<fields::Vector> stiffness_, proximal_;
 };
 

@@ -56,6 +56,32 @@ std::vector<std::vector<Real>> null_space(std::vector<Real> matrix, int n) {
   return vectors;
 }
 
+void reduce(std::vector<std::vector<Real>>& rows, const std::function<bool(std::size_t)>& first) {
+  std::size_t done = 0;
+  for (bool wanted : {true, false})
+    for (; done < rows.size(); ++done) {
+      std::size_t pivot_row = done, pivot = 0;
+      Real largest = 0;
+      for (std::size_t r = done; r < rows.size(); ++r)
+        for (std::size_t c = 0; c < rows[r].size(); ++c)
+          if (first(c) == wanted && std::abs(rows[r][c]) > (1 + negligible) * largest) {
+            largest = std::abs(rows[r][c]);
+            pivot_row = r;
+            pivot = c;
+          }
+      if (largest <= negligible) break;
+      std::swap(rows[done], rows[pivot_row]);
+      for (Real& value : rows[done]) value /= largest;
+      if (rows[done][pivot] < 0)
+        for (Real& value : rows[done]) value = -value;
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const Real factor = rows[r][pivot];
+        if (r == done) continue;
+        for (std::size_t c = 0; c < rows[r].size(); ++c) rows[r][c] -= factor * rows[done][c];
+      }
+    }
+}
+
 FreeMotion free_motion(int body, const RigidFrame& frame, const RigidRow& q) {
   FreeMotion motion{body, {}, {}, frame.centre};
   Real largest = 0;

@@ -4,6 +4,7 @@
 #include "mesh/facets.hpp"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ std::vector<int> rigid_modes(int dim);
 /// Orthonormal vectors that span the null space of a symmetric, positive semi-definite n x n matrix: eigenvalues up to
 /// 1e-12 of the largest; all, if the matrix is zero.
 std::vector<std::vector<Real>> null_space(std::vector<Real> matrix, int n);
+
+/// Gauss-Jordan elimination with the largest pivots, first in columns for which `first` holds: so that motions come out
+/// along coordinates where that is possible, and translations apart from rotations.
+void reduce(std::vector<std::vector<Real>>& rows, const std::function<bool(std::size_t)>& first);
 
 /// A rigid motion of one body at small rotation, v(x) = translation + rotation x (x - centre).
 struct FreeMotion {

@@ -88,7 +88,8 @@ class System : public fields::BlockProblem {
   void update_scales(Real t);
   bool watches_pieces() const { return loose_ && loose_->possible(); }
   std::vector<Grip> grips();
-  Real work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
+  void find_loose();
+  std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
@@ -106,6 +107,7 @@ class System : public fields::BlockProblem {
   fields::BlockVector diagonals_;                   // [block] of linear_
   fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
   std::unique_ptr<LoosePieces> loose_;              // null without displacement, or where modules hold bodies
+  LoosePieces::Motion driven_;                      // where forces out of balance move what is loose, if they do
   int displacement_ = -1;                           // its block
   fields::BlockMatrix linear_;                      // what the linear modules write
   fields::BlockMatrix matrix_;                      // df/dx; shares the blocks that only linear modules write

@@ -155,16 +155,16 @@ void System::jacobian(const BlockVector& x) {
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &asymmetric, &anywhere);
   symmetric_ = !anywhere;
-  if (watches_pieces()) loose_->find(grips());
+  find_loose();
 }
 
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
+  find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);
   }
-  if (watches_pieces()) loose_->find(grips());
 }
 
 /// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
@@ -182,12 +182,13 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
     const auto diagonal = const_view(*diagonals_[b]);
+    const Real rounding_of_block = unknowns_[b].value == Quantity::length ? rounding : 0;
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real noise = mask(i) ? 0 : rounding * diagonal(i), size_of_row = row(i) < 0 ? -row(i) : row(i);
+          const Real noise = mask(i) ? 0 : rounding_of_block * diagonal(i), size_of_row = row(i) < 0 ? -row(i) : row(i);
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / (mask(i) ? held_scale : free_scale);
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
@@ -275,74 +276,6 @@ std::string System::where(const std::vector<char>& flagged) {
   const Real size = mesh::norm(lowest) + mesh::norm(highest);
   return fmt::format("{}, between {} and {}", fmt::join(parts, ", "), to_text(lowest, mesh_->dim(), size),
                      to_text(highest, mesh_->dim(), size));
-}
-
-/// At the x of the last refresh_ghosts.
-std::vector<Grip> System::grips() {
-  std::vector<Grip> grips(mesh_->n_owned_fracture_faces);
-  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
-  return grips;
-}
-
-RCP<const fields::Vector> System::proximal(int block) const {
-  return block == displacement_ && watches_pieces() && loose_->any() ? Teuchos::rcpFromRef(loose_->proximal())
-                                                                     : Teuchos::null;
-}
-
-std::string System::loose() const { return watches_pieces() && loose_->any() ? loose_->describe() : ""; }
-
-/// Of a motion, on what is out of balance at x; below zero where the motion is along the force.
-Real System::work(const LoosePieces::Motion& motion, const BlockVector& x) {
-  auto r = fields::create_like(x);
-  residual(x, r);
-  return loose_->work(motion, *r[displacement_], grips());
-}
-
-/// A piece that nothing holds goes as far as the full step says, 1e8 times too far. So its motion is taken out of the
-/// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks. The
-/// work on it is a scalar function of the distance that does not fall; its zero is bracketed and found by false
-/// position (Illinois). Evaluations of residuals are cheap next to the Newton steps that they save.
-std::string System::balance(const BlockVector& x, BlockVector& dx) {
-  if (!watches_pieces() || !loose_->any() || damping_ > 0) return "";
-  auto& du = *dx[displacement_];
-  const auto motion = loose_->part_of(du);
-  loose_->add(-1, motion, du);
-  const Real unit = scales_.length / motion.largest;
-  if (!(unit < 1e8)) return "";  // round-off
-  auto y = fields::create_like(x);
-  const auto at = [&](Real s) {
-    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
-    loose_->add(s, motion, *y[displacement_]);
-    return work(motion, y);
-  };
-  const Real start = at(0);
-  if (!(start < 0)) return "";
-  Real low = 0, at_low = start, high = 0.1 * unit, at_high = at(high);
-  for (; at_high < 0; at_high = at(high)) {
-    low = high;
-    at_low = at_high;
-    high *= 4;
-    if (high * motion.largest > 4 * reference_.length + 1e3 * scales_.length) {
-      loose_->add(unit, motion, du);
-      return loose_->describe();
-    }
-  }
-  Real s = high, value = at_high;
-  for (int k = 0; k < 30 && std::abs(value) > -0.1 * start; ++k) {
-    s = (low * at_high - high * at_low) / (at_high - at_low);
-    value = at(s);
-    if (value < 0) {
-      low = s;
-      at_low = value;
-      at_high /= 2;
-    } else {
-      high = s;
-      at_high = value;
-      at_low /= 2;
-    }
-  }
-  loose_->add(s, motion, du);
-  return "";
 }
 
 std::vector<OutputField> System::outputs(const BlockVector& x) {

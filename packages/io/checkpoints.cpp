@@ -106,9 +106,10 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   const Seal journal = seal_of(news, journal_);
   const std::string part = folder(number) + ".part";
   const bool first = comm_->getRank() == 0;
-  const auto remove_parts = [&] {
+  const auto remove_parts = [&] {  // as far as possible; they do no harm
+    std::error_code left;
     for (const auto& entry : fs::directory_iterator(path_))
-      if (entry.path().extension() == ".part") fs::remove_all(entry.path());
+      if (entry.path().extension() == ".part") fs::remove_all(entry.path(), left);
   };
   make_directory(*comm_, path_);
   try {
@@ -144,8 +145,9 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   journal_ = journal;
   base::collectively(*comm_, [&] {
     if (!first) return;
+    std::error_code left;  // what cannot be removed does no harm
     for (const auto old : before)
-      if (old != kept) fs::rename(folder(old), folder(old) + ".part");  // at once, then in peace
+      if (old != kept) fs::rename(folder(old), folder(old) + ".part", left);  // at once, then in peace
     remove_parts();
   });
 }

@@ -103,6 +103,24 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
   return {modulus, *std::max_element(extents.begin(), extents.end())};
 }
 
+/// To be appended to the reason of a step that failed, if a joint has so much friction that this may be why: examples
+/// of Klarbring (1990).
+std::string friction_note(const Scene& scene) {
+  std::string largest;
+  Real mu = 1;
+  for (const auto& [name, fracture] : scene.fractures) {
+    const auto here = scene.materials.at(fracture.material).uniform_friction();
+    if (!here || *here <= mu) continue;
+    mu = *here;
+    largest = fracture.material;
+  }
+  return largest.empty() ? ""
+                         : fmt::format(
+                               "; the friction coefficient of \"{}\" is {:.4g}: above about 1 equilibrium need "
+                               "not exist, nor be unique",
+                               largest, mu);
+}
+
 /// The element of that name, or an Error that lists those there are.
 template <class T, class Name>
 T& named(std::vector<T>& all, const std::string& name, const Name& name_of, const char* what) {
@@ -144,8 +162,8 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(physics::make_interface_traction_balance(mesh.shape, {rock.values, force, stress, rock.number}));
   const auto joint = joints(scene, mesh);
-  modules.push_back(
-      physics::make_elastic_plastic_jump(mesh.shape, {joint.values, rock.values, stress, rock.number, joint.number}));
+  modules.push_back(physics::make_elastic_plastic_jump(
+      mesh.shape, {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation}));
   return modules;
 }
 
@@ -186,7 +204,9 @@ void Model::start_solver() {
 solve::StepReport Model::step_to(Real t) {
   SPREKK_CHECK(t > time_, "a step to t = {} is no step forward: the model is at t = {}", t, time_);
   const auto scope = timers_->scope("time steps");
-  return stepper_->advance(x_, time_, t);
+  auto report = stepper_->advance(x_, time_, t);
+  if (!report.converged) report.reason += friction_note(scene_);
+  return report;
 }
 
 FieldView Model::field(const std::string& name) {

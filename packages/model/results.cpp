@@ -28,6 +28,15 @@ const OutputField* find(const std::vector<OutputField>& outputs, const std::stri
   return nullptr;
 }
 
+constexpr const char* unsettled_name = "unsettled";  ///< of the VTU files
+
+/// Removes what an earlier run left of faces that found no state; silent. Not collective.
+void remove_unsettled(const std::string& directory) {
+  std::error_code ignored;
+  for (const char* end : {"", ".pvd", "_0000.pvtu"})
+    std::filesystem::remove_all(directory + '/' + unsettled_name + end, ignored);
+}
+
 std::string with_underscores(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
@@ -37,6 +46,18 @@ std::string with_underscores(std::string name) {
 struct Statistics {
   std::vector<Real> sum, maximum;  ///< [fracture * n_components + component]
 };
+
+/// The owned fracture faces with what is known of them.
+io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
+  auto piece = io::fracture_piece(mesh);
+  std::vector<Real> number;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) number.push_back(mesh.fracture_faces[f].fracture);
+  piece.cell_data.push_back(io::data_array("fracture", 1, number));
+  for (const auto& output : outputs)
+    if (output.entity == fields::Entity::fracture_face)
+      piece.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
+  return piece;
+}
 
 Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
   const int n = output.n_components;
@@ -160,7 +181,9 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
   Scene scene = model_.scene();
   base::collectively(*comm, [&] {
     const auto list = base::effective(scene, "Sprekk");
-    if (comm->getRank() == 0) io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
+    if (comm->getRank() != 0) return;
+    io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
+    remove_unsettled(directory_);
   });
   if (model_.scene().output.vtu) {
     std::vector<Real> written;
@@ -216,6 +239,8 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
                {"substeps", report.substeps},
                {"cuts", report.cuts},
                {"converged", report.converged}};
+  if (report.converged && !report.loose.empty()) step["loose"] = report.loose;
+  if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
   if (!report.converged && report.substeps == 0) {  // nothing new to show
     json_["steps"].push_back(step);
@@ -237,28 +262,37 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   return contact_counts(*model_.mesh().comm, outputs);
 }
 
+/// Counts the faces that found no state, and writes which they are beside the state that they left.
+long long Results::add_unsettled(const solve::StepReport& report) {
+  const auto& mesh = model_.mesh();
+  std::vector<Real> flags(report.unsettled.begin(), report.unsettled.end());
+  flags.resize(mesh.n_owned_fracture_faces);  // none where no iterate was accepted
+  const long long here = std::count(flags.begin(), flags.end(), 1);
+  const long long n = reduce<long long>(*mesh.comm, Teuchos::REDUCE_SUM, {here})[0];
+  if (n == 0 || !bulk_) return n;
+  auto piece = fractures_with(mesh, model_.system().outputs(model_.state()));
+  piece.cell_data.push_back(io::data_array("unsettled", 1, flags));
+  io::VtuSeries(mesh.comm, directory_, unsettled_name).write(report.time, piece);
+  return n;
+}
+
 void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
   if (!bulk_) return;
   const auto scope = model_.timers().scope("output");
   const auto& mesh = model_.mesh();
-  auto bulk = io::bulk_piece(mesh), fractures = io::fracture_piece(mesh);
+  auto bulk = io::bulk_piece(mesh);
   const std::vector<Real> rank(mesh.n_owned_cells, mesh.comm->getRank());
   bulk.cell_data.push_back(io::data_array("rank", 1, rank));
   bulk.cell_data.push_back(
       io::data_array("material", 1, {mesh.cell_region.begin(), mesh.cell_region.begin() + mesh.n_owned_cells}));
-  std::vector<Real> fracture_number;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-    fracture_number.push_back(mesh.fracture_faces[f].fracture);
-  fractures.cell_data.push_back(io::data_array("fracture", 1, fracture_number));
   for (const auto& output : outputs) {
     if (output.entity == fields::Entity::node)
       bulk.point_data.push_back(io::nodal_data_array(bulk, output.name, output.n_components, output.values));
-    else
-      (output.entity == fields::Entity::cell ? bulk : fractures)
-          .cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
+    else if (output.entity == fields::Entity::cell)
+      bulk.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
   }
   bulk_->write(time, bulk);
-  if (fractures_) fractures_->write(time, fractures);
+  if (fractures_) fractures_->write(time, fractures_with(mesh, outputs));
 }
 
 void Results::write_json() {

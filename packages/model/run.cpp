@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace sprekk::model {
 
@@ -113,6 +114,15 @@ void describe(const Model& model, base::Log& log) {
   log.info("linear solver: {}", model.newton().linear().solver().describe());
 }
 
+/// Warns when what nothing holds has changed.
+void tell_loose(base::Log& log, Real t, const std::string& before, const std::string& now) {
+  if (now == before) return;
+  if (now.empty())
+    log.info("t = {:.6g}: all rock is held again", t);
+  else
+    log.warning("t = {:.6g}: {}, and nothing holds it; it stays where the last force left it", t, now);
+}
+
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.
 Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, base::Log& log,
                   const std::function<bool()>& should_stop) {
@@ -120,6 +130,7 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
   const auto times = times_after(scene.time, model.time());
   if (times.empty()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, times.size());
+  std::string loose;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Real begin = model.time();
     bool last = k + 1 == times.size(), interrupted = false;
@@ -129,6 +140,7 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
       last = last || interrupted;
       const auto faces = results.add_step(step, last || !step.converged);
       progress.add(step, times[k] - begin, faces);
+      if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
       return step;
     });

@@ -95,6 +95,15 @@ bool Material::is_uniform() const {
   return uniform;
 }
 
+Real Material::friction(const Point& x) const {
+  return friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
+}
+
+std::optional<Real> Material::uniform_friction() const {
+  const auto& value = friction_coefficient ? friction_coefficient : friction_angle;
+  return value && value->is_constant() ? std::make_optional(friction({})) : std::nullopt;
+}
+
 void Material::check(const Point& x) const {
   for_each([&](const char* name, const Value& value, Real least, bool itself, Real limit) {
     if (value.is_constant()) return;  // checked when it was read
@@ -118,8 +127,7 @@ physics::JointParameters Material::joint(const Point& x) const {
   check(x);
   physics::JointParameters joint;
   joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
-  joint.law.friction.coefficient =
-      friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
+  joint.law.friction.coefficient = friction(x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
   joint.law.gap.closure = {maximum_closure(x, 0), normal_stiffness ? (*normal_stiffness)(x, 0) : 1};
@@ -314,7 +322,9 @@ base::Draft<Scene> prepared(const Scene& scene) {
   auto list = base::effective(copy, "Sprekk");
   for (const auto& [name, material] : scene.materials)
     add_stray_entries(list.sublist("Materials").sublist(name), material);
-  return from_list(list, scene.origin);
+  auto draft = from_list(list, scene.origin);
+  draft.value.augmentation = scene.augmentation;
+  return draft;
 }
 
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {

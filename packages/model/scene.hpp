@@ -37,7 +37,8 @@ struct Material {
   std::optional<Value> normal_stiffness;  ///< needed where there is closure
 
   void describe(base::Section& section);
-  bool is_uniform() const;  ///< no value depends on the place
+  bool is_uniform() const;                       ///< no value depends on the place
+  std::optional<Real> uniform_friction() const;  ///< mu of a joint, if it does not depend on the place
   /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
   laws::Elasticity elasticity(const Point& x) const;
   physics::JointParameters joint(const Point& x) const;
@@ -47,6 +48,7 @@ struct Material {
   template <class Visit>
   void for_each(const Visit& visit) const;
   void check(const Point& x) const;
+  Real friction(const Point& x) const;
 };
 
 /// Initial stress of rock at rest under gravity along the last coordinate.
@@ -133,6 +135,8 @@ struct Scene {
   Time time;
   solve::NewtonOptions solver;
   Output output;
+  /// Of physics::ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
+  Real augmentation = physics::ElasticPlasticJumpParameters().augmentation;
 
   void describe(base::Section& section);
   /// The global mesh of either kind. Not collective.

@@ -31,47 +31,39 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto dx = direction.clone();
   auto blocks = blocks_of(*dx);
   bool solved = model_.linear_history().last.converged;
-  if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
   const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
+  if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
     report_.failure = "no equilibrium: " + unresisted + ", and meets no resistance";
     return false;
   }
-  Trial best{0, 0, false};
-  if (solved) best = search(group, from, *dx);
-  while (!best.good && damping_ < most_damping) {
+  std::optional<Trial> found;
+  if (solved) found = search(group, from, *dx);
+  while (!found && damping_ < most_damping) {
     problem_.damp(damping_ = std::max(10 * damping_, least_damping));
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
-    if (solved) best = search(group, from, *dx);
+    if (solved) found = search(group, from, *dx);
   }
-  if (!solved) return false;
-  if (!best.good) {
-    report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
+  if (!found) {
+    if (solved) report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
+    group = from;
     return false;
   }
-  step = best.a;
-  if (best.a == 1 && damping_ > 0) problem_.damp(damping_ = damping_ > least_damping ? damping_ / 10 : 0);
-  accept(solution_of(group), best.merit);
+  step = found->a;
+  if (step == 1 && damping_ > 0) problem_.damp(damping_ = damping_ > least_damping ? damping_ / 10 : 0);
+  accept(solution_of(group), found->merit);
   return true;
 }
 
-LineSearch::Trial LineSearch::search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
-                                     const NOX::Abstract::Vector& dx) const {
-  const auto try_step = [&](Real a) {
+std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                                                    const NOX::Abstract::Vector& dx) const {
+  for (Real a = 1; a >= smallest_step; a /= 2) {
     group.computeX(from, dx, a);
     group.computeF();
     const Real merit = problem_.merit(solution_of(group), residual_of(group));
-    return std::isfinite(merit) ? merit : std::numeric_limits<Real>::infinity();
-  };
-  Trial best{1, try_step(1), false};
-  for (Real a = 1, merit = best.merit;; merit = try_step(a /= 2)) {
-    if (merit < best.merit) best = {a, merit, false};
-    if (merit <= (1 - 1e-3 * a) * limit()) return {a, merit, true};
-    if (a <= smallest_step) {
-      if (best.a != a) try_step(best.a);
-      return best;
-    }
+    if (std::isfinite(merit) && merit <= (1 - 1e-3 * a) * limit()) return Trial{a, merit};
   }
+  return {};
 }
 
 Real LineSearch::limit() const {

@@ -6,6 +6,8 @@
 
 #include <deque>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include "solve/thyra_model.hpp"
 
@@ -19,9 +21,9 @@ struct SearchReport {
 };
 
 /// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
-/// if none is, the best one tried. Before that the step's share of motions that nothing resists is balanced. When a
-/// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
-/// only the last merit counts.
+/// if none is, the step is taken anew with damping 0.1, 1, 10. Before that the step's share of motions that nothing
+/// resists is balanced. When a discrete state comes back and the merit is no better than then, iterates would go round
+/// in circles: from there on only the last merit counts.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
@@ -35,9 +37,9 @@ class LineSearch : public NOX::LineSearch::Generic {
  private:
   struct Trial {
     Real a, merit;
-    bool good;
   };
-  Trial search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, const NOX::Abstract::Vector& dx) const;
+  std::optional<Trial> search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                              const NOX::Abstract::Vector& dx) const;
   Real limit() const;
   void accept(const BlockVector& x, Real merit);
 

@@ -29,7 +29,7 @@ struct NewtonOptions {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;                         ///< Newton steps, each with one linear solve
+  int iterations = 0;                         ///< linear solves: Newton steps, those that damping took anew included
   int linear_iterations = 0;                  ///< over all linear solves
   std::string reason;                         ///< of a failure
   std::string loose;                          ///< what nothing held in an iterate, in words, the last such

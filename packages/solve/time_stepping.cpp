@@ -19,7 +19,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   // in units of the smallest substep, so that substeps end exactly at t_to
   const long long whole = 1LL << options_.max_halvings;
   const Real t_from = t;
-  std::string loose;  // of a failed substep
+  std::string loose;  // in the last substep that failed and in which something was
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
   report.time = t_from;

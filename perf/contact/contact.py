@@ -23,7 +23,7 @@ import violation  # noqa: E402
 from scenes import scenes  # noqa: E402
 
 TIME_LIMIT = 60  # seconds, of one scene
-BOUNDS = {"median": 5, "p90": 15, "max": 30, "worst_violation": 1e-8}  # what --quick as a test demands
+BOUNDS = {"median": 5, "p90": 15, "worst_violation": 1e-8}  # what --quick as a test demands
 COLUMNS = ("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures", "residual", "violation", "by program",
            "error", "undirected", "seconds")
 SMALL = ("residual", "violation", "by program", "error")
@@ -89,7 +89,7 @@ def judge(run, status):
     """Fills in what follows from the results, and what is wrong with them."""
     scene = run.scene
     if scene.refused:
-        said = re.search(scene.refused, run.words + run.results.get("reason", ""), re.IGNORECASE)
+        said = re.search(scene.refused, run.results.get("reason", ""), re.IGNORECASE)
         if status in (0, None) or not said:
             run.failures.append(f"not refused as it should be: status {status}, {last_line(run.words)}")
         return run

@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
 """What a run leaves behind: results_test.py PROGRAM ROOT MPIEXEC"""
+import os
 import re
+import struct
 import subprocess
 import sys
+import unittest.mock
 import xml.etree.ElementTree
+import zlib
 
 from program import ROOT, ProgramTest, main
 
@@ -18,6 +22,20 @@ def numbers(value):
     if isinstance(value, list):
         return [x for entry in value for x in numbers(entry)]
     return [value] if isinstance(value, (int, float)) and not isinstance(value, bool) else []
+
+
+def cell_data(path, name):
+    """The values of an array of scalars in a .vtu file, whose binary data are compressed in blocks and appended."""
+    content = path.read_bytes()
+    offset = re.search(rf'Name="{name}"[^>]*offset="(\d+)'.encode(), content)[1]
+    start = content.index(b"_", content.index(b"<AppendedData")) + 1 + int(offset)
+    n_blocks, = struct.unpack_from("<I", content, start)
+    sizes = struct.unpack_from(f"<{n_blocks}I", content, start + 12)
+    data, at = b"", start + 12 + 4 * n_blocks
+    for size in sizes:
+        data += zlib.decompress(content[at:at + size])
+        at += size
+    return list(struct.unpack(f"<{len(data) // 8}d", data))
 
 
 class Results(ProgramTest):
@@ -146,11 +164,68 @@ class Results(ProgramTest):
         self.assertEqual((out + err).count("failed"), 1)
         self.assertIn("no convergence in 1 iterations", out + err)
 
+    def test_rock_that_nothing_holds_is_told_once(self):
+        # the frame shrinks, lets go of the block in it (ax, ay < 0), and takes hold again
+        scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"
+        words = "a piece of rock around (0.5, 0.5) (128 cells) can move along"
+        for ranks in (1, 2):
+            with unittest.mock.patch.dict(os.environ, {"SPREKK_TERMINAL": "1"}):
+                out, err = self.call("run", scene, "--output", "out", "--set", times, "--set", QUIET, ranks=ranks)
+            self.assertEqual(re.findall("^warning: .*", err, re.MULTILINE), err.splitlines())
+            self.assertEqual(len(err.splitlines()), 1, err)
+            self.assertIn("t = 3.75: " + words, err)
+            self.assertEqual(re.findall("^.*held again", out, re.MULTILINE), ["t = 5: all rock is held again"])
+            loose = {step["time"]: step["loose"] for step in self.results()["steps"] if "loose" in step}
+            self.assertEqual(list(loose), [3.75, 3.9, 4])
+            for text in loose.values():
+                self.assertIn(words, text)
+            for step in self.results()["steps"]:
+                self.assertNotIn("unsettled_faces", step)
+
+    def test_faces_that_found_no_state(self):
+        for ranks in (1, 2):
+            r = self.run_scene("contact/network_x.xml", "Solver.maximum iterations=3", "Time.maximum halvings=0",
+                               ranks=ranks, expect=3)
+            told = {name: int(n) for n, name in re.findall(r'(\d+) of "(\w+)"', r["reason"])}
+            self.assertGreater(sum(told.values()), 0)
+            self.assertEqual(r["steps"][-1]["unsettled_faces"], sum(told.values()))
+            names, counts, n_faces = sorted(r["steps"][0]["fractures"]), {}, 0
+            root = xml.etree.ElementTree.parse(self.folder / "out/unsettled.pvd").getroot()
+            step, = root.findall("./Collection/DataSet")
+            self.assertEqual(float(step.get("timestep")), r["steps"][-2]["time"])
+            parts = re.findall(r'Source="([^"]+)"', (self.folder / "out" / step.get("file")).read_text())
+            self.assertEqual(len(parts), ranks)
+            for part in parts:
+                path = self.folder / "out" / part
+                flags, fractures = cell_data(path, "unsettled"), cell_data(path, "fracture")
+                n_faces += len(flags)
+                self.assertLessEqual(set(flags), {0, 1})
+                for flag, fracture in zip(flags, fractures, strict=True):
+                    if flag:
+                        counts[names[int(fracture)]] = counts.get(names[int(fracture)], 0) + 1
+                self.assertLessEqual(set(cell_data(path, "state")), {0, 1, 2})  # the state before is there, too
+            self.assertEqual(n_faces, r["mesh"]["fracture_faces"])
+            self.assertEqual(counts, told)
+        self.run_scene("contact/network_x.xml", "Time.schedule={1}", QUIET)
+        self.assertEqual(list((self.folder / "out").glob("unsettled*")), [])  # they were of another run
+
+    def test_much_friction_is_named_with_a_failure(self):
+        slope = ("contact/incline_2d.xml", "Mesh.rotation=80", QUIET)
+        note = "; the friction coefficient of"
+        for mu, told in ((1, False), ("1.5+x", False), (1.5, True)):
+            r = self.run_scene(*slope, f"Materials.joint.friction coefficient={mu}", ranks=1 + (mu == 1.5), expect=3)
+            self.assertEqual(note in r["reason"], told, r["reason"])
+        self.assertTrue(r["reason"].endswith(note + ' "joint" is 1.5: above about 1 equilibrium need not exist, nor be unique'))
+        shear = (str(ROOT / "docs/shear_test.xml"), "Solver.maximum iterations=2", "Time.maximum halvings=0", QUIET)
+        for angle, told in ((45, False), (60, True)):
+            r = self.run_scene(*shear, f"Materials.rough joint.friction angle={angle}", expect=3)
+            self.assertEqual(note + ' "rough joint" is 1.732: ' in r["reason"], told, r["reason"])
+
     def test_cuts_are_counted(self):
         # the sides follow the shear traction min(2/3 d_t, 0.18), so that substeps are exact
         path = ["Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
                 "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}", "Solver.tolerance=1e-10"]
-        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", *path, QUIET)
+        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", *path, QUIET)
         self.assertEqual(r["status"], "completed")
         self.assertGreater(r["steps"][0]["cuts"], 0)
         self.assertGreater(r["steps"][0]["substeps"], 1)

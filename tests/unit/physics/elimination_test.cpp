@@ -311,8 +311,8 @@ TEST(Elimination, StickingFacesAreSprings) {
 }
 
 /// C = [[k_n, 0], [-mu k_n d, k_e (I - d d^T)]], k_e = (b/|z|) c_t / (1 - (b/|z|)(1 - c_t (gamma + 1/K_t))), with the
-/// shear z = lambda_t - c_t lambda_t/K_t of the state and its direction d; c_t is in series with K_t and E of the
-/// softer rock over the length of the fracture.
+/// shear z = lambda_t - c_t lambda_t/K_t of the state and its direction d; c_t is in series with K_t and
+/// the parameter `augmentation` times E of the softer rock over the length of the fracture.
 TEST(Elimination, SlippingFacesFollowTheNormalForce) {
   for (const auto& cell : all_cells)
     for (Real compliance : {0.0, 0.5}) {
@@ -321,7 +321,8 @@ TEST(Elimination, SlippingFacesFollowTheNormalForce) {
       const auto x = with_traction(rock, {-2, shear[0], shear[1]});
       const int n_shear = rock.dim() - 1;
       const Real length = rock.dim() == 2 ? 2 : std::sqrt(8.0), size = n_shear == 1 ? 3 : 5;
-      const Real c_t = 1 / (length / soft.youngs_modulus() + compliance);
+      const Real c = physics::ElasticPlasticJumpParameters().augmentation * soft.youngs_modulus() / length;
+      const Real c_t = 1 / (1 / c + compliance);
       const Real z = size * (1 - c_t * compliance), ratio = 0.6 * 2 / z;
       ASSERT_LT(ratio, 1);
       expect_reduced(rock, x, [&](const Face& face) {

@@ -80,6 +80,51 @@ TEST(LocalElimination, CondensedMatrixIsSymmetricWithZeroedConstraints) {
     }
 }
 
+/// The solution is that of the dense matrix with it; other entries of the condensed matrix keep every bit.
+TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
+  for (int d : {2, 3}) {
+    GridOptions options;
+    options.d = d;
+    GridProblem problem(Tpetra::getDefaultComm(), options);
+    problem.jacobian(mixed_state(problem));
+    LocalElimination without(problem), with(problem);
+    ASSERT_EQ(without.update(problem).failure, "");
+    const auto diagonal = rcp(new Vector(problem.blocks()[0].map));
+    for (std::size_t i = 0; i < diagonal->getLocalLength(); ++i)
+      diagonal->replaceLocalValue(i, 1 + 0.5 * std::sin(1.0 * diagonal->getMap()->getGlobalElement(i)));
+    problem.added = diagonal;
+    ASSERT_EQ(with.update(problem).failure, "");
+    const auto a = without.condensed(0, 0), b = with.condensed(0, 0);
+    const auto before = a->getLocalMatrixHost(), after = b->getLocalMatrixHost();
+    const auto constrained = problem.constrained(0);
+    for (LocalIndex row = 0; row < before.numRows(); ++row)
+      for (auto k = before.graph.row_map(row); !constrained(row) && k < before.graph.row_map(row + 1); ++k) {
+        const bool on_diagonal =
+            a->getColMap()->getGlobalElement(before.graph.entries(k)) == a->getRowMap()->getGlobalElement(row);
+        if (on_diagonal)
+          EXPECT_NEAR(after.values(k) - before.values(k), diagonal->getData()[row], 1e-14);
+        else
+          EXPECT_EQ(after.values(k), before.values(k));
+      }
+    auto right = problem.zero(), x = problem.zero();
+    const auto values = some_values(gather(right).size());
+    scatter(values, right);
+    CondensedSolve solve(problem, {});
+    solve.update();
+    ASSERT_TRUE(solve.solve(right, x, 1e-12).converged);
+    auto matrix = gather_matrix(problem);
+    const auto added = gather(*diagonal);
+    for (std::size_t i = 0; i < added.size(); ++i)
+      if (i / d % (options.nx * options.ny) >= std::size_t(options.nx) && i / d < added.size() / d - options.nx)
+        matrix[i][i] += added[i];  // neither in the fixed nor in the moved row
+    const auto exact = solve_dense(matrix, {values.begin(), values.end()});
+    const auto found = gather(x);
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], exact[i], 1e-11) << "unknown " << i;
+    problem.added = Teuchos::null;
+    EXPECT_TRUE(with.update(problem).changed);
+  }
+}
+
 TEST(LocalElimination, KnowsWhatChanged) {
   GridProblem problem(Tpetra::getDefaultComm(), {});
   LocalElimination elimination(problem);

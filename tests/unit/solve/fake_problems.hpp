@@ -88,6 +88,7 @@ class GridProblem : public BlockProblem {
   int q(int face) const { return (o_.ny / 2 - 1) * o_.nx + face; }
   Real top(int i) const { return std::sin(6.3 * (i + 0.6) / o_.nx) + 0.1; }
   int n_jacobians = 0, n_commits = 0;
+  RCP<const Vector> added;  ///< proximal diagonal of the displacement
 
   RCP<const Comm> comm() const override { return comm_; }
   const std::vector<Block>& blocks() const override { return blocks_; }
@@ -130,6 +131,7 @@ class GridProblem : public BlockProblem {
     }
   }
   const BlockMatrix& matrix() const override { return matrix_; }
+  RCP<const Vector> proximal(int block) const override { return block == 0 ? added : Teuchos::null; }
   bool symmetric() const override { return o_.eliminate; }
   ConstView<char*> constrained(int block) const override {
     return block == 0 ? ConstView<char*>(constrained_) : ConstView<char*>();
@@ -272,6 +274,13 @@ class ScalarProblem : public BlockProblem {
   }
 
   std::vector<Real> committed_times;
+  Real resistance = 0;      ///< what damping of 1 adds to the derivative
+  std::vector<Real> damps;  ///< all that were asked for
+  std::string free_body;    ///< that nothing ever resists
+
+  void damp(Real damping) override { damps.push_back(damping); }
+  std::string loose() const override { return free_body; }
+  std::string balance(const BlockVector&, BlockVector&) override { return free_body; }
 
   RCP<const Comm> comm() const override { return comm_; }
   const std::vector<Block>& blocks() const override { return blocks_; }
@@ -285,7 +294,8 @@ class ScalarProblem : public BlockProblem {
   }
   void jacobian(const BlockVector& x) override {
     const auto local = matrix_(0, 0)->getLocalMatrixHost();
-    for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) local.values(i) = df_(x[0]->getData()[i], t_, dt_);
+    for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
+      local.values(i) = df_(x[0]->getData()[i], t_, dt_) + (damps.empty() ? 0 : resistance * damps.back());
   }
   const BlockMatrix& matrix() const override { return matrix_; }
   bool symmetric() const override { return true; }

@@ -50,6 +50,8 @@ TEST(Stack, OnlyTheWeakestSlides) {
         const auto step = [&](model::Model& model, Real t, Real d_t) {
           const auto report = model.step_to(t);
           ASSERT_TRUE(report.converged) << report.reason;
+          EXPECT_EQ(report.cuts, 0);
+          EXPECT_LE(report.newton_iterations, 6);
           expect_stack(model, stack, d_t);
         };
         model::Model in_steps(scene, Tpetra::getDefaultComm());

@@ -1,0 +1,149 @@
+// What loose pieces do: their share of a displacement, the work on them, their names.
+#include "assembly/loose_pieces.hpp"
+
+#include "base/check.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_LAPACK.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace sprekk::assembly {
+
+using mesh::Vector;
+using mesh::operator-;
+
+namespace {
+
+std::vector<Real> sum_over_ranks(const Comm& comm, const std::vector<Real>& here) {
+  std::vector<Real> all(here.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+  return all;
+}
+
+Real size(const RigidRow& q) { return std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), Real(0))); }
+
+}  // namespace
+
+/// Least squares over nodes, group by group: products of the free motions with each other and with the displacement.
+LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) const {
+  const auto modes = rigid_modes(dim());
+  const int m = static_cast<int>(modes.size()), n = static_cast<int>(loose_.size());
+  std::vector<Real> q(n * m, 0);
+  const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
+    const int number = loose_number_[piece_of_[k]];
+    if (number < 0) continue;
+    for (int i = 0; i < dim(); ++i) {
+      const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
+      for (int c = 0; c < m; ++c) q[number * m + c] += row[modes[c]] * u(k * dim() + i, 0);
+    }
+  }
+  q = sum_over_ranks(*mesh_->comm, q);
+  Motion motion;
+  motion.q.assign(n, {});
+  for (const auto& group : groups_) {
+    const int n_modes = static_cast<int>(group.modes.size()), n_q = static_cast<int>(group.modes[0].size());
+    std::vector<Real> product(n_modes * n_modes, 0), share(n_modes, 0);
+    for (int s = 0; s < n_modes; ++s) {
+      std::vector<Real> moved(n_q, 0);  // inertia times the motion
+      for (int k = 0; k < n_q; ++k) {
+        const auto& inertia = inertia_[loose_[group.first + k / m]];
+        for (int d = 0; d < m; ++d) moved[k] += inertia[modes[k % m]][modes[d]] * group.modes[s][k / m * m + d];
+        share[s] += group.modes[s][k] * q[group.first * m + k];
+      }
+      for (int r = 0; r < n_modes; ++r)
+        product[r * n_modes + s] = std::inner_product(moved.begin(), moved.end(), group.modes[r].begin(), Real(0));
+    }
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().POSV('U', n_modes, 1, product.data(), n_modes, share.data(), n_modes, &info);
+    SPREKK_CHECK(info == 0, "rigid motions: LAPACK's POSV failed with {}", info);
+    for (int s = 0; s < n_modes; ++s)
+      for (int k = 0; k < n_q; ++k) motion.q[group.first + k / m][modes[k % m]] += share[s] * group.modes[s][k];
+    motion.largest.push_back(0);
+    for (int k = 0; k < n_q / m; ++k)
+      motion.largest.back() = std::max(motion.largest.back(), size(motion.q[group.first + k]));
+  }
+  return motion;
+}
+
+int LoosePieces::group_of(int number) const {
+  const auto after = std::upper_bound(groups_.begin(), groups_.end(), number,
+                                      [](int value, const Group& group) { return value < group.first; });
+  return static_cast<int>(after - groups_.begin()) - 1;
+}
+
+void LoosePieces::add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const {
+  const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
+    const int piece = piece_of_[k], number = loose_number_[piece];
+    if (number < 0) continue;
+    const Vector v = rigid_displacement(frames_[piece], motion.q[number], node(static_cast<LocalIndex>(k)));
+    for (int i = 0; i < dim(); ++i) u(k * dim() + i, 0) += s[group_of(number)] * v[i];
+  }
+}
+
+std::vector<Real> LoosePieces::work(const Motion& motion, const fields::Vector& residual,
+                                    const std::vector<Grip>& grips) const {
+  const auto r = residual.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<Real> work(groups_.size(), 0);
+  const auto add = [&](int piece, const Vector& x, const Vector& force) {
+    const int number = loose_number_[piece];
+    if (number < 0) return;
+    work[group_of(number)] += mesh::dot(rigid_displacement(frames_[piece], motion.q[number], x), force);
+  };
+  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
+    Vector force{};
+    for (int i = 0; i < dim(); ++i) force[i] = r(k * dim() + i, 0);
+    add(piece_of_[k], node(static_cast<LocalIndex>(k)), force);
+  }
+  for (std::size_t f = 0; f < pair_of_.size(); ++f) {
+    if (pair_of_[f] < 0) continue;
+    const auto& face = mesh_->fracture_faces[f];
+    Vector force{}, opposite{};
+    for (int i = 0; i < 3; ++i) {
+      force[i] = -face.area * grips[f].excess[i];
+      opposite[i] = -force[i];
+    }
+    add(mesh_->cell_piece[face.cell[mesh::plus]], face.centre, force);
+    add(mesh_->cell_piece[face.cell[mesh::minus]], face.centre, opposite);
+  }
+  return sum_over_ranks(*mesh_->comm, work);
+}
+
+LoosePieces::Motion LoosePieces::selected(const Motion& motion, const std::function<bool(int)>& group_is) const {
+  Motion part = motion;
+  bool any = false;
+  for (std::size_t k = 0; k < loose_.size(); ++k) {
+    const bool is = group_is(group_of(static_cast<int>(k)));
+    if (!is) part.q[k] = {};
+    any = any || is;
+  }
+  return any ? part : Motion{};
+}
+
+LoosePieces::Motion LoosePieces::first() const {
+  const auto modes = rigid_modes(dim());
+  Motion motion;
+  motion.q.assign(loose_.size(), {});
+  motion.largest.assign(groups_.size(), 0);
+  const auto& mode = groups_.front().modes.front();
+  for (std::size_t c = 0; c < mode.size(); ++c)
+    motion.q[groups_.front().first + c / modes.size()][modes[c % modes.size()]] = mode[c];
+  return motion;
+}
+
+std::string LoosePieces::describe(const Motion& motion) const {
+  const auto largest = std::max_element(motion.q.begin(), motion.q.end(),
+                                        [](const RigidRow& a, const RigidRow& b) { return size(a) < size(b); });
+  const int piece = loose_[largest - motion.q.begin()];
+  const auto& frame = frames_[piece];
+  return fmt::format("a piece of rock around {} ({} cells){} {}",
+                     to_text(frame.centre, dim(), mesh::norm(frame.centre) + frame.size), n_cells_[piece],
+                     loose_.size() > 1 ? fmt::format(" and {} more", loose_.size() - 1) : "",
+                     to_text(free_motion(piece, frame, *largest), dim()));
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,123 @@
+// Rock that nothing holds: what it is, and how far a step may move it.
+#include "assembly/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::assembly {
+
+using fields::BlockVector;
+
+/// At the x of the last refresh_ghosts.
+std::vector<Grip> System::grips() {
+  std::vector<Grip> grips(mesh_->n_owned_fracture_faces);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
+  return grips;
+}
+
+RCP<const fields::Vector> System::proximal(int block) const {
+  return block == displacement_ && watches_pieces() && loose_->any() ? Teuchos::rcpFromRef(loose_->proximal())
+                                                                     : Teuchos::null;
+}
+
+std::string System::loose() const {
+  if (!watches_pieces() || !loose_->any()) return "";
+  return loose_->describe(driven_.q.empty() ? loose_->first() : driven_);
+}
+
+void System::find_loose() {
+  if (!watches_pieces()) return;
+  loose_->find(grips());
+  driven_ = {};
+}
+
+namespace {
+
+/// The zero of a function that does not fall, below zero at 0: bracketed by steps that grow fourfold, then by false
+/// position (Illinois), to a tenth of the value at 0.
+class Search {
+ public:
+  /// `start`: the value at 0; no search unless it is below zero.
+  Search(Real start, Real first, Real reach) : s(start < 0 ? first : 0), start_(start), reach_(reach) {
+    done_ = !(start < 0);
+  }
+
+  Real s;  ///< where the function is to be evaluated next; at the end, the result
+  bool done() const { return done_; }
+  bool lost() const { return s > reach_; }  ///< no zero within reach
+
+  void next(Real value) {
+    if (done_) return;
+    if (value < 0) {
+      if (side_ < 0) at_high_ /= 2;
+      low_ = s;
+      at_low_ = value;
+    } else {
+      if (side_ > 0) at_low_ /= 2;
+      high_ = s;
+      at_high_ = value;
+    }
+    side_ = value < 0 ? -1 : 1;
+    const bool bracketed = high_ > 0;
+    done_ = bracketed && (std::abs(value) <= -0.1 * start_ || ++n_refined_ > 30);
+    if (done_) return;
+    s = bracketed ? (low_ * at_high_ - high_ * at_low_) / (at_high_ - at_low_) : 4 * s;
+    done_ = lost();
+  }
+
+ private:
+  Real start_, reach_, low_ = 0, at_low_ = start_, high_ = 0, at_high_ = 0;
+  int side_ = 0, n_refined_ = 0;
+  bool done_;
+};
+
+}  // namespace
+
+/// [group] Of a motion, on what is out of balance at x; below zero where the motion is along the force.
+std::vector<Real> System::work(const LoosePieces::Motion& motion, const BlockVector& x) {
+  auto r = fields::create_like(x);
+  residual(x, r);
+  return loose_->work(motion, *r[displacement_], grips());
+}
+
+/// A piece that nothing holds goes as far as the full step says, 1e4 times too far. So its motion is taken out of the
+/// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks.
+/// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
+std::string System::balance(const BlockVector& x, BlockVector& dx) {
+  if (!watches_pieces() || !loose_->any() || damping_ > 0) return "";
+  auto& du = *dx[displacement_];
+  const int n = loose_->n_groups();
+  const auto motion = loose_->part_of(du);
+  loose_->add(std::vector<Real>(n, -1), motion, du);
+  auto y = fields::create_like(x);
+  const auto at = [&](const std::vector<Real>& s) {
+    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
+    loose_->add(s, motion, *y[displacement_]);
+    return work(motion, y);
+  };
+  std::vector<Real> s(n, 0);
+  const auto start = at(s);
+  std::vector<Search> searches;
+  const Real reach = 4 * reference_.length + 1e3 * scales_.length;
+  for (int g = 0; g < n; ++g) {
+    const bool round_off = !(motion.largest[g] > 1e-8 * scales_.length);
+    searches.emplace_back(round_off ? 0 : start[g], 0.1 * scales_.length / motion.largest[g],
+                          reach / motion.largest[g]);
+  }
+  const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };
+  driven_ = loose_->selected(motion, [&](int g) { return !searches[g].done(); });
+  while (!all_done()) {
+    for (int g = 0; g < n; ++g) s[g] = searches[g].s;
+    const auto value = at(s);
+    for (int g = 0; g < n; ++g) searches[g].next(value[g]);
+  }
+  bool lost = false;
+  for (int g = 0; g < n; ++g) {
+    s[g] = searches[g].lost() ? scales_.length / motion.largest[g] : searches[g].s;
+    lost = lost || searches[g].lost();
+  }
+  loose_->add(s, motion, du);
+  return lost ? loose_->describe(loose_->selected(motion, [&](int g) { return searches[g].lost(); })) : "";
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,401 @@
+// Pieces that nothing holds, for grips made by hand: a column of three blocks along y, cut by "lower" and "upper".
+#include "assembly/loose_pieces.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include <Tpetra_Core.hpp>
+#include <map>
+
+#include "unit/assembly/fake_modules.hpp"
+
+namespace sprekk::test {
+namespace {
+
+Real largest(const assembly::LoosePieces::Motion& motion) {
+  return motion.largest.empty() ? 0 : *std::max_element(motion.largest.begin(), motion.largest.end());
+}
+
+Real sum(const std::vector<Real>& values) { return std::accumulate(values.begin(), values.end(), Real(0)); }
+
+using assembly::Grip;
+using assembly::LoosePieces;
+using assembly::RigidFrame;
+using assembly::RigidRow;
+using mesh::Vector;
+using mesh::testing::all_cells;
+using mesh::testing::dim_of;
+using ::testing::AnyOf;
+using ::testing::Eq;
+using ::testing::HasSubstr;
+
+mesh::BoxMesh column_box(const std::string& cell, int width = 2) {
+  const bool flat = dim_of(cell) == 2;
+  auto box = mesh::testing::unit_steps(cell, flat ? std::vector<int>{width, 3} : std::vector<int>{width, 3, width});
+  for (const auto& [name, y] : std::map<std::string, Real>{{"lower", 1}, {"upper", 2}}) {
+    std::vector<Real> from{0, y, 0}, to{Real(width), y, Real(width)};
+    from.resize(dim_of(cell)), to.resize(dim_of(cell));
+    box.fractures[name] = mesh::testing::fracture(from, to);
+  }
+  return box;
+}
+
+/// How the sides of a fracture hold each other.
+struct Contact {
+  enum { open, slip, stick } state = open;
+  Vector along = {1, 0, 0};  ///< of the slip
+};
+const Contact open{}, stick{Contact::stick}, slip{Contact::slip};
+
+struct Column {
+  RCP<const mesh::Mesh> mesh;
+  fields::Layout layout;
+  assembly::Constraints constraints;
+  LoosePieces pieces;
+  RCP<fields::Vector> diagonal;
+
+  Column(const mesh::BoxMesh& box, const std::vector<std::string>& held)
+      : mesh(mesh::make_distributed(mesh::make_box(box), Tpetra::getDefaultComm())),
+        layout({"displacement", fields::Entity::node, mesh->dim(), "m"}, *mesh),
+        constraints(*mesh, layout, conditions(*mesh, held)),
+        pieces(mesh, layout, constraints),
+        diagonal(rcp(new fields::Vector(layout.owned()))) {
+    diagonal->putScalar(7);
+    if (pieces.possible()) pieces.set_stiffness(*diagonal);
+  }
+
+  static std::vector<assembly::DirichletCondition> conditions(const mesh::Mesh& mesh,
+                                                              const std::vector<std::string>& held) {
+    std::vector<assembly::DirichletCondition> all;
+    for (const auto& boundary : held) all.push_back(hold(mesh, boundary, boundary, {0.0, 0.0, 0.0}));
+    return all;
+  }
+
+  std::vector<Grip> grips(const Contact& lower, const Contact& upper) const {
+    std::vector<Grip> all(mesh->n_owned_fracture_faces);
+    for (LocalIndex f = 0; f < mesh->n_owned_fracture_faces; ++f) {
+      const auto& contact = mesh->fracture_names[mesh->fracture_faces[f].fracture] == "lower" ? lower : upper;
+      for (int i = 0; contact.state != Contact::open && i < mesh->dim(); ++i)
+        for (int j = 0; j < mesh->dim(); ++j)
+          all[f].held[i][j] = (i == j) - (contact.state == Contact::slip) * contact.along[i] * contact.along[j];
+    }
+    return all;
+  }
+  void find(const Contact& lower, const Contact& upper) { pieces.find(grips(lower, upper)); }
+
+  Vector x(LocalIndex node) const {
+    Vector result{};
+    for (int i = 0; i < mesh->dim(); ++i) result[i] = mesh->coordinates[node * mesh->dim() + i];
+    return result;
+  }
+  /// Number of the block that each owned node is in, from below: that of the cells around.
+  std::vector<int> block_of_node() const {
+    std::vector<int> block(layout.n_owned_entities(), -1);
+    const int n = mesh->nodes_per_cell();
+    for (LocalIndex c = 0; c < mesh->n_cells(); ++c) {
+      Real y = 0;
+      for (int k = 0; k < n; ++k) y += x(mesh->cells[c * n + k])[1] / n;
+      for (int k = 0; k < n; ++k)
+        if (const auto node = mesh->free_node(mesh->cells[c * n + k]); node < layout.n_owned_entities())
+          block[node] = static_cast<int>(y);
+    }
+    return block;
+  }
+  /// A displacement that is a rigid motion of each block, by the centre and largest extent of the first.
+  fields::Vector rigid(const std::array<RigidRow, 3>& q) const {
+    fields::Vector u(layout.owned());
+    const auto blocks = block_of_node();
+    for (LocalIndex k = 0; k < layout.n_owned_entities(); ++k) {
+      const auto v = rigid_displacement(frame(blocks[k]), q[blocks[k]], x(k));
+      for (int i = 0; i < mesh->dim(); ++i) u.replaceLocalValue(k * mesh->dim() + i, v[i]);
+    }
+    return u;
+  }
+  RigidFrame frame(int block) const { return {{1, 0.5 + block, mesh->dim() == 3 ? 1.0 : 0.0}, 2}; }
+  /// The free motions are orthonormal in rigid coordinates: the trace of the projection on them is their number.
+  Real n_motions() {
+    if (!pieces.any()) return 0;
+    Real trace = 0;
+    for (int block = 0; block < 3; ++block)
+      for (int mode : assembly::rigid_modes(mesh->dim())) {
+        std::array<RigidRow, 3> q{};
+        q[block][mode] = 1;
+        auto motion = fields::Vector(layout.owned());
+        pieces.add(std::vector<Real>(pieces.n_groups(), 1), pieces.part_of(rigid(q)), motion);
+        trace += coordinate(motion, block, mode);
+      }
+    return trace;
+  }
+  /// Of a motion that is rigid in each block, from least squares that treat the modes of a block one by one: they are
+  /// orthogonal on these meshes, which are symmetric about the centres of blocks.
+  Real coordinate(const fields::Vector& u, int block, int mode) const {
+    std::array<RigidRow, 3> q{};
+    q[block][mode] = 1;
+    const auto unit = rigid(q);
+    return unit.dot(u) / unit.dot(unit);
+  }
+};
+
+TEST(LoosePieces, NothingToWatchWhereAllIsHeldByConditions) {
+  for (const auto& cell : all_cells) {
+    auto box = column_box(cell);
+    EXPECT_TRUE(Column(box, {"south", "north"}).pieces.possible()) << cell;
+    EXPECT_FALSE(Column(box, {"west"}).pieces.possible()) << cell;
+    box.fractures.erase("upper");
+    EXPECT_FALSE(Column(box, {"south", "north"}).pieces.possible()) << cell;
+    box.fractures.clear();
+    EXPECT_FALSE(Column(box, {"south"}).pieces.possible()) << cell;
+  }
+}
+
+TEST(LoosePieces, SticksTogether) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south"});
+    column.find(open, open);
+    EXPECT_TRUE(column.pieces.any());
+    column.find(stick, stick);
+    EXPECT_FALSE(column.pieces.any()) << cell;
+    EXPECT_EQ(column.pieces.proximal().normInf(), 0);
+  }
+}
+
+TEST(LoosePieces, SlidesBetweenTwoThatAreHeld) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south", "north"});
+    column.find(slip, slip);
+    ASSERT_NEAR(column.n_motions(), 1, 1e-9) << cell;
+    const auto motion = column.pieces.part_of(column.rigid({RigidRow{9, 9, 0, 0, 0, 9}, {2, 3, 0, 0, 0, 5}, {8}}));
+    ASSERT_EQ(motion.q.size(), 1u);
+    for (int c = 0; c < 6; ++c) EXPECT_NEAR(motion.q[0][c], c == 0 ? 2 : 0, 1e-9);
+    EXPECT_NEAR(largest(motion), 2, 1e-9);
+    const auto n = column.mesh->n_global_cells / 3;
+    const std::string where = dim_of(cell) == 2 ? "(1, 1.5)" : "(1, 1.5, 1)", zero = dim_of(cell) == 2 ? "" : ", 0";
+    const auto text = [&](int sign) {
+      return fmt::format("a piece of rock around {} ({} cells) can move along ({}, 0{})", where, n, sign, zero);
+    };
+    EXPECT_THAT(column.pieces.describe(column.pieces.first()), AnyOf(Eq(text(1)), Eq(text(-1))));
+    column.find(slip, stick);
+    EXPECT_FALSE(column.pieces.any());
+    if (dim_of(cell) == 2) continue;
+    column.find(slip, {Contact::slip, {0.6, 0, 0.8}});  // in different directions
+    EXPECT_FALSE(column.pieces.any());
+    column.find({Contact::slip, {0.6, 0, 0.8}}, {Contact::slip, {0.6, 0, 0.8}});
+    const auto oblique = column.pieces.part_of(column.rigid({RigidRow{}, {3, 0, 4}, {}}));
+    EXPECT_NEAR(oblique.q.at(0)[0], 3, 1e-9);
+    EXPECT_NEAR(oblique.q.at(0)[2], 4, 1e-9);
+  }
+}
+
+TEST(LoosePieces, FreeOfEverything) {
+  for (const auto& cell : all_cells) {
+    const int n = dim_of(cell) == 2 ? 3 : 6;
+    Column held(column_box(cell), {"south", "north"}), standing(column_box(cell), {"south"});
+    held.find(open, open);
+    EXPECT_NEAR(held.n_motions(), n, 1e-8) << cell;
+    standing.find(open, open);
+    ASSERT_NEAR(standing.n_motions(), 2 * n, 1e-8) << cell;
+    standing.find(stick, open);
+    ASSERT_NEAR(standing.n_motions(), n, 1e-8) << cell;
+    standing.find(open, stick);  // the two as one
+    ASSERT_NEAR(standing.n_motions(), n, 1e-8) << cell;
+    EXPECT_THAT(standing.pieces.describe(standing.pieces.first()), HasSubstr("and 1 more"));
+  }
+}
+
+/// Sides that are tied to each other allow no rotation, also on one cell whose nodes are but one row of free ones.
+TEST(LoosePieces, PeriodicSides) {
+  for (const auto& cell : all_cells)
+    for (int width : {2, 1}) {
+      SCOPED_TRACE(cell);
+      const int dim = dim_of(cell);
+      auto box = column_box(cell, width);
+      box.periodic = dim == 2 ? std::vector<std::string>{"x"} : std::vector<std::string>{"x", "z"};
+      Column column(box, {"south"});
+      column.find(stick, stick);
+      EXPECT_FALSE(column.pieces.any());
+      const auto expect_free = [&](const std::array<RigidRow, 3>& q) {
+        auto u = column.rigid(q);
+        column.pieces.add(std::vector<Real>(column.pieces.n_groups(), -1), column.pieces.part_of(u), u);
+        EXPECT_NEAR(u.normInf(), 0, 1e-9);
+      };
+      fields::Vector any(column.layout.owned());
+      any.randomize();
+      for (const auto& upper : {open, slip}) {
+        column.find(stick, upper);
+        expect_free({RigidRow{}, {}, {1, 0, 0}});
+        if (upper.state == Contact::open) expect_free({RigidRow{}, {}, {0, 1, 0}});
+        const auto motion = column.pieces.part_of(any);
+        ASSERT_EQ(motion.q.size(), 1u);
+        for (int c = 3; c < 6; ++c) EXPECT_NEAR(motion.q[0][c], 0, 1e-9);
+      }
+      column.find(slip, open);
+      expect_free({RigidRow{}, {1, 0, 0}, {0, 2, 0}});
+    }
+}
+
+/// The pieces on both sides of a crack across a layer are one, as they are tied to each other at the other end.
+TEST(LoosePieces, TiedToEachOther) {
+  for (const auto& cell : all_cells) {
+    const int dim = dim_of(cell);
+    auto box = column_box(cell);
+    box.fractures.erase("upper");
+    std::vector<Real> from{1, 1, 0}, to{1, 3, 2};
+    from.resize(dim), to.resize(dim);
+    box.fractures["crack"] = mesh::testing::fracture(from, to);
+    box.periodic = {"x"};
+    Column column(box, {"south"});
+    ASSERT_EQ(column.mesh->n_pieces, 3);
+    const auto blocks = column.block_of_node();
+    fields::Vector u(column.layout.owned()), v(column.layout.owned());
+    for (LocalIndex k = 0; k < column.layout.n_owned_entities(); ++k)
+      if (blocks[k] > 0) u.replaceLocalValue(k * dim, 2.0);
+    const auto part = [&](const Contact& lower, const Contact& crack) {
+      column.find(lower, crack);
+      v.putScalar(0);
+      if (column.pieces.any())
+        column.pieces.add(std::vector<Real>(column.pieces.n_groups(), 1), column.pieces.part_of(u), v);
+      v.update(-1, u, 1);
+      return v.normInf();
+    };
+    EXPECT_NEAR(part(slip, open), 0, 1e-9) << cell;
+    EXPECT_NEAR(part(slip, stick), 0, 1e-9) << cell;
+    EXPECT_EQ(part(stick, open), 2) << cell;
+    EXPECT_FALSE(column.pieces.any());
+    // only together
+    column.find(slip, open);
+    u.randomize();
+    const auto motion = column.pieces.part_of(u);
+    ASSERT_EQ(motion.q.size(), 2u);
+    for (int c = 0; c < 6; ++c) {
+      EXPECT_NEAR(motion.q[0][c], motion.q[1][c], 1e-9);
+      EXPECT_NEAR(c > 0 ? motion.q[0][c] : 0, 0, 1e-9);
+    }
+  }
+}
+
+TEST(LoosePieces, SlideTogetherThoughEachSticksToTheOther) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south"});
+    column.find(slip, stick);
+    ASSERT_NEAR(column.n_motions(), 1, 1e-9) << cell;
+    const auto motion = column.pieces.part_of(column.rigid({RigidRow{}, {3}, {1}}));
+    ASSERT_EQ(motion.q.size(), 2u);
+    for (const auto& q : motion.q)
+      for (int c = 0; c < 6; ++c) EXPECT_NEAR(q[c], c == 0 ? 2 : 0, 1e-9) << "the mean of both";
+    EXPECT_THAT(column.pieces.describe(column.pieces.first()), HasSubstr("and 1 more can move along ("));
+  }
+}
+
+/// A face acts at its centre.
+TEST(LoosePieces, TurnsAboutOneFace) {
+  for (const std::string cell : {"quadrilateral", "hexahedron"}) {
+    Column column(column_box(cell, 1), {"south", "north"});
+    column.find(open, stick);
+    ASSERT_TRUE(column.pieces.any());
+    fields::Vector u(column.layout.owned()), back(column.layout.owned());
+    u.randomize();
+    const auto motion = column.pieces.part_of(u);
+    ASSERT_EQ(motion.q.size(), 1u);
+    EXPECT_GT(largest(motion), 1e-3);
+    const bool flat = dim_of(cell) == 2;
+    const RigidFrame frame{{0.5, 1.5, flat ? 0 : 0.5}, 1};
+    const auto at_face = rigid_displacement(frame, motion.q[0], {0.5, 2, flat ? 0 : 0.5});
+    for (Real v : at_face) EXPECT_NEAR(v, 0, 1e-9);
+    EXPECT_THAT(column.pieces.describe(column.pieces.first()),
+                HasSubstr(flat ? "can rotate about (0.5, 2)" : "can rotate about the axis ("));
+  }
+}
+
+/// part_of() is a projection, and add() its inverse.
+TEST(LoosePieces, PartsAddUp) {
+  for (const auto& cell : all_cells)
+    for (const auto& contacts : {std::pair{open, open}, {slip, stick}, {stick, slip}}) {
+      Column column(column_box(cell), {"south"});
+      column.find(contacts.first, contacts.second);
+      fields::Vector u(column.layout.owned()), v(column.layout.owned());
+      u.randomize();
+      const auto motion = column.pieces.part_of(u);
+      ASSERT_GT(largest(motion), 1e-3);
+      column.pieces.add(std::vector<Real>(column.pieces.n_groups(), 2), motion, v);
+      const auto twice = column.pieces.part_of(v);
+      for (std::size_t k = 0; k < motion.q.size(); ++k)
+        for (int c = 0; c < 6; ++c) EXPECT_NEAR(twice.q[k][c], 2 * motion.q[k][c], 1e-9);
+      column.pieces.add(std::vector<Real>(column.pieces.n_groups(), -1), motion, u);
+      EXPECT_NEAR(largest(column.pieces.part_of(u)), 0, 1e-9);
+    }
+}
+
+TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
+  for (const auto& cell : all_cells)
+    for (bool periodic : {false, true}) {
+      auto box = column_box(cell);
+      if (periodic) box.periodic = {"x"};
+      Column column(box, {"south", "north"});
+      for (const auto& contacts : {std::pair{open, open}, {slip, slip}, {stick, slip}}) {
+        column.find(contacts.first, contacts.second);
+        const auto blocks = column.block_of_node();
+        const auto proximal = column.pieces.proximal().getData();
+        for (LocalIndex i = 0; i < column.layout.n_owned(); ++i)
+          if (column.pieces.any() && blocks[i / column.mesh->dim()] == 1) {
+            EXPECT_GT(proximal[i], 0);
+            EXPECT_LT(proximal[i], 1e-4 * 7);
+          } else {
+            EXPECT_EQ(proximal[i], 0);
+          }
+      }
+      EXPECT_FALSE(column.pieces.any());
+    }
+}
+
+/// Forces of tractions lambda on the sides of all faces: -lambda on plus, lambda on minus, in equal shares at the
+/// nodes; the residual is their opposite. What of lambda is excess does no work.
+TEST(LoosePieces, WorkIsThatOfTheLaw) {
+  const auto law = [](const Vector& x) { return Vector{1 + 0.3 * x[1], 0.2 * x[0] - 0.5, 0.4 + 0.1 * x[2]}; };
+  const auto excess = [](const Vector& x) { return Vector{-7 + x[1], 5 * x[0], 2 * x[2] - x[0]}; };
+  for (const auto& cell : all_cells)
+    for (const auto& upper : {open, stick}) {
+      Column column(column_box(cell), {"south"});
+      const auto& mesh = *column.mesh;
+      const int dim = mesh.dim(), n = mesh::n_face_nodes(mesh.shape);
+      auto grips = column.grips(open, upper);
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+        for (int i = 0; i < dim; ++i) grips[f].excess[i] = excess(mesh.fracture_faces[f].centre)[i];
+      column.pieces.find(grips);
+      fields::Vector r(column.layout.owned()), u(column.layout.owned());
+      for (const auto& face : mesh.fracture_faces)
+        for (int side : {mesh::minus, mesh::plus})
+          for (int k = 0; k < n; ++k)
+            if (const auto node = face.nodes[side][k]; node >= 0 && node < column.layout.n_owned_entities())
+              for (int i = 0; i < dim; ++i)
+                r.sumIntoLocalValue(node * dim + i, (side == mesh::plus ? 1 : -1) * face.area / n *
+                                                        (law(face.centre)[i] + excess(face.centre)[i]));
+      for (int mode : assembly::rigid_modes(dim)) {
+        std::array<RigidRow, 3> q{};
+        q[1][mode] = 0.3;
+        q[2][mode] = upper.state == Contact::stick ? 0.3 : -0.4;
+        const auto motion = column.pieces.part_of(column.rigid(q));
+        Real here = 0, expected = 0;  // of a face on the block above it, minus that on the one below
+        for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+          const auto& face = mesh.fracture_faces[f];
+          const int below = face.centre[1] < 1.5 ? 0 : 1;
+          const Real up = face.frame[0][1] > 0 ? 1 : -1;
+          for (int i = 0; i < dim; ++i) {
+            Real jump = 0;
+            for (int side : {0, 1})
+              if (below + side > 0)
+                jump += (side == 1 ? 1 : -1) *
+                        rigid_displacement(column.frame(below + side), motion.q.at(below + side - 1), face.centre)[i];
+            here += up * jump * face.area * law(face.centre)[i];
+          }
+        }
+        Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &expected);
+        EXPECT_NEAR(sum(column.pieces.work(motion, r, grips)), expected, 1e-9) << cell << " mode " << mode;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace sprekk::test

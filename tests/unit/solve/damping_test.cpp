@@ -1,0 +1,120 @@
+// What Newton does where its own step does not help: damping, motions that nothing resists, and what it says in the
+// end.
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+#include "fake_problems.hpp"
+#include "solve/time_stepping.hpp"
+
+namespace sprekk::test {
+namespace {
+
+using solve::Newton;
+
+ScalarProblem linear(Real slope_far, Real slope_near) {
+  return {Tpetra::getDefaultComm(), 5, [](Real x, Real, Real) { return x; },
+          [=](Real x, Real, Real) { return std::abs(x) > 0.6 ? slope_far : slope_near; }};
+}
+
+/// f = x with a derivative that is wrong below 0.6: from 0.5 the step leads away from the solution.
+TEST(Damping, HelpsWhereStepsLeadAway) {
+  auto problem = linear(2, -1e-3);
+  problem.resistance = 10;
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  const auto report = newton.solve(x);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_LE(report.measures[0].value, 1e-11);
+  // the derivative itself comes first in every step: damping ends with the step that needed it
+  ASSERT_GE(problem.damps.size(), 5u);
+  EXPECT_EQ(std::vector<Real>(problem.damps.begin(), problem.damps.begin() + 5),
+            (std::vector<Real>{0, 0.1, 0, 0.1, 0}));
+  problem.damps.clear();
+  auto again = problem.constant(1);
+  EXPECT_TRUE(newton.solve(again).converged);
+  EXPECT_EQ(problem.damps.front(), 0);
+}
+
+/// Tenfold as long as steps lead away; a tenth after a full step, then none.
+TEST(Damping, GrowsAsFarAsNeededAndFalls) {
+  auto problem = linear(2, -0.5);
+  problem.resistance = 1.4;  // -0.36 still leads away, 0.9 leads near the solution
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  const auto report = newton.solve(x);
+  ASSERT_TRUE(report.converged) << report.reason;
+  ASSERT_GE(problem.damps.size(), 5u);
+  const Real expected[] = {0, 0.1, 1, 0.1, 0};
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(problem.damps[k], expected[k], 1e-15);
+}
+
+TEST(Damping, RescuesASingularMatrix) {
+  auto problem = linear(0, 0);
+  {
+    Newton newton(problem, {});
+    auto x = problem.constant(1);
+    const auto report = newton.solve(x);
+    EXPECT_FALSE(report.converged);
+    EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
+    EXPECT_EQ(problem.damps, (std::vector<Real>{0, 0.1, 1, 10}));
+  }
+  problem.resistance = 10;
+  problem.damps.clear();
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  const auto report = newton.solve(x);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(report.reason, "");
+  EXPECT_EQ(problem.damps, (std::vector<Real>{0, 0.1, 0}));
+  EXPECT_NEAR(x[0]->normInf(), 0, 1e-12);
+}
+
+TEST(Damping, SaysWhereNothingHelps) {
+  auto problem = linear(2, -1e-3);
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.reason, "no step along Newton's direction brings the iterate nearer to a solution");
+  EXPECT_EQ(problem.damps, (std::vector<Real>{0, 0.1, 1, 10}));
+  for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_EQ(x[0]->getData()[i], 0.5);  // the last iterate
+}
+
+/// exp(-x) falls for ever: each step is one further.
+TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return std::exp(-x); },
+      [](Real x, Real, Real) { return -std::exp(-x); });
+  problem.free_body = "a stone can move along (1, 0)";
+  Newton newton(problem, {});
+  auto x = problem.constant(0);
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.reason, "no equilibrium: a stone can move along (1, 0), and meets no resistance");
+  EXPECT_EQ(report.loose, problem.free_body);
+  for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_NEAR(x[0]->getData()[i], 3, 1e-12);
+  solve::TimeStepper stepper(problem, newton, {});
+  x = problem.constant(0);
+  Real t = 0;
+  const auto step = stepper.advance(x, t, 1);
+  EXPECT_FALSE(step.converged);
+  EXPECT_EQ(step.reason.find("no equilibrium found: a stone can move along (1, 0), and nothing holds it; t = "), 0u)
+      << step.reason;
+}
+
+/// A body that is free but in equilibrium is named, and is no failure.
+TEST(FreeBodies, InEquilibriumAreReported) {
+  auto problem = linear(1, 1);
+  problem.free_body = "a stone";
+  Newton newton(problem, {});
+  solve::TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(1);
+  Real t = 0;
+  const auto step = stepper.advance(x, t, 1);
+  EXPECT_TRUE(step.converged) << step.reason;
+  EXPECT_EQ(step.loose, "a stone");
+}
+
+}  // namespace
+}  // namespace sprekk::test
