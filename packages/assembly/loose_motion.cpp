@@ -129,7 +129,7 @@ LoosePieces::Motion LoosePieces::first() const {
   Motion motion;
   motion.q.assign(loose_.size(), {});
   motion.largest.assign(groups_.size(), 0);
-  const auto& mode = groups_.front().modes.front();
+  const auto& mode = groups_.front().modes.back();  // reduce() puts rotations first
   for (std::size_t c = 0; c < mode.size(); ++c)
     motion.q[groups_.front().first + c / modes.size()][modes[c % modes.size()]] = mode[c];
   return motion;

@@ -61,7 +61,7 @@ class LoosePieces {
 
   /// The motion of some groups alone; empty if there is none. Stored data.
   Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
-  /// One of the free motions. Stored data.
+  /// One of the free motions, a translation if there is one. Stored data.
   Motion first() const;
   /// "a piece of rock around (0, 1) (12 cells) and 2 more can move along (1, 0)" for the piece that moves most. Stored
   /// data.
