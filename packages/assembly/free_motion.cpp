@@ -22,9 +22,6 @@ using mesh::operator*;
 
 namespace {
 
-/// The part of a motion that is below this, relative to its largest, is round-off.
-constexpr Real negligible = 1e-6;
-
 std::vector<RigidFrame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodies) {
   constexpr Real far = std::numeric_limits<Real>::max();
   std::vector<std::array<Vector, 2>> box(bodies.n(), {Vector{far, far, far}, Vector{-far, -far, -far}});

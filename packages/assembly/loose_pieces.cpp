@@ -320,7 +320,7 @@ void LoosePieces::find_motions(const std::vector<int>& pieces) {
   group.modes.resize(motions.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto moves = [&](const std::vector<Real>& motion) {
-      return std::any_of(&motion[k * m], &motion[k * m] + m, [](Real q) { return std::abs(q) > 1e-6; });
+      return std::any_of(&motion[k * m], &motion[k * m] + m, [](Real q) { return std::abs(q) > negligible; });
     };
     if (std::none_of(motions.begin(), motions.end(), moves)) continue;
     loose_.push_back(pieces[k]);

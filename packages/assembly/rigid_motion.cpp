@@ -15,13 +15,6 @@ using mesh::operator+;
 using mesh::operator-;
 using mesh::operator*;
 
-namespace {
-
-/// The part of a motion that is below this, relative to its largest, is round-off. Eigenvalues are squares of it.
-constexpr Real negligible = 1e-6;
-
-}  // namespace
-
 RigidRow rigid_row(const RigidFrame& frame, const Vector& x, int i) {
   const Vector arm = (1 / frame.size) * (x - frame.centre);
   RigidRow row{};

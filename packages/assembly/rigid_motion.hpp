@@ -10,6 +10,9 @@
 
 namespace sprekk::assembly {
 
+/// The part of a motion that is below this, relative to its largest, is round-off. Eigenvalues are squares of it.
+inline constexpr Real negligible = 1e-6;
+
 /// Of the six modes of a body: translations, then rotations times the body's size.
 using RigidRow = std::array<Real, 6>;
 using RigidBlock = std::array<RigidRow, 6>;

@@ -30,7 +30,7 @@ class LineSearch : public NOX::LineSearch::Generic {
       : problem_(problem), model_(model), report_(report) {}
 
   /// Fails, with step 0, where the direction does: after a linear solve that did; and when a body has found no
-  /// resistance in several steps, which is what the report says then.
+  /// resistance in four steps of a solve, which is what the report says then.
   bool compute(NOX::Abstract::Group& group, double& step, const NOX::Abstract::Vector& direction,
                const NOX::Solver::Generic& solver) override;
 

@@ -45,8 +45,9 @@ class Newton {
   ~Newton();
 
   /// Solves f(x) = 0 from x: full first step; after that backtracking that lets the merit rise above the last but not
-  /// above the worst of three iterates. A failure is reported, and x is the last iterate then; Errors of the problem's
-  /// own evaluations pass through. Collective; the same report on every rank.
+  /// above the worst of three iterates; where that finds nothing, steps with damping. A failure is reported, and x is
+  /// the last iterate then; Errors of the problem's own evaluations pass through. Collective; the same report on every
+  /// rank.
   NewtonReport solve(BlockVector& x);
 
   const CondensedSolve& linear() const { return *linear_; }
