@@ -120,7 +120,7 @@ class Assembler {
       for (int k = 0; k < Columns::n; ++k)
         for (int g = 0; g < Columns::count(k); ++g)
           for (int c = 0; c < Columns::width(k); ++c)
-            local[Columns::offset(k) + g * Columns::width(k) + c] = x[k](first[k](e, g) + c);
+            local[Columns::offset(k) + g * Columns::width(k) + c] = first[k](e, g) < 0 ? 0 : x[k](first[k](e, g) + c);
     }
   };
 
@@ -137,7 +137,7 @@ class Assembler {
       for (int i = 0; i < OpRows::n; ++i)
         for (int g = 0; g < OpRows::count(i); ++g) {
           const LocalIndex row = first[i](e, g);
-          if (row >= n_owned[i]) continue;
+          if (row < 0 || row >= n_owned[i]) continue;  // absent, or another rank's
           for (int c = 0; c < OpRows::width(i); ++c)
             Kokkos::atomic_add(&r[i](row + c), local[OpRows::offset(i) + g * OpRows::width(i) + c]);
         }

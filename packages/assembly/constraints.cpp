@@ -15,16 +15,16 @@ namespace sprekk::assembly {
 namespace {
 
 /// What conditions on a field hold of the unknowns below n_owned, on a mesh or a rank's part of it. Nodes are those of
-/// faces, of the cell that has the face.
-template <class AnyMesh>
+/// faces, of the cell that has the face; entity_of(face, node) is what carries the unknowns there, -1 for nothing.
+template <class AnyMesh, class EntityOf>
 Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
-               const std::vector<DirichletCondition>& conditions) {
+               const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
   Held held;
   std::unordered_map<GlobalIndex, int> first;  // entry of an unknown
   const int dim = mesh.dim();
-  const auto add = [&](GlobalIndex node, int condition, int component) {
-    const GlobalIndex unknown = GlobalIndex(mesh.free_node(node)) * n_components + component;
-    if (unknown >= n_owned) return;
+  const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component) {
+    const GlobalIndex unknown = entity * n_components + component;
+    if (entity < 0 || unknown >= n_owned) return;
     Held::Entry entry{unknown, condition, component, {0, 0, 0}};
     std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
     const auto [found, is_new] = first.emplace(unknown, static_cast<int>(held.entries.size()));
@@ -41,10 +41,32 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
         const int corner = mesh::face_nodes(mesh.shape)[face.local_face][a];
         const auto node = mesh.cells[face.cell * mesh::n_nodes(mesh.shape) + corner];
         for (int c = 0; c < n_components; ++c)
-          if (conditions[k].values[c]) add(node, k, c);
+          if (conditions[k].values[c]) add(entity_of(face, node), node, k, c);
       }
     }
   return held;
+}
+
+template <class AnyMesh>
+Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
+                     const std::vector<DirichletCondition>& conditions) {
+  return find_held(mesh, n_components, n_owned, conditions,
+                   [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
+}
+
+/// Of a field on enriched nodes: those of faces with a tip, for it vanishes on others.
+Held find_held(const mesh::Mesh& mesh, const fields::Layout& layout,
+               const std::vector<DirichletCondition>& conditions) {
+  const int n_components = layout.field().n_components;
+  if (layout.field().entity != fields::Entity::enriched_node)
+    return find_held_nodes(mesh, n_components, layout.n_owned(), conditions);
+  return find_held(mesh, n_components, layout.n_owned(), conditions, [&](const auto& face, LocalIndex node) {
+    const auto nodes = mesh::face_nodes(mesh.shape)[face.local_face];
+    const bool has_tip = std::any_of(nodes.begin(), nodes.begin() + mesh::n_face_nodes(mesh.shape), [&](int k) {
+      return mesh.tip[mesh.cells[face.cell * mesh.nodes_per_cell() + k]] != 0;
+    });
+    return GlobalIndex(has_tip ? mesh.enriched[node] : -1);
+  });
 }
 
 Real largest_of(const std::vector<Real>& values) {
@@ -83,7 +105,7 @@ std::vector<Real> prescribed_values(const Held& held, const std::vector<Dirichle
 std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
                                         Real t) {
   std::vector<std::string> conflicts;
-  prescribed_values(find_held(mesh, mesh.dim(), mesh.n_free_nodes() * mesh.dim(), conditions), conditions, t,
+  prescribed_values(find_held_nodes(mesh, mesh.dim(), mesh.n_free_nodes() * mesh.dim(), conditions), conditions, t,
                     conflicts);
   return conflicts;
 }
@@ -91,7 +113,7 @@ std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std:
 Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
                          std::vector<DirichletCondition> conditions)
     : conditions_(std::move(conditions)),
-      held_(find_held(mesh, layout.field().n_components, layout.n_owned(), conditions_)),
+      held_(find_held(mesh, layout, conditions_)),
       mask_("constrained", layout.n_owned()),
       values_("prescribed", layout.n_owned()) {
   auto mask = Kokkos::create_mirror_view(mask_);

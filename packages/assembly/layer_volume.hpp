@@ -3,6 +3,7 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
+#include "base/check.hpp"
 
 namespace sprekk::assembly {
 
@@ -12,6 +13,9 @@ namespace sprekk::assembly {
 /// collective.
 template <Shape shape>
 View<Real**> layer_volumes(const mesh::Mesh& mesh) {
+  SPREKK_CHECK(
+      mesh.n_global_enriched == 0,
+      "the volume of a layer in a fracture is not known where crack tips are enriched; give the mesh plain tips");
   constexpr int dim = mesh::dimension(shape), bubble = mesh::n_nodes(shape) * dim;
   const auto sides = fracture_sides(mesh);
   const View<Real**> V("layer volumes", sides.size(), bubble + dim + 1);

@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sprekk::assembly {
 
@@ -15,6 +16,27 @@ std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh) {
     for (int side : {mesh::minus, mesh::plus})
       if (mesh.fracture_faces[f].cell[side] >= 0) sides.push_back({f, side});
   return sides;
+}
+
+bool has_tip(const mesh::Mesh& mesh, LocalIndex cell) {
+  if (mesh.tip.empty()) return false;
+  const auto first = mesh.cells.begin() + cell * mesh.nodes_per_cell();
+  return std::any_of(first, first + mesh.nodes_per_cell(), [&](LocalIndex node) { return mesh.tip[node] != 0; });
+}
+
+std::vector<LocalIndex> tip_cells(const mesh::Mesh& mesh) {
+  std::vector<LocalIndex> cells;
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
+    if (has_tip(mesh, cell)) cells.push_back(cell);
+  return cells;
+}
+
+std::vector<LocalIndex> tip_sides(const mesh::Mesh& mesh) {
+  const auto sides = fracture_sides(mesh);
+  std::vector<LocalIndex> result;
+  for (std::size_t s = 0; s < sides.size(); ++s)
+    if (has_tip(mesh, mesh.fracture_faces[sides[s][0]].cell[sides[s][1]])) result.push_back(static_cast<LocalIndex>(s));
+  return result;
 }
 
 namespace {
@@ -45,46 +67,93 @@ class TableBuilder {
   int column_ = 0;
 };
 
-void add_cell_nodes(const mesh::Mesh& mesh, LocalIndex cell, int width, TableBuilder& table) {
-  for (int a = 0; a < mesh.nodes_per_cell(); ++a)
-    table.add(mesh.free_node(mesh.cells[cell * mesh.nodes_per_cell() + a]) * width);
+/// First unknowns of a field on nodes or on enriched nodes, table by table.
+class NodeStencils {
+ public:
+  NodeStencils(const mesh::Mesh& mesh, const fields::Field& field)
+      : mesh_(mesh), enriched_(field.entity == Entity::enriched_node), width_(field.n_components) {}
+
+  Stencil of_cells(const std::vector<LocalIndex>& cells) const {
+    const int n = mesh_.nodes_per_cell();
+    TableBuilder table(cells.size(), n);
+    for (LocalIndex cell : cells)
+      for (int a = 0; a < n; ++a) table.add(first(mesh_.cells[cell * n + a]));
+    return {table.finish(), width_};
+  }
+
+  Stencil of_fracture_faces() const {
+    const int n = mesh::n_face_nodes(mesh_.shape);
+    TableBuilder table(mesh_.n_owned_fracture_faces, 2 * n);
+    for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f) {
+      const auto& nodes = mesh_.fracture_faces[f].nodes;
+      for (int side : {mesh::minus, mesh::plus}) {
+        const bool absent = enriched_ && std::none_of(nodes[side].begin(), nodes[side].begin() + n,
+                                                      [&](LocalIndex node) { return mesh_.tip[node] != 0; });
+        for (int k = 0; k < n; ++k) table.add(absent ? -1 : first(nodes[side][k]));
+      }
+    }
+    return {table.finish(), width_};
+  }
+
+  Stencil of_boundary_faces() const {
+    const int n = mesh::n_face_nodes(mesh_.shape);
+    TableBuilder table(mesh_.boundary_faces.size(), n);
+    for (const auto& face : mesh_.boundary_faces)
+      for (int k = 0; k < n; ++k)
+        table.add(
+            first(mesh_.cells[face.cell * mesh_.nodes_per_cell() + mesh::face_nodes(mesh_.shape)[face.local_face][k]]));
+    return {table.finish(), width_};
+  }
+
+ private:
+  LocalIndex first(LocalIndex node) const {
+    if (!enriched_) return mesh_.free_node(node) * width_;
+    const LocalIndex number = mesh_.enriched.empty() ? -1 : mesh_.enriched[node];
+    return number < 0 ? -1 : number * width_;
+  }
+
+  const mesh::Mesh& mesh_;
+  bool enriched_;
+  int width_;
+};
+
+/// The numbers in fracture_sides() of the entities of a loop over sides.
+std::vector<LocalIndex> sides_of(const mesh::Mesh& mesh, Loop loop) {
+  if (loop == Loop::tip_sides) return tip_sides(mesh);
+  std::vector<LocalIndex> all(fracture_sides(mesh).size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
-Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, int width) {
-  const int cell_nodes = mesh.nodes_per_cell(), face_nodes = mesh::n_face_nodes(mesh.shape);
-  if (loop == Loop::cells) {
-    TableBuilder table(mesh.n_cells(), cell_nodes);
-    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) add_cell_nodes(mesh, c, width, table);
-    return {table.finish(), width};
+Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& field) {
+  const NodeStencils stencils(mesh, field);
+  std::vector<LocalIndex> cells;
+  switch (loop) {
+    case Loop::fracture_faces:
+      return stencils.of_fracture_faces();
+    case Loop::boundary_faces:
+      return stencils.of_boundary_faces();
+    case Loop::cells:
+      cells.resize(mesh.n_cells());
+      std::iota(cells.begin(), cells.end(), 0);
+      break;
+    case Loop::tip_cells:
+      cells = tip_cells(mesh);
+      break;
+    default:
+      const auto sides = fracture_sides(mesh);
+      for (LocalIndex s : sides_of(mesh, loop)) cells.push_back(mesh.fracture_faces[sides[s][0]].cell[sides[s][1]]);
   }
-  if (loop == Loop::fracture_sides) {
-    const auto sides = fracture_sides(mesh);
-    TableBuilder table(sides.size(), cell_nodes);
-    for (const auto& [f, side] : sides) add_cell_nodes(mesh, mesh.fracture_faces[f].cell[side], width, table);
-    return {table.finish(), width};
-  }
-  if (loop == Loop::fracture_faces) {
-    TableBuilder table(mesh.n_owned_fracture_faces, 2 * face_nodes);
-    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-      for (int side : {mesh::minus, mesh::plus})
-        for (int k = 0; k < face_nodes; ++k) table.add(mesh.free_node(mesh.fracture_faces[f].nodes[side][k]) * width);
-    return {table.finish(), width};
-  }
-  TableBuilder table(mesh.boundary_faces.size(), face_nodes);
-  for (const auto& face : mesh.boundary_faces)
-    for (int k = 0; k < face_nodes; ++k)
-
-      table.add(mesh.free_node(mesh.cells[face.cell * cell_nodes + mesh::face_nodes(mesh.shape)[face.local_face][k]]) *
-                width);
-  return {table.finish(), width};
+  return stencils.of_cells(cells);
 }
 
 Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
-  if (loop == Loop::fracture_sides) {
+  if (loop == Loop::fracture_sides || loop == Loop::tip_sides) {
     const bool two_sided = n_components == 2 * mesh.dim();
     const auto sides = fracture_sides(mesh);
-    TableBuilder table(sides.size(), 1);
-    for (const auto& [f, side] : sides) table.add(f * n_components + (two_sided ? side * mesh.dim() : 0));
+    const auto selected = sides_of(mesh, loop);
+    TableBuilder table(selected.size(), 1);
+    for (LocalIndex s : selected) table.add(sides[s][0] * n_components + (two_sided ? sides[s][1] * mesh.dim() : 0));
     return {table.finish(), two_sided ? mesh.dim() : n_components};
   }
   SPREKK_CHECK(loop == Loop::fracture_faces, "a field on fracture faces is out of reach of a loop over cells");
@@ -97,7 +166,7 @@ Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
 
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
   const auto& field = layout.field();
-  if (field.entity == Entity::node) return node_stencil(mesh, loop, field.n_components);
+  if (field.entity == Entity::node || field.entity == Entity::enriched_node) return node_stencil(mesh, loop, field);
   SPREKK_CHECK(field.entity == Entity::fracture_face, "field {}: no stencil for cell fields", field.name);
   return face_stencil(mesh, loop, field.n_components);
 }
@@ -114,7 +183,7 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
       const LocalIndex row = row_first(e, r);
       for (std::size_t c = 0; c < host.extent(2); ++c) {
         host(e, r, c) = -1;
-        if (row >= n_owned) continue;
+        if (row < 0 || row >= n_owned || column_first(e, c) < 0) continue;
         const auto* begin = &graph.entries(graph.row_map(row));
         const auto* end = begin + (graph.row_map(row + 1) - graph.row_map(row));
         const auto* found = std::lower_bound(begin, end, column_first(e, c));
@@ -139,10 +208,10 @@ RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& colum
     const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cols.first);
     for (std::size_t e = 0; e < row_first.extent(0); ++e)
       for (std::size_t r = 0; r < row_first.extent(1); ++r) {
-        if (row_first(e, r) >= row_layout.n_owned()) continue;
+        if (row_first(e, r) < 0 || row_first(e, r) >= row_layout.n_owned()) continue;
         auto& list = columns[row_first(e, r) / row_width];
         for (std::size_t c = 0; c < column_first.extent(1); ++c)
-          for (int j = 0; j < cols.width; ++j) list.push_back(column_first(e, c) + j);
+          for (int j = 0; j < cols.width && column_first(e, c) >= 0; ++j) list.push_back(column_first(e, c) + j);
         if (list.size() > 512) {  // keep the duplicates of shared nodes in bounds
           std::sort(list.begin(), list.end());
           list.erase(std::unique(list.begin(), list.end()), list.end());

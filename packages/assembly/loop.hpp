@@ -17,22 +17,31 @@ enum class Loop {
   cells,           ///< all local cells
   fracture_sides,  ///< one side of a fracture face, wherever that side's cell is local
   fracture_faces,  ///< owned fracture faces
-  boundary_faces   ///< boundary faces of all local cells
+  boundary_faces,  ///< boundary faces of all local cells
+  tip_cells,       ///< those of cells that have a crack tip, see mesh::Mesh::tip
+  tip_sides        ///< those of fracture_sides whose cell has one
 };
 
 /// The entities of Loop::fracture_sides: {fracture face, side}.
 std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh);
 
+/// Local cells that have a crack tip, and the number of an entity of Loop::fracture_sides for each of Loop::tip_sides.
+std::vector<LocalIndex> tip_cells(const mesh::Mesh& mesh);
+std::vector<LocalIndex> tip_sides(const mesh::Mesh& mesh);
+bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
+
 /// The unknowns of one field that each entity of a loop touches, as groups of `width` adjacent unknowns:
 /// first(entity, group) is the local index (owned first, then ghosts) of the group's first unknown.
 ///
-/// | loop           | node field                           | fracture-face field                        |
-/// | cells          | the cell's nodes                     | -                                          |
-/// | fracture_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
-/// | fracture_faces | face nodes of side minus, then plus  | all components                             |
-/// | boundary_faces | the face's nodes                     | -                                          |
+/// | loop                      | node field                           | fracture-face field                         |
+/// | cells, tip_cells          | the cell's nodes                     | -                                           |
+/// | fracture_sides, tip_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
+/// | fracture_faces            | face nodes of side minus, then plus  | all components                              |
+/// | boundary_faces            | the face's nodes                     | -                                           |
 ///
-/// A two-sided field has 2 dim components per face: those of side minus, then those of side plus.
+/// A two-sided field has 2 dim components per face: those of side minus, then those of side plus. A field on enriched
+/// nodes is a node field, absent (first = -1) on nodes that are not enriched, and on faces without a tip: there
+/// operators read zero, and what they write is dropped.
 struct Stencil {
   ConstView<LocalIndex**> first;
   int width = 0;
@@ -41,7 +50,8 @@ struct Stencil {
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
 
 /// Where a pair of groups stands in the matrix: the entry of (row first_r + i, column first_c + j) is the value number
-/// row_begin(first_r + i) + positions(entity, r, c) + j; -1 where the row belongs to another rank.
+/// row_begin(first_r + i) + positions(entity, r, c) + j; -1 where the row belongs to another rank or one of them is
+/// absent.
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns);
 
 /// The matrix, all zero, whose pattern holds every pair of groups in the given stencils. All stencils of a row field

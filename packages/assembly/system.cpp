@@ -29,18 +29,28 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   const auto scope = timers_->scope("set-up");
   declare_fields();
   declare_groups();
-  for (const auto& layout : layouts_) {
-    std::vector<DirichletCondition> own;
-    for (const auto& condition : conditions)
-      if (condition.field == layout.field().name) own.push_back(condition);
-    constraints_.emplace_back(*mesh_, layout, own);
-  }
+  for (std::size_t b = 0; b < layouts_.size(); ++b)
+    constraints_.emplace_back(*mesh_, layouts_[b], conditions_on(b, conditions));
   bind_modules();
   find_exchanges();
   create_matrices();
   assemble_linear();
   set_merit_weights();
   watch_pieces();
+}
+
+std::vector<DirichletCondition> System::conditions_on(std::size_t block,
+                                                      const std::vector<DirichletCondition>& conditions) const {
+  const auto& enriched = unknowns_[block].enriches;
+  std::vector<DirichletCondition> own;
+  for (const auto& condition : conditions) {
+    if (condition.field == layouts_[block].field().name) own.push_back(condition);
+    if (condition.field != enriched) continue;
+    own.push_back(condition);
+    for (auto& value : own.back().values)
+      if (value) value = base::Expression(0);
+  }
+  return own;
 }
 
 namespace {

@@ -74,6 +74,8 @@ class System : public fields::BlockProblem {
 
  private:
   void declare_fields();
+  std::vector<DirichletCondition> conditions_on(std::size_t block,
+                                                const std::vector<DirichletCondition>& conditions) const;
   void declare_groups();
   void bind_modules();
   void create_matrices();

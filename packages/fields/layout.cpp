@@ -8,6 +8,8 @@ LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
       return with_ghosts ? mesh.n_free_nodes : mesh.n_owned_nodes;
     case Entity::cell:
       return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
+    case Entity::enriched_node:
+      return with_ghosts ? static_cast<LocalIndex>(mesh.enriched_id.size()) : mesh.n_owned_enriched;
     default:
       return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
   }
@@ -21,6 +23,8 @@ GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
       return mesh.node_id[i];
     case Entity::cell:
       return mesh.cell_id[i];
+    case Entity::enriched_node:
+      return mesh.enriched_id[i];
     default:
       return mesh.fracture_faces[i].id;
   }

@@ -8,7 +8,12 @@
 
 namespace sprekk::fields {
 
-enum class Entity { node, cell, fracture_face };
+enum class Entity {
+  node,
+  cell,
+  fracture_face,
+  enriched_node  ///< nodes around crack tips, see mesh::Mesh::enriched
+};
 
 struct Field {
   std::string name;

@@ -49,6 +49,7 @@ class Distributor {
     check(n_ranks);
     node_owner_ = node_owners(n_ranks);
     report_ = report(global, part, n_ranks);
+    number_enriched();
   }
 
   Mesh build(int rank) {
@@ -66,6 +67,7 @@ class Distributor {
     cells_ = number(local_cells(), part_, rank_);
     nodes_ = number(nodes_of([&](GlobalIndex cell) { return cells_.local_of[cell] >= 0; }), node_owner_, rank_);
     fill_nodes();
+    fill_enriched();
     fill_cells();
     fill_fracture_faces();
     fill_boundary_faces();
@@ -80,6 +82,8 @@ class Distributor {
   int rank_ = 0;
   std::vector<int> node_owner_;
   PartitionReport report_;
+  std::vector<GlobalIndex> enriched_;  // [node] number among the enriched ones, -1; empty without tips
+  GlobalIndex n_enriched_ = 0;
   Numbering cells_, nodes_;
   Mesh mesh_;
 
@@ -143,6 +147,36 @@ class Distributor {
     for (GlobalIndex id : nodes_.ids)
       mesh_.coordinates.insert(mesh_.coordinates.end(), &global_.coordinates[id * dim],
                                &global_.coordinates[id * dim] + dim);
+  }
+
+  /// Numbers the nodes that are no tips but in a cell with one.
+  void number_enriched() {
+    if (global_.tip.empty()) return;
+    enriched_.assign(global_.n_nodes(), -1);
+    for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell) {
+      bool has_tip = false;
+      for (int k = 0; k < nodes_per_cell_; ++k) has_tip = has_tip || global_.tip[node(cell, k)];
+      for (int k = 0; k < nodes_per_cell_ && has_tip; ++k)
+        if (!global_.tip[node(cell, k)]) enriched_[global_.free_node(node(cell, k))] = 0;
+    }
+    for (auto& number : enriched_)
+      if (number == 0) number = n_enriched_++;
+  }
+
+  void fill_enriched() {
+    if (enriched_.empty()) return;
+    mesh_.n_global_enriched = n_enriched_;
+    for (std::size_t i = 0; i < nodes_.ids.size(); ++i) {
+      const GlobalIndex id = nodes_.ids[i];
+      mesh_.tip.push_back(global_.tip[id]);
+      const bool is_new = enriched_[id] >= 0;  // of tied nodes only the free one is numbered, and comes before
+      mesh_.enriched.push_back(is_new                         ? static_cast<LocalIndex>(mesh_.enriched_id.size())
+                               : id >= global_.n_free_nodes() ? mesh_.enriched[nodes_.local_of[global_.free_node(id)]]
+                                                              : -1);
+      if (!is_new) continue;
+      mesh_.enriched_id.push_back(enriched_[id]);
+      if (static_cast<LocalIndex>(i) < nodes_.n_owned) ++mesh_.n_owned_enriched;
+    }
   }
 
   void fill_cells() {
@@ -219,12 +253,13 @@ template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
          cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
-         boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, partition] =
-      mesh;
+         boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, tip,
+         enriched, enriched_id, n_owned_enriched, n_global_enriched, partition] = mesh;
   const auto put_all = [&](auto&... members) { (put(members), ...); };
   put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
           cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
-          boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, partition);
+          boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, tip,
+          enriched, enriched_id, n_owned_enriched, n_global_enriched, partition);
 }
 
 class Packer {

@@ -35,6 +35,7 @@ struct GlobalMesh {
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
+  std::vector<char> tip = {};  ///< [node] 1 where the displacement is enriched around it, see tips.hpp; empty: nowhere
 
   /// Nodes with unknowns of their own come first.
   GlobalIndex n_free_nodes() const { return n_nodes() - static_cast<GlobalIndex>(tied_to.size()); }
@@ -97,7 +98,14 @@ struct Mesh {
   std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
   std::vector<std::string> region_names, boundary_names, fracture_names;
   GlobalIndex n_global_nodes = 0, n_global_cells = 0, n_global_fracture_faces = 0;
-  int n_pieces = 0;             ///< see find_pieces()
+  int n_pieces = 0;       ///< see find_pieces()
+  std::vector<char> tip;  ///< [node] see GlobalMesh; empty: nowhere
+  /// Nodes that are no tips but in a cell with one have further unknowns there. They are numbered on their own, owned
+  /// ones first.
+  std::vector<LocalIndex> enriched;      ///< [node] its number among them; -1 if it is none; empty without tips
+  std::vector<GlobalIndex> enriched_id;  ///< [enriched node] global number
+  LocalIndex n_owned_enriched = 0;
+  GlobalIndex n_global_enriched = 0;
   PartitionReport partition{};  ///< of the whole mesh
 
   int dim() const { return dimension(shape); }

@@ -8,6 +8,7 @@
 #include "physics/bulk_momentum.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "physics/interface_traction_balance.hpp"
+#include "physics/tip_enrichment.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -163,7 +164,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   modules.push_back(physics::make_interface_traction_balance(mesh.shape, {rock.values, force, stress, rock.number}));
   const auto joint = joints(scene, mesh);
   modules.push_back(physics::make_elastic_plastic_jump(
-      mesh.shape, {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation}));
+      mesh.shape,
+      {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation, mesh.n_global_enriched > 0}));
+  if (mesh.n_global_enriched > 0) modules.push_back(physics::make_tip_enrichment(mesh.shape, bulk));
   return modules;
 }
 

@@ -5,6 +5,7 @@
 #include "base/xml.hpp"
 #include "mesh/msh_reader.hpp"
 #include "mesh/periodic.hpp"
+#include "mesh/tips.hpp"
 #include "model/material_library.hpp"
 #include "model/scene_check.hpp"
 
@@ -225,6 +226,7 @@ void MeshFile::describe(base::Section& s) {
       order, "order", "-", base::between(1, 2),
       "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
       "file");
+  mesh::describe_tips(s, tips);
   s.entry(
       periodic, "periodic", "-",
       "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
@@ -256,6 +258,14 @@ void Scene::describe(base::Section& s) {
 }
 
 mesh::GlobalMesh Scene::make_mesh() const {
+  auto result = read_mesh();
+  if ((mesh_file ? mesh_file->tips : mesh.tips) == "enriched") {
+    if (mesh::order(result.shape) == 1) mesh::mark_tips(result);
+  }
+  return result;
+}
+
+mesh::GlobalMesh Scene::read_mesh() const {
   if (!mesh_file) return mesh::make_box(mesh);
   mesh::MshOptions options;
   options.order = mesh_file->order;

@@ -1,6 +1,7 @@
 #include "physics/bulk_momentum.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
 
 #include <algorithm>
@@ -114,6 +115,7 @@ class BulkMomentum final : public assembly::Module {
     Kokkos::deep_copy(material, host);
     op_ = std::make_unique<Op>(Op{context.geometry(), material, law_numbers(context)});
     displacement_ = context.field("displacement");
+    if (mesh_->n_global_enriched > 0) tip_displacement_ = context.field("tip displacement");
     using Assembler = assembly::Assembler<Op>;
     cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
                                          std::vector<int>{displacement_}, Assembler::Positions::once);
@@ -178,7 +180,10 @@ class BulkMomentum final : public assembly::Module {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
     for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
       for (int i = 0; i < dim; ++i) fields[0].values.push_back(u(mesh_->free_node(node) * dim + i));
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, fields[1].values);
+    const auto q = tip_displacement_ < 0
+                       ? u
+                       : Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[tip_displacement_]);
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, q, fields[1].values);
   }
 
  private:
@@ -266,7 +271,7 @@ class BulkMomentum final : public assembly::Module {
 
   /// Appends the stress at the centre of cell c; in 2D with the plane-strain sigma_zz.
   template <class Host>
-  void add_stress(LocalIndex c, const Host& u, std::vector<Real>& values) const {
+  void add_stress(LocalIndex c, const Host& u, const Host& q, std::vector<Real>& values) const {
     Real X[n][dim], xi[dim], dN[n][dim], H[dim][dim] = {}, sigma[dim][dim];
     assembly::gather_host<shape>(*mesh_, c, X);
     Op::Cell::centre(xi);
@@ -279,6 +284,15 @@ class BulkMomentum final : public assembly::Module {
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) H[i][j] += u(mesh_->free_node(mesh_->cells[c * n + a]) * dim + i) * g[j];
     }
+    if constexpr (mesh::order(shape) == 1)
+      if (assembly::has_tip(*mesh_, c)) {
+        typename assembly::TipCell<shape>::Values v;
+        assembly::TipCell<shape>(*mesh_, c).at(xi, v);
+        for (int a = 0; a < n; ++a)
+          if (const LocalIndex number = mesh_->enriched[mesh_->cells[c * n + a]]; number >= 0)
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j < dim; ++j) H[i][j] += q(number * dim + i) * v.grad_psi[a][j];
+      }
     const auto& law = parameters_.elasticity[law_of(c)];
     law.stress(H, sigma);
     for (int i = 0; i < dim; ++i) trace += H[i][i];
@@ -298,7 +312,7 @@ class BulkMomentum final : public assembly::Module {
 
   BulkMomentumParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
-  int displacement_ = -1;
+  int displacement_ = -1, tip_displacement_ = -1;
   bool loaded_ = false;
   Real size_ = 0;  // largest extent of the domain, m
   std::unique_ptr<Op> op_;

@@ -1,6 +1,7 @@
 #include "physics/elastic_plastic_jump.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
 
 #include <Sacado.hpp>
@@ -20,26 +21,31 @@ namespace {
 ///
 /// | symbol       | shape                                                    | unit |                              |
 /// | x            | u [minus then plus node, dim], beta [2 dim], lambda [dim] | m, m, Pa | unknowns                |
+/// |              | q [minus then plus node, dim], with tips                 | m    | see tip_enrichment.hpp       |
 /// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
 /// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
 /// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
+/// | tip_share    | [face, minus then plus node]                             | -    | face mean of psi; with tips  |
 /// | law          | [number]                                                 |      | joint laws                   |
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | scalar                                                   | -    | see damp()                   |
-template <Shape shape>
+template <Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
   static constexpr int dim = Cell::dim, n = Cell::n_face_nodes;
-  using Columns = assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>>;
+  template <class... More>
+  using Slots =
+      assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>, More...>;
+  using Columns = std::conditional_t<tips, Slots<assembly::Slot<2 * n, dim>>, Slots<>>;
   using Rows = assembly::Slots<assembly::Slot<1, dim>>;
-  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim;  // where they start in x
+  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim, q = lambda + dim;  // where they start in x
   using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
 
   ConstView<Real***> frame;
-  ConstView<Real**> share;
+  ConstView<Real**> share, tip_share;
   ConstView<laws::Joint*> law;
   ConstView<int*> number;
   ConstView<Real**> rest;
@@ -52,7 +58,10 @@ struct JointFace {
     Real global[dim];
     for (int i = 0; i < dim; ++i) {
       global[i] = Cell::bubble_mean * (x[beta + dim + i] - x[beta + i]);
-      for (int a = 0; a < n; ++a) global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
+      for (int a = 0; a < n; ++a) {
+        global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
+        if (tips) global[i] += tip_share(f, n + a) * x[q + (n + a) * dim + i] - tip_share(f, a) * x[q + a * dim + i];
+      }
     }
     for (int k = 0; k < dim; ++k) {
       w[k] = rest.extent(0) > 0 ? rest(f, k) : 0;
@@ -114,6 +123,9 @@ struct JointFace {
         for (int a = 0; a < n; ++a) {
           J[k][a * dim + i] = -share(f, a) * dR_djump;
           J[k][(n + a) * dim + i] = share(f, a) * dR_djump;
+          if (!tips) continue;
+          J[k][q + a * dim + i] = -tip_share(f, a) * dR_djump;
+          J[k][q + (n + a) * dim + i] = tip_share(f, n + a) * dR_djump;
         }
         J[k][beta + i] = -Cell::bubble_mean * dR_djump;
         J[k][beta + dim + i] = Cell::bubble_mean * dR_djump;
@@ -123,10 +135,10 @@ struct JointFace {
   }
 };
 
-template <Shape shape>
+template <Shape shape, bool tips>
 class ElasticPlasticJump final : public assembly::Module {
  public:
-  using Op = JointFace<shape>;
+  using Op = JointFace<shape, tips>;
   using Point = typename Op::Point;
   static constexpr int dim = Op::dim, n = Op::n;
 
@@ -141,6 +153,7 @@ class ElasticPlasticJump final : public assembly::Module {
     traction.local_group = "fracture face";
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
+    if (tips) d.couplings[0].columns.push_back("tip displacement");
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
@@ -192,6 +205,21 @@ class ElasticPlasticJump final : public assembly::Module {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
 
+  /// Means over the face of psi of the nodes of a side, in the order of face.nodes. A fracture that ends on this one
+  /// has its tip on one side only.
+  assembly::FaceValues tip_shares(const mesh::Mesh::FractureFace& face, int side) const {
+    assembly::FaceValues shares{};
+    const LocalIndex cell = face.cell[side];
+    if (!assembly::has_tip(*mesh_, cell)) return shares;
+    const auto means = assembly::TipCell<shape>(*mesh_, cell).face_means(face.local_face[side]);
+    for (int k = 0; k < n; ++k) {
+      const int node = mesh::face_nodes(shape)[face.local_face[side]][k];
+      for (int l = 0; l < n; ++l)
+        if (face.nodes[side][l] == mesh_->cells[cell * mesh_->nodes_per_cell() + node]) shares[l] = means[k];
+    }
+    return shares;
+  }
+
   int joint_of(LocalIndex face) const {
     return parameters_.joint_of_face.empty() ? mesh_->fracture_faces[face].fracture : parameters_.joint_of_face[face];
   }
@@ -202,14 +230,14 @@ class ElasticPlasticJump final : public assembly::Module {
 
   ElasticPlasticJumpParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
-  std::vector<int> fields_;  // displacement, side bubble, traction
+  std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
   View<Real*> merit_weight_;  // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
 };
 
-template <Shape shape>
-ConstView<Real**> ElasticPlasticJump<shape>::initial_jump() const {
+template <Shape shape, bool tips>
+ConstView<Real**> ElasticPlasticJump<shape, tips>::initial_jump() const {
   if (parameters_.initial_stress.empty()) return {};
   View<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
   const auto host = Kokkos::create_mirror_view(rest);
@@ -227,22 +255,23 @@ ConstView<Real**> ElasticPlasticJump<shape>::initial_jump() const {
   return rest;
 }
 
-template <Shape shape>
-void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
+  if (tips) fields_.push_back(context.field("tip displacement"));
   using Assembler = assembly::Assembler<Op>;
   faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
                                        Assembler::Positions::keep);
   const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
   View<Real***> frame("frame", n_faces, dim, dim);
-  View<Real**> share("share", n_faces, n);
+  View<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);
   View<laws::Joint*> law("law", parameters_.joints.size());
   View<int*> number("number", n_faces);
   View<laws::Augmentation*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
   const auto frame_h = Kokkos::create_mirror_view(frame);
-  const auto share_h = Kokkos::create_mirror_view(share);
+  const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
   const auto law_h = Kokkos::create_mirror_view(law);
   const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
@@ -254,6 +283,11 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
     number_h(f) = joint_of(f);
     const auto shares = assembly::mean_shares<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < n; ++k) share_h(f, k) = shares[k];
+    if constexpr (tips)
+      for (int side : {mesh::minus, mesh::plus}) {
+        const auto shares = tip_shares(face, side);
+        for (int k = 0; k < n; ++k) tip_share_h(f, side * n + k) = shares[k];
+      }
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
     Real modulus = 0, height = 0;  // of the softer side; of the cells
@@ -269,15 +303,16 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   }
   Kokkos::deep_copy(frame, frame_h);
   Kokkos::deep_copy(share, share_h);
+  Kokkos::deep_copy(tip_share, tip_share_h);
   Kokkos::deep_copy(law, law_h);
   Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
-  op_ = std::make_unique<Op>(Op{frame, share, law, number, initial_jump(), augmentation, {}});
+  op_ = std::make_unique<Op>(Op{frame, share, tip_share, law, number, initial_jump(), augmentation, {}});
 }
 
-template <Shape shape>
-void ElasticPlasticJump<shape>::commit(assembly::State& state) const {
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
   const Op op = at(state);
   const auto p = state.history[0], slid = state.history[1];
   faces_->for_each(
@@ -293,9 +328,9 @@ void ElasticPlasticJump<shape>::commit(assembly::State& state) const {
 
 /// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t
 /// where they stick or slip are held against the displacement scale.
-template <Shape shape>
-void ElasticPlasticJump<shape>::measure(const assembly::State& state, const assembly::Scales& scales,
-                                        std::vector<fields::Measure>& measures) const {
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, const assembly::Scales& scales,
+                                              std::vector<fields::Measure>& measures) const {
   Real largest = 0;
   const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
@@ -310,8 +345,8 @@ void ElasticPlasticJump<shape>::measure(const assembly::State& state, const asse
 }
 
 /// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
-template <Shape shape>
-void ElasticPlasticJump<shape>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     Real bound[dim - 1];  // the traction that the law answers with: along the slip where there is some
@@ -336,15 +371,16 @@ void ElasticPlasticJump<shape>::grip(const assembly::State& state, std::vector<a
 }
 
 /// Sliding is the only source of non-symmetry.
-template <Shape shape>
-bool ElasticPlasticJump<shape>::symmetric(const assembly::State& state) const {
+template <Shape shape, bool tips>
+bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) const {
   bool slips = false;
   for_each_face(state, [&](LocalIndex, const Point& point) { slips = slips || point.state == ContactState::slip; });
   return !slips;
 }
 
-template <Shape shape>
-void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const {
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::output(const assembly::State& state,
+                                             std::vector<assembly::OutputField>& fields) const {
   // a face that slid lies on the friction limit of the plastic jump that it has now: its state is that of the step
   const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
@@ -380,7 +416,9 @@ void ElasticPlasticJump<shape>::output(const assembly::State& state, std::vector
 
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(Shape shape, ElasticPlasticJumpParameters parameters) {
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    return std::make_unique<ElasticPlasticJump<s()>>(std::move(parameters));
+    if constexpr (mesh::order(s()) == 1)
+      if (parameters.tips) return std::make_unique<ElasticPlasticJump<s(), true>>(std::move(parameters));
+    return std::make_unique<ElasticPlasticJump<s(), false>>(std::move(parameters));
   });
 }
 

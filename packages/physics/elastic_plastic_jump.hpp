@@ -25,6 +25,7 @@ struct ElasticPlasticJumpParameters {
   std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
   /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
   Real augmentation = 0.3;
+  bool tips = false;  ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
 };
 
 /// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its

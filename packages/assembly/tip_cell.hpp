@@ -1,0 +1,181 @@
+// The functions that enrich the displacement in the cells around a crack tip.
+#pragma once
+
+#include "assembly/geometry.hpp"
+#include "assembly/tip_rule.hpp"
+#include "mesh/facets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace sprekk::assembly {
+
+/// The enriching functions of a cell of order 1 that has a crack tip, on the host. With rho the sum of the node
+/// functions N_c of all nodes but tips, node c that is no tip has
+///   psi_c = N_c (rho^(-1/2) - 1),
+/// which is continuous, zero at all nodes and where rho = 1, and lets displacements grow with the root of the distance
+/// from the tip; on a triangle N and psi span what a quarter-point triangle has along its edges at the tip.
+///
+/// Integrals of the gradients over a cell are those of psi n over its faces to round-off: a constant is added to each
+/// gradient for what the rule misses where cells are no simplices. So uniform stress is in equilibrium.
+template <Shape shape>
+class TipCell {
+ public:
+  using Cell = ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes, n_face = Cell::n_face_nodes;
+  static_assert(Cell::order == 1);
+
+  struct Values {
+    Real N[n], psi[n];
+    Real grad_N[n][dim], grad_psi[n][dim];  ///< in space
+  };
+
+  TipCell(const mesh::Mesh& mesh, LocalIndex cell) : tips_(n) {
+    gather_host<shape>(mesh, cell, X_);
+    for (int a = 0; a < n; ++a) tips_[a] = mesh.tip[mesh.cells[cell * n + a]];
+    balance();
+  }
+
+  /// At a reference point that is no tip; returns |det(dx/dxi)|.
+  Real at(const Real (&xi)[dim], Values& v) const {
+    Real dN[n][dim];
+    Cell::shape_functions(xi, v.N);
+    Cell::gradients(xi, dN);
+    const CellPoint<shape> point(X_, dN);
+    Real rho = 0, grad_rho[dim] = {};
+    for (int a = 0; a < n; ++a) {
+      point.gradient(dN[a], v.grad_N[a]);
+      if (tips_[a]) continue;
+      rho += v.N[a];
+      for (int i = 0; i < dim; ++i) grad_rho[i] += v.grad_N[a][i];
+    }
+    const Real root = std::sqrt(rho);
+    for (int a = 0; a < n; ++a) {
+      v.psi[a] = tips_[a] ? 0 : v.N[a] * (1 / root - 1);
+      for (int i = 0; i < dim; ++i)
+        v.grad_psi[a][i] =
+            tips_[a] ? 0
+                     : v.grad_N[a][i] * (1 / root - 1) - v.N[a] * grad_rho[i] / (2 * rho * root) + correction_[a][i];
+    }
+    return point.volume;
+  }
+
+  /// Gradient in space of a function with reference gradient g at a reference point.
+  void gradient(const Real (&xi)[dim], const Real (&g)[dim], Real (&out)[dim]) const {
+    Real dN[n][dim];
+    Cell::gradients(xi, dN);
+    CellPoint<shape>(X_, dN).gradient(g, out);
+  }
+
+  /// Mean of psi over a face, [node of face_nodes(shape)].
+  FaceValues face_means(int local_face) const {
+    FaceValues means{};
+    Real total = 0;
+    for_each_face_point(local_face, [&](const auto&, const auto& psi, const auto& area, const auto&) {
+      const Real size = mesh::norm(area);
+      total += size;
+      for (int k = 0; k < n_face; ++k) means[k] += size * psi[k];
+    });
+    for (auto& mean : means) mean = total > 0 ? mean / total : 0;
+    return means;
+  }
+
+  /// Calls visit(xi, volume, x, values) at the points of a rule for products of these functions.
+  template <class Visit>
+  void for_each_point(const Visit& visit) const {
+    Values v;
+    Real xi[dim];
+    for (const auto& point : tip_rule(shape, tips_, n_points)) {
+      std::copy_n(point.xi.begin(), dim, xi);
+      const Real volume = point.weight * at(xi, v);
+      std::array<Real, 3> x{};
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i) x[i] += v.N[a] * X_[a][i];
+      visit(xi, volume, x, v);
+    }
+  }
+
+  /// Calls visit(N, psi, area, x) at points of a face, with the values of its nodes in the order of face_nodes(shape)
+  /// and the area (vector, pointing out of the cell) that the point stands for. Nothing on a face without a tip.
+  template <class Visit>
+  void for_each_face_point(int local_face, const Visit& visit) const {
+    const auto nodes = mesh::face_nodes(shape)[local_face];
+    std::vector<char> tips;
+    for (int k = 0; k < n_face; ++k) tips.push_back(tips_[nodes[k]]);
+    if (std::count(tips.begin(), tips.end(), 0) == n_face) return;
+    for (const auto& point : face_rule(tips)) {
+      Real N[n_face], dN[n_face][2], psi[n_face], rho = 0;
+      face_functions(point.xi, N, dN);
+      std::array<Real, 3> x{}, s{}, t{};
+      for (int k = 0; k < n_face; ++k) {
+        if (!tips[k]) rho += N[k];
+        for (int i = 0; i < dim; ++i) {
+          const Real X = X_[nodes[k]][i] - X_[nodes[0]][i];
+          x[i] += N[k] * X_[nodes[k]][i];
+          s[i] += dN[k][0] * X;
+          t[i] += dN[k][1] * X;
+        }
+      }
+      for (int k = 0; k < n_face; ++k) psi[k] = tips[k] ? 0 : N[k] * (1 / std::sqrt(rho) - 1);
+      std::array<Real, 3> area = dim == 2 ? std::array<Real, 3>{s[1], -s[0], 0}
+                                          : std::array<Real, 3>{s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2],
+                                                                s[0] * t[1] - s[1] * t[0]};
+      Real outward = 0;
+      for (int i = 0; i < dim; ++i) outward += area[i] * (x[i] - centre(i));
+      for (int i = 0; i < dim; ++i) area[i] *= outward < 0 ? -point.weight : point.weight;
+      visit(N, psi, area, x);
+    }
+  }
+
+ private:
+  static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
+  static constexpr int n_face_points = 10;  // fewer than those of a cell, and they decide about equilibrium
+
+  static std::vector<RulePoint> face_rule(const std::vector<char>& tips) {
+    if constexpr (dim == 2) return tip_rule_of_edge(tips, n_face_points);
+    return tip_rule(n_face == 3 ? Shape::triangle : Shape::quadrilateral, tips, n_face_points);
+  }
+
+  static void face_functions(const std::array<Real, 3>& xi, Real (&N)[n_face], Real (&dN)[n_face][2]) {
+    if constexpr (dim == 2) {
+      N[0] = 1 - xi[0];
+      N[1] = xi[0];
+      dN[0][0] = -1;
+      dN[1][0] = 1;
+      dN[0][1] = dN[1][1] = 0;
+    } else {
+      using Face = ReferenceCell<n_face == 3 ? Shape::triangle : Shape::quadrilateral>;
+      const Real point[2] = {xi[0], xi[1]};
+      Face::shape_functions(point, N);
+      Face::gradients(point, dN);
+    }
+  }
+
+  Real centre(int i) const {
+    Real sum = 0;
+    for (int a = 0; a < n; ++a) sum += X_[a][i];
+    return sum / n;
+  }
+
+  void balance() {
+    Real missing[n][dim] = {}, total = 0;
+    for (int f = 0; f < mesh::n_faces(shape); ++f)
+      for_each_face_point(f, [&](const auto&, const auto& psi, const auto& area, const auto&) {
+        for (int k = 0; k < n_face; ++k)
+          for (int i = 0; i < dim; ++i) missing[mesh::face_nodes(shape)[f][k]][i] += psi[k] * area[i];
+      });
+    for_each_point([&](const auto&, Real volume, const auto&, const Values& v) {
+      total += volume;
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i) missing[a][i] -= volume * v.grad_psi[a][i];
+    });
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) correction_[a][i] = missing[a][i] / total;
+  }
+
+  std::vector<char> tips_;  // [node]
+  Real X_[n][dim], correction_[n][dim] = {};
+};
+
+}  // namespace sprekk::assembly

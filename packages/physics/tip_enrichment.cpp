@@ -1,0 +1,315 @@
+#include "physics/tip_enrichment.hpp"
+
+#include "assembly/assembler.hpp"
+#include "assembly/tip_cell.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using mesh::Shape;
+
+namespace {
+
+/// Elasticity between the two parts of the displacement in one cell with a tip.
+///
+/// | symbol  | shape                       | unit |                                              |
+/// | x, r    | u [node, dim], q [node, dim] | m, N | unknowns, forces                             |
+/// | mixed   | [cell, node dim, node dim]  | N/m  | integral sigma(psi_b e_j) : grad(N_a e_i)    |
+/// | own     | [cell, node dim, node dim]  | N/m  | integral sigma(psi_b e_j) : grad(psi_a e_i)  |
+template <Shape shape>
+struct EnrichedCell {
+  using Cell = assembly::ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes, q = n * dim;  // q: where it starts in x
+  using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<n, dim>>;
+  using Rows = Columns;
+
+  View<Real***> mixed, own;
+
+  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[2 * q], Real (&r)[2 * q]) const {
+    for (int i = 0; i < q; ++i) r[i] = r[q + i] = 0;
+    for (int i = 0; i < q; ++i)
+      for (int j = 0; j < q; ++j) {
+        r[i] += mixed(cell, i, j) * x[q + j];
+        r[q + j] += mixed(cell, i, j) * x[i];
+        r[q + i] += own(cell, i, j) * x[q + j];
+      }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[2 * q], Real (&J)[2 * q][2 * q]) const {
+    for (int i = 0; i < q; ++i)
+      for (int j = 0; j < q; ++j) {
+        J[i][j] = 0;
+        J[i][q + j] = J[q + j][i] = mixed(cell, i, j);
+        J[q + i][q + j] = own(cell, i, j);
+      }
+  }
+};
+
+/// What one side of a fracture face adds in a cell with a tip.
+///
+/// | symbol   | shape                                   | unit     |                                            |
+/// | x        | q [node, dim], beta [dim], lambda [dim] | m, m, Pa | unknowns                                   |
+/// | r        | q rows [node, dim], side bubble rows [dim] | N     | forces                                     |
+/// | coupling | [side, dim, node dim]                   | N/m      | integral sigma(psi_a e_j) : grad(b e_i)    |
+/// | push     | [side, node]                            | m^2      | s |f| mean(psi_a)                          |
+/// | frame    | [side, dim, dim]                        | -        | rows n, t1[, t2]                           |
+template <Shape shape>
+struct EnrichedSide {
+  using Cell = assembly::ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes, beta = n * dim, lambda = beta + dim;
+  using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
+  using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
+
+  View<Real***> coupling, frame;
+  View<Real**> push;
+
+  KOKKOS_INLINE_FUNCTION void residual(int side, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const {
+    for (Real& value : r) value = 0;
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k) {
+          r[a * dim + i] +=
+              push(side, a) * frame(side, k, i) * x[lambda + k] + coupling(side, k, a * dim + i) * x[beta + k];
+          r[beta + k] += coupling(side, k, a * dim + i) * x[a * dim + i];
+        }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[Columns::size],
+                                       Real (&J)[Rows::size][Columns::size]) const {
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k) {
+          J[a * dim + i][lambda + k] = push(side, a) * frame(side, k, i);
+          J[a * dim + i][beta + k] = J[beta + k][a * dim + i] = coupling(side, k, a * dim + i);
+        }
+  }
+};
+
+template <Shape shape>
+class TipEnrichment final : public assembly::Module {
+ public:
+  using Tip = assembly::TipCell<shape>;
+  static constexpr int dim = Tip::dim, n = Tip::n;
+
+  explicit TipEnrichment(BulkMomentumParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "tip enrichment"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    assembly::Unknown q{{"tip displacement", fields::Entity::enriched_node, dim, "m"},
+                        assembly::Quantity::length,
+                        assembly::Quantity::force};
+    q.enriches = "displacement";
+    d.unknowns = {q};
+    d.couplings = {{Loop::tip_cells, "displacement", {"tip displacement"}},
+                   {Loop::tip_cells, "tip displacement", {"displacement", "tip displacement"}},
+                   {Loop::tip_sides, "tip displacement", {"side bubble", "traction"}},
+                   {Loop::tip_sides, "side bubble", {"tip displacement"}}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    cell_of_ = assembly::tip_cells(*mesh_);
+    const int u = context.field("displacement"), beta = context.field("side bubble"),
+              lambda = context.field("traction");
+    q_ = context.field("tip displacement");
+    using Fields = std::vector<int>;
+    cells_ = std::make_unique<Cells>(context, Loop::tip_cells, Fields{u, q_}, Fields{u, q_}, Cells::Positions::once);
+    sides_ = std::make_unique<Sides>(context, Loop::tip_sides, Fields{q_, beta}, Fields{q_, beta, lambda},
+                                     Sides::Positions::once);
+    load_ = View<Real*>("load", context.layout(q_).n_owned());
+    build_cells();
+    build_sides();
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    cells_->add_residual(cell_, state, r);
+    sides_->add_residual(side_, state, r);
+    const auto rows = r[q_];
+    const auto load = load_;
+    Kokkos::parallel_for(
+        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= load(i); });
+  }
+
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    cells_->add_jacobian(cell_, state, J);
+    sides_->add_jacobian(side_, state, J);
+  }
+
+  bool constant_load() const override {
+    bool all = parameters_.body_force.constant_in_time();
+    for (const auto& traction : parameters_.tractions)
+      for (const auto& component : traction.value) all = all && component.constant_in_time();
+    return all;
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (loaded_ && constant_load()) return;
+    const auto load = Kokkos::create_mirror_view(load_);
+    Kokkos::deep_copy(load, 0.0);
+    for (LocalIndex cell : cell_of_) add_volume_loads(cell, t, load);
+    for (const auto& face : mesh_->boundary_faces)
+      if (assembly::has_tip(*mesh_, face.cell)) add_tractions(face, t, load);
+    if (!parameters_.initial_stress.empty())
+      for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
+        if (assembly::has_tip(*mesh_, mesh_->fracture_faces[f].cell[side])) add_deviation(f, side, load);
+    Kokkos::deep_copy(load_, load);
+    loaded_ = true;
+  }
+
+ private:
+  using Cells = assembly::Assembler<EnrichedCell<shape>>;
+  using Sides = assembly::Assembler<EnrichedSide<shape>>;
+
+  const laws::Elasticity& law(LocalIndex cell) const {
+    return parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
+                                                                         : parameters_.elasticity_of_cell[cell]];
+  }
+
+  void build_cells() {
+    constexpr int size = n * dim;
+    cell_ = {View<Real***>("mixed", cell_of_.size(), size, size), View<Real***>("own", cell_of_.size(), size, size)};
+    const auto mixed = Kokkos::create_mirror_view(cell_.mixed), own = Kokkos::create_mirror_view(cell_.own);
+    for (std::size_t c = 0; c < cell_of_.size(); ++c) {
+      const auto& elasticity = law(cell_of_[c]);
+      Tip(*mesh_, cell_of_[c]).for_each_point([&](const auto&, Real volume, const auto&, const auto& v) {
+        for (int a = 0; a < n; ++a)
+          for (int b = 0; b < n; ++b)
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j < dim; ++j) {
+                mixed(c, a * dim + i, b * dim + j) += volume * elasticity.stiffness(v.grad_N[a], v.grad_psi[b], i, j);
+                own(c, a * dim + i, b * dim + j) += volume * elasticity.stiffness(v.grad_psi[a], v.grad_psi[b], i, j);
+              }
+      });
+    }
+    Kokkos::deep_copy(cell_.mixed, mixed);
+    Kokkos::deep_copy(cell_.own, own);
+  }
+
+  void build_sides() {
+    const auto selected = assembly::tip_sides(*mesh_);
+    const auto all = assembly::fracture_sides(*mesh_);
+    side_ = {View<Real***>("coupling", selected.size(), dim, n * dim),
+             View<Real***>("frame", selected.size(), dim, dim), View<Real**>("push", selected.size(), n)};
+    const auto coupling = Kokkos::create_mirror_view(side_.coupling), frame = Kokkos::create_mirror_view(side_.frame);
+    const auto push = Kokkos::create_mirror_view(side_.push);
+    for (std::size_t s = 0; s < selected.size(); ++s) {
+      const auto [f, side] = all[selected[s]];
+      const auto& face = mesh_->fracture_faces[f];
+      const int local_face = face.local_face[side];
+      const auto& elasticity = law(face.cell[side]);
+      const Tip tip(*mesh_, face.cell[side]);
+      tip.for_each_point([&](const Real(&xi)[dim], Real volume, const auto&, const auto& v) {
+        Real db[dim], gb[dim] = {};
+        Tip::Cell::bubble(local_face, xi, db);
+        tip.gradient(xi, db, gb);
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              coupling(s, i, a * dim + j) += volume * elasticity.stiffness(gb, v.grad_psi[a], i, j);
+      });
+      const auto means = tip.face_means(local_face);
+      for (int k = 0; k < Tip::n_face; ++k)
+        push(s, mesh::face_nodes(shape)[local_face][k]) = (side == mesh::plus ? face.area : -face.area) * means[k];
+      for (int k = 0; k < dim; ++k)
+        for (int i = 0; i < dim; ++i) frame(s, k, i) = face.frame[k][i];
+    }
+    Kokkos::deep_copy(side_.coupling, coupling);
+    Kokkos::deep_copy(side_.frame, frame);
+    Kokkos::deep_copy(side_.push, push);
+  }
+
+  /// The owned row of component i of a cell's enriched node, -1 where there is none.
+  LocalIndex row(LocalIndex cell, int node, int i) const {
+    const LocalIndex number = mesh_->enriched[mesh_->cells[cell * n + node]];
+    return number < 0 || number >= mesh_->n_owned_enriched ? -1 : number * dim + i;
+  }
+  template <class Host>
+  void add(const Host& load, LocalIndex cell, int node, int i, Real value) const {
+    if (const LocalIndex at = row(cell, node, i); at >= 0) load(at) += value;
+  }
+
+  /// Body force and initial stress.
+  template <class Host>
+  void add_volume_loads(LocalIndex cell, Real t, const Host& load) const {
+    const auto& stress = parameters_.initial_stress;
+    if (parameters_.body_force.empty() && stress.empty()) return;
+    Real sigma[dim][dim] = {};
+    Tip(*mesh_, cell).for_each_point([&](const auto&, Real volume, const auto& x, const auto& v) {
+      if (!stress.empty()) stress.at(x, sigma);
+      for (int i = 0; i < dim; ++i) {
+        const Real force = parameters_.body_force.empty() ? 0 : parameters_.body_force(i, cell, x, t);
+        for (int a = 0; a < n; ++a) {
+          Real value = v.psi[a] * force;
+          for (int j = 0; j < dim; ++j) value -= sigma[i][j] * v.grad_psi[a][j];
+          add(load, cell, a, i, volume * value);
+        }
+      }
+    });
+  }
+
+  template <class Host>
+  void add_tractions(const mesh::Mesh::BoundaryFace& face, Real t, const Host& load) const {
+    for (const auto& traction : parameters_.tractions) {
+      if (face.boundary != traction.boundary ||
+          (traction.region >= 0 && mesh_->cell_region[face.cell] != traction.region))
+        continue;
+      Tip(*mesh_, face.cell)
+          .for_each_face_point(face.local_face, [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+            for (int k = 0; k < Tip::n_face; ++k)
+              for (int i = 0; i < dim; ++i)
+                add(load, face.cell, mesh::face_nodes(shape)[face.local_face][k], i,
+                    psi[k] * mesh::norm(area) * traction.value[i](x, t));
+          });
+    }
+  }
+
+  /// The traction of the initial stress that is no constant over the face, which the bulk alone carries.
+  template <class Host>
+  void add_deviation(LocalIndex f, int side, const Host& load) const {
+    const auto& face = mesh_->fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
+    const auto& stress = parameters_.initial_stress;
+    const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
+    const Real sign = side == mesh::plus ? 1 : -1;
+    Tip(*mesh_, cell)
+        .for_each_face_point(face.local_face[side], [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+          const auto traction = stress.template traction<dim>(x, face.frame[0]);
+          for (int k = 0; k < Tip::n_face; ++k)
+            for (int i = 0; i < dim; ++i)
+              add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i,
+                  -sign * psi[k] * mesh::norm(area) * (traction[i] - mean[i]));
+        });
+  }
+
+  BulkMomentumParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  int q_ = -1;
+  bool loaded_ = false;
+  std::vector<LocalIndex> cell_of_;  // [entity of tip_cells]
+  EnrichedCell<shape> cell_;
+  EnrichedSide<shape> side_;
+  std::unique_ptr<Cells> cells_;
+  std::unique_ptr<Sides> sides_;
+  View<Real*> load_;  // [owned row], N
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_tip_enrichment(Shape shape, BulkMomentumParameters parameters) {
+  SPREKK_CHECK(mesh::order(shape) == 1, "tip enrichment: needs cells of order 1");
+  return mesh::for_shape(mesh::linear(shape), [&](auto s) -> std::unique_ptr<assembly::Module> {
+    if constexpr (mesh::order(s()) == 1) return std::make_unique<TipEnrichment<s()>>(std::move(parameters));
+    return nullptr;
+  });
+}
+
+}  // namespace sprekk::physics
