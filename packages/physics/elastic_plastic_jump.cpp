@@ -23,6 +23,7 @@ namespace {
 /// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
 /// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
 /// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
+/// | bubble_mean  | [face]                                                   | -    | mean(b)                      |
 /// | law          | [number]                                                 |      | joint laws                   |
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
@@ -40,6 +41,7 @@ struct JointFace {
 
   ConstView<Real***> frame;
   ConstView<Real**> share;
+  ConstView<Real*> bubble_mean;
   ConstView<laws::Joint*> law;
   ConstView<int*> number;
   ConstView<Real**> rest;
@@ -51,7 +53,7 @@ struct JointFace {
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
     Real global[dim];
     for (int i = 0; i < dim; ++i) {
-      global[i] = Cell::bubble_mean * (x[beta + dim + i] - x[beta + i]);
+      global[i] = bubble_mean(f) * (x[beta + dim + i] - x[beta + i]);
       for (int a = 0; a < n; ++a) global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
     }
     for (int k = 0; k < dim; ++k) {
@@ -115,8 +117,8 @@ struct JointFace {
           J[k][a * dim + i] = -share(f, a) * dR_djump;
           J[k][(n + a) * dim + i] = share(f, a) * dR_djump;
         }
-        J[k][beta + i] = -Cell::bubble_mean * dR_djump;
-        J[k][beta + dim + i] = Cell::bubble_mean * dR_djump;
+        J[k][beta + i] = -bubble_mean(f) * dR_djump;
+        J[k][beta + dim + i] = bubble_mean(f) * dR_djump;
         J[k][lambda + i] = R[k].dx(dim + i);
       }
     }
@@ -237,12 +239,14 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
   View<Real***> frame("frame", n_faces, dim, dim);
   View<Real**> share("share", n_faces, n);
+  View<Real*> bubble_mean("bubble mean", n_faces);
   View<laws::Joint*> law("law", parameters_.joints.size());
   View<int*> number("number", n_faces);
   View<laws::Augmentation*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share);
+  const auto bubble_h = Kokkos::create_mirror_view(bubble_mean);
   const auto law_h = Kokkos::create_mirror_view(law);
   const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
@@ -254,6 +258,7 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
     number_h(f) = joint_of(f);
     const auto shares = assembly::mean_shares<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < n; ++k) share_h(f, k) = shares[k];
+    bubble_h(f) = assembly::bubble_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
     Real modulus = 0, height = 0;  // of the softer side; of the cells
@@ -269,11 +274,12 @@ void ElasticPlasticJump<shape>::bind(const assembly::Context& context) {
   }
   Kokkos::deep_copy(frame, frame_h);
   Kokkos::deep_copy(share, share_h);
+  Kokkos::deep_copy(bubble_mean, bubble_h);
   Kokkos::deep_copy(law, law_h);
   Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
-  op_ = std::make_unique<Op>(Op{frame, share, law, number, initial_jump(), augmentation, {}});
+  op_ = std::make_unique<Op>(Op{frame, share, bubble_mean, law, number, initial_jump(), augmentation, {}});
 }
 
 template <Shape shape>
