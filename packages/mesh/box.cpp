@@ -307,6 +307,12 @@ void BoxMesh::Region::describe(base::Section& s) {
   s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
 }
 
+void describe_tips(base::Section& s, std::string& tips) {
+  s.choice(tips, "tips", {"enriched", "plain"},
+           "crack tips; enriched: at order 2 with nodes at quarter points, so that displacements grow with the square "
+           "root of the distance; plain: like the rest of the mesh");
+}
+
 void BoxMesh::describe(base::Section& s) {
   s.required_choice(cell, "cell", {cell_names.begin(), cell_names.end()}, "shape of the cells");
   s.required(lower_corner, "lower corner", "m", base::any(),
@@ -315,6 +321,7 @@ void BoxMesh::describe(base::Section& s) {
   s.required(cells, "cells", "-", base::at_least(1),
              "number of squares or cubes in each direction; a square makes 2 triangles, a cube 6 tetrahedra");
   s.entry(order, "order", "-", base::between(1, 2), "of the displacement in each cell: 1 (linear) or 2 (quadratic)");
+  describe_tips(s, tips);
   s.named_sections(regions, "regions", "boxes of cells with a material of their own");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
   s.entry(rotation, "rotation", "degree", base::any(),

@@ -34,6 +34,7 @@ struct BoxMesh {
   std::vector<Real> lower_corner{0, 0}, upper_corner{1, 1};  ///< metre, before the rotation
   std::vector<int> cells{1, 1};                              ///< squares or cubes in each direction
   int order = 1;                                             ///< of the cells: 1 or 2
+  std::string tips = "enriched";          ///< what is done about crack tips, see describe(); no matter to make_box()
   std::map<std::string, Region> regions;  ///< besides "bulk"; of several that hold a cell the last by name counts
   std::map<std::string, Fracture> fractures;
   Real rotation = 0;                         ///< degree, counter-clockwise about the origin (3D: about the axis)
@@ -42,6 +43,9 @@ struct BoxMesh {
   std::vector<std::string> periodic;  ///< directions x, y, z in which opposite sides are tied, see tie_periodic()
   void describe(base::Section& section);
 };
+
+/// The entry of any mesh's section that says what is done about crack tips.
+void describe_tips(base::Section& section, std::string& tips);
 
 /// The mesh of a box. Squares are cut into two triangles with alternating diagonals, cubes into six Kuhn tetrahedra.
 ///

@@ -1,5 +1,6 @@
 #include "model/scene.hpp"
 
+#include "assembly/quarter_points.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
@@ -225,6 +226,7 @@ void MeshFile::describe(base::Section& s) {
       order, "order", "-", base::between(1, 2),
       "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
       "file");
+  mesh::describe_tips(s, tips);
   s.entry(
       periodic, "periodic", "-",
       "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
@@ -256,6 +258,12 @@ void Scene::describe(base::Section& s) {
 }
 
 mesh::GlobalMesh Scene::make_mesh() const {
+  auto result = read_mesh();
+  if ((mesh_file ? mesh_file->tips : mesh.tips) == "enriched") assembly::move_to_quarter_points(result);
+  return result;
+}
+
+mesh::GlobalMesh Scene::read_mesh() const {
   if (!mesh_file) return mesh::make_box(mesh);
   mesh::MshOptions options;
   options.order = mesh_file->order;

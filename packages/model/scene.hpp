@@ -76,6 +76,7 @@ struct MeshFile {
   };
   std::string path;                           ///< relative to the scene's file; of a host, to the current directory
   std::optional<int> order;                   ///< of the cells, 1 or 2; absent: as in the file
+  std::string tips = "enriched";              ///< see mesh::describe_tips()
   std::vector<std::string> periodic;          ///< boundaries in pairs, see mesh::tie_periodic()
   std::map<std::string, Fracture> fractures;  ///< the physical groups that are fractures
   void describe(base::Section& section);
@@ -141,6 +142,7 @@ struct Scene {
   void describe(base::Section& section);
   /// The global mesh of either kind. Not collective.
   mesh::GlobalMesh make_mesh() const;
+  mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
 };
