@@ -33,23 +33,33 @@ void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_node
     for (int i = 0; i < dim; ++i) X[a][i] = mesh.coordinates[mesh.cells[cell * n + a] * dim + i];
 }
 
+/// Calls use(rule) with the rule for a cell with nodes at X: `Straight`, or CurvedQuadrature where it is not straight.
+template <Shape shape, class Straight, class Use>
+KOKKOS_INLINE_FUNCTION void with_rule(const Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)], const Use& use) {
+  if (ReferenceCell<shape>::is_straight(X))
+    use(Straight());
+  else if constexpr (mesh::order(shape) == 2)
+    use(CurvedQuadrature<shape>(X));
+}
+
 /// Calls visit(xi, volume, x) at the points of a rule for bubbles: reference point, volume that it stands for, place.
 template <Shape shape, class Visit>
 void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& visit) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  using Rule = BubbleQuadrature<shape>;
   Real X[n][dim], N[n], dN[n][dim], xi[dim];
   gather_host<shape>(mesh, cell, X);
-  for (int q = 0; q < Rule::n; ++q) {
-    const Real weight = Rule::at(q, xi);
-    ReferenceCell<shape>::shape_functions(xi, N);
-    ReferenceCell<shape>::gradients(xi, dN);
-    const CellPoint<shape> point(X, dN);
-    std::array<Real, 3> x{};
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i) x[i] += N[a] * X[a][i];
-    visit(xi, weight * point.volume, x);
-  }
+  with_rule<shape, BubbleQuadrature<shape>>(X, [&](const auto& rule) {
+    for (int q = 0; q < rule.n; ++q) {
+      const Real weight = rule.at(q, xi);
+      ReferenceCell<shape>::shape_functions(xi, N);
+      ReferenceCell<shape>::gradients(xi, dN);
+      const CellPoint<shape> point(X, dN);
+      std::array<Real, 3> x{};
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i) x[i] += N[a] * X[a][i];
+      visit(xi, weight * point.volume, x);
+    }
+  });
 }
 
 /// Values at the nodes of a face, in the order of face_nodes(shape).
@@ -130,6 +140,18 @@ FaceValues mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) 
   });
   for (auto& share : shares) share /= total;
   return shares;
+}
+
+/// Mean of the face function over a face; 2/3 on edges, 9/20 on triangles, 4/9 on quadrilaterals where the face is an
+/// affine map of the reference cell's.
+template <Shape shape>
+Real bubble_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
+  Real sum = 0, total = 0;
+  for_each_face_point<shape>(mesh, cell, local_face, [&](const auto& N, Real area, const auto&) {
+    total += area;
+    sum += area * face_bubble<shape>(N);
+  });
+  return sum / total;
 }
 
 }  // namespace sprekk::assembly

@@ -18,11 +18,15 @@ using mesh::is_simplex;
 /// Gauss rule with n points on [-1, 1], exact for degree 2n - 1.
 template <int n>
 struct Gauss {
-  static_assert(n >= 1 && n <= 4, "rules with 1 to 4 points");
+  static_assert((n >= 1 && n <= 4) || n == 6, "rules with 1 to 4 and 6 points");
   KOKKOS_INLINE_FUNCTION static Real point(int i) {
     if (n == 1) return 0;
     if (n == 2) return i == 0 ? -0.57735026918962576451 : 0.57735026918962576451;
     if (n == 3) return (i - 1) * 0.77459666924148337704;
+    if (n == 6) {
+      const Real half[] = {0.23861918608319690863, 0.66120938646626451366, 0.93246951420315202781};
+      return i < 3 ? -half[2 - i] : half[i - 3];
+    }
     const Real inner = 0.33998104358485626480, outer = 0.86113631159405257522;
     return i == 0 ? -outer : i == 1 ? -inner : i == 2 ? inner : outer;
   }
@@ -30,6 +34,10 @@ struct Gauss {
     if (n == 1) return 2;
     if (n == 2) return 1;
     if (n == 3) return i == 1 ? 8.0 / 9.0 : 5.0 / 9.0;
+    if (n == 6) {
+      const Real half[] = {0.46791393457269104739, 0.36076157304813860757, 0.17132449237917034504};
+      return half[i < 3 ? 2 - i : i - 3];
+    }
     return i == 1 || i == 2 ? 0.65214515486254614263 : 0.34785484513745385737;
   }
 };
@@ -144,14 +152,32 @@ struct ReferenceCell {
       return product_bubble(face, xi, db);
   }
 
-  /// Mean of b over its (affine) face: 2/3 on edges, 9/20 on triangles, 4/9 on quadrilaterals.
-  static constexpr Real bubble_mean = dim == 2                                    ? 2.0 / 3.0
-                                      : mesh::linear(shape) == Shape::tetrahedron ? 0.45
-                                                                                  : 4.0 / 9.0;
-
   /// The centre of the reference cell.
   KOKKOS_INLINE_FUNCTION static void centre(Real (&xi)[dim]) {
     for (int i = 0; i < dim; ++i) xi[i] = is_simplex(shape) ? 1.0 / (dim + 1) : 0;
+  }
+
+  /// Whether the nodes besides the corners are where they are in a cell with straight sides (to 1e-6 of an edge).
+  KOKKOS_INLINE_FUNCTION static bool is_straight(const Real (&X)[n_nodes][dim]) {
+    Real size = 0;
+    for (int i = 0; i < dim; ++i) size += (X[1][i] - X[0][i]) * (X[1][i] - X[0][i]);
+    for (int a = n_corners; a < n_nodes; ++a) {
+      Real square = 0;
+      for (int i = 0; i < dim; ++i) {
+        Real off = X[a][i] - X[0][i];
+        for (int c = 1; c < n_corners; ++c) off -= corner_share(a, c) * (X[c][i] - X[0][i]);
+        square += off * off;
+      }
+      if (square > 1e-12 * size) return false;
+    }
+    return true;
+  }
+
+  /// Corner `end` (0, 1) of the edge with node n_corners + e of a simplex.
+  KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
+    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
+    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
   }
 
  private:
@@ -165,11 +191,12 @@ struct ReferenceCell {
   /// d l_a / d xi_i
   KOKKOS_INLINE_FUNCTION static Real dl(int a, int i) { return a == 0 ? -1 : a == i + 1 ? 1 : 0; }
 
-  /// Corner `end` (0, 1) of a simplex' edge.
-  KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
-    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
-    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-    return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
+  /// The function of order 1 of corner c at node a, which is no corner.
+  KOKKOS_INLINE_FUNCTION static Real corner_share(int a, int c) {
+    if (is_simplex(shape)) return edge(a - n_corners, 0) == c || edge(a - n_corners, 1) == c ? 0.5 : 0;
+    Real share = 1;
+    for (int i = 0; i < dim; ++i) share *= (1 + node_place(a, i) * node_place(c, i)) / 2.0;
+    return share;
   }
 
   /// Component i of a node of the square or cube: -1, 0 or 1.
@@ -233,13 +260,65 @@ struct ReferenceCell {
   }
 };
 
+/// A rule for cells that are not is_straight(), most of them at crack tips: 6 points in each direction. The rule of a
+/// simplex collapses towards the corners that its quarter points are next to: with all edges of one corner (of two, in
+/// a tetrahedron) at their quarters, and straight otherwise, integrands of the stiffness are polynomials of the rule's
+/// coordinates (divided by powers of one that does not vanish), see move_to_quarter_points().
+template <Shape shape>
+class CurvedQuadrature {
+ public:
+  using Cell = ReferenceCell<shape>;
+  using Rule = Quadrature<shape, 6>;
+  static constexpr int dim = Cell::dim, n = Rule::n;
+
+  /// X: node coordinates [node][component].
+  KOKKOS_INLINE_FUNCTION explicit CurvedQuadrature(const Real (&X)[Cell::n_nodes][dim]) {
+    if constexpr (is_simplex(shape) && Cell::order == 2) {
+      bool is_tip[dim + 1] = {};
+      for (int e = 0; e < Cell::n_nodes - Cell::n_corners; ++e) {
+        Real square[2] = {};  // of the distances from the edge's ends
+        for (int end = 0; end < 2; ++end)
+          for (int i = 0; i < dim; ++i) {
+            const Real d = X[Cell::n_corners + e][i] - X[Cell::edge(e, end)][i];
+            square[end] += d * d;
+          }
+        for (int end = 0; end < 2; ++end)
+          if (square[end] < square[1 - end] / 4) is_tip[Cell::edge(e, end)] = true;
+      }
+      int next = 0;
+      for (int pass = 0; pass < 2; ++pass)
+        for (int a = 0; a <= dim; ++a)
+          if (is_tip[a] == (pass == 0)) place_[next++] = a;
+    }
+  }
+
+  /// Sets xi to point q and returns its weight on the reference cell.
+  KOKKOS_INLINE_FUNCTION Real at(int q, Real (&xi)[dim]) const {
+    const Real weight = Rule::at(q, xi);
+    if constexpr (is_simplex(shape)) {
+      Real l[dim + 1];  // of the corners: those of the rule, whose apex is its first, put in their places
+      l[place_[dim]] = 1;
+      for (int i = 0; i < dim; ++i) {
+        l[place_[i]] = xi[i];
+        l[place_[dim]] -= xi[i];
+      }
+      for (int i = 0; i < dim; ++i) xi[i] = l[i + 1];
+    }
+    return weight;
+  }
+
+ private:
+  int place_[dim + 1] = {};
+};
+
 /// The geometry of one cell at one point: gradients in space and the volume that the point stands for.
 template <Shape shape>
 struct CellPoint {
   using Cell = ReferenceCell<shape>;
   static constexpr int dim = Cell::dim;
   Real inverse[dim][dim];  ///< d xi / d x
-  Real volume;             ///< |det(dx/dxi)|, to be multiplied by the quadrature weight
+  Real determinant;        ///< det(dx/dxi)
+  Real volume;             ///< its absolute value, to be multiplied by the quadrature weight
 
   /// X: node coordinates [node][component], dN: reference gradients of the shape functions. They add up to zero, so
   /// that X may be taken from the first node: no cancellation far from the origin.
@@ -248,8 +327,8 @@ struct CellPoint {
     for (int a = 1; a < Cell::n_nodes; ++a)
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) J[i][j] += (X[a][i] - X[0][i]) * dN[a][j];
-    const Real det = invert(J);
-    volume = det < 0 ? -det : det;
+    determinant = invert(J);
+    volume = determinant < 0 ? -determinant : determinant;
   }
 
   /// Gradient in space of a function with reference gradient g.

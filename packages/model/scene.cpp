@@ -1,5 +1,6 @@
 #include "model/scene.hpp"
 
+#include "assembly/quarter_points.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
@@ -259,9 +260,11 @@ void Scene::describe(base::Section& s) {
 
 mesh::GlobalMesh Scene::make_mesh() const {
   auto result = read_mesh();
-  if ((mesh_file ? mesh_file->tips : mesh.tips) == "enriched") {
-    if (mesh::order(result.shape) == 1) mesh::mark_tips(result);
-  }
+  if ((mesh_file ? mesh_file->tips : mesh.tips) == "plain") return result;
+  if (mesh::order(result.shape) == 1)
+    mesh::mark_tips(result);
+  else
+    assembly::move_to_quarter_points(result);
   return result;
 }
 

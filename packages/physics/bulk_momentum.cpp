@@ -25,7 +25,6 @@ namespace {
 template <Shape shape>
 struct ElasticCell {
   using Cell = assembly::ReferenceCell<shape>;
-  using Rule = assembly::StiffnessQuadrature<shape>;
   static constexpr int dim = Cell::dim, n = Cell::n_nodes;
   using Columns = assembly::Slots<assembly::Slot<n, dim>>;
   using Rows = Columns;
@@ -34,14 +33,22 @@ struct ElasticCell {
   ConstView<laws::Elasticity*> material;
   ConstView<int*> law;
 
-  /// Gradients in space of the shape functions at point q; returns the volume that the point stands for.
-  KOKKOS_INLINE_FUNCTION Real gradients(const Real (&X)[n][dim], int q, Real (&g)[n][dim]) const {
-    Real xi[dim], dN[n][dim];
-    const Real weight = Rule::at(q, xi);
-    Cell::gradients(xi, dN);
-    const assembly::CellPoint<shape> point(X, dN);
-    for (int a = 0; a < n; ++a) point.gradient(dN[a], g[a]);
-    return weight * point.volume;
+  /// Calls add(volume, g) at the quadrature points of a cell: the volume that the point stands for and the gradients in
+  /// space of the shape functions.
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION void for_each_point(int cell, const Add& add) const {
+    Real X[n][dim];
+    geometry.gather(cell, X);
+    assembly::with_rule<shape, assembly::StiffnessQuadrature<shape>>(X, [&](const auto& rule) {
+      Real xi[dim], dN[n][dim], g[n][dim];
+      for (int q = 0; q < rule.n; ++q) {
+        const Real weight = rule.at(q, xi);
+        Cell::gradients(xi, dN);
+        const assembly::CellPoint<shape> point(X, dN);
+        for (int a = 0; a < n; ++a) point.gradient(dN[a], g[a]);
+        add(weight * point.volume, g);
+      }
+    });
   }
 
   KOKKOS_INLINE_FUNCTION void stress(const Real (&g)[n][dim], const Real (&x)[n * dim], int number,
@@ -54,32 +61,27 @@ struct ElasticCell {
   }
 
   KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[n * dim], Real (&r)[n * dim]) const {
-    Real X[n][dim], g[n][dim], sigma[dim][dim];
-    geometry.gather(cell, X);
     for (Real& value : r) value = 0;
-    for (int q = 0; q < Rule::n; ++q) {
-      const Real volume = gradients(X, q, g);
+    for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
+      Real sigma[dim][dim];
       stress(g, x, law(cell), sigma);
       for (int a = 0; a < n; ++a)
         for (int i = 0; i < dim; ++i)
           for (int j = 0; j < dim; ++j) r[a * dim + i] += volume * sigma[i][j] * g[a][j];
-    }
+    });
   }
 
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
-    Real X[n][dim], g[n][dim];
-    geometry.gather(cell, X);
     const laws::Elasticity elasticity = material(law(cell));
     for (auto& row : K)
       for (Real& value : row) value = 0;
-    for (int q = 0; q < Rule::n; ++q) {
-      const Real volume = gradients(X, q, g);
+    for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b)
           for (int i = 0; i < dim; ++i)
             for (int j = 0; j < dim; ++j)
               K[a * dim + i][b * dim + j] += volume * elasticity.stiffness(g[a], g[b], i, j);
-    }
+    });
   }
 };
 

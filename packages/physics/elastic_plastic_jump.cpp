@@ -26,6 +26,7 @@ namespace {
 /// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
 /// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
 /// | tip_share    | [face, minus then plus node]                             | -    | face mean of psi; with tips  |
+/// | bubble_mean  | [face]                                                   | -    | mean(b)                      |
 /// | law          | [number]                                                 |      | joint laws                   |
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
@@ -46,6 +47,7 @@ struct JointFace {
 
   ConstView<Real***> frame;
   ConstView<Real**> share, tip_share;
+  ConstView<Real*> bubble_mean;
   ConstView<laws::Joint*> law;
   ConstView<int*> number;
   ConstView<Real**> rest;
@@ -57,7 +59,7 @@ struct JointFace {
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
     Real global[dim];
     for (int i = 0; i < dim; ++i) {
-      global[i] = Cell::bubble_mean * (x[beta + dim + i] - x[beta + i]);
+      global[i] = bubble_mean(f) * (x[beta + dim + i] - x[beta + i]);
       for (int a = 0; a < n; ++a) {
         global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
         if (tips) global[i] += tip_share(f, n + a) * x[q + (n + a) * dim + i] - tip_share(f, a) * x[q + a * dim + i];
@@ -127,8 +129,8 @@ struct JointFace {
           J[k][q + a * dim + i] = -tip_share(f, a) * dR_djump;
           J[k][q + (n + a) * dim + i] = tip_share(f, n + a) * dR_djump;
         }
-        J[k][beta + i] = -Cell::bubble_mean * dR_djump;
-        J[k][beta + dim + i] = Cell::bubble_mean * dR_djump;
+        J[k][beta + i] = -bubble_mean(f) * dR_djump;
+        J[k][beta + dim + i] = bubble_mean(f) * dR_djump;
         J[k][lambda + i] = R[k].dx(dim + i);
       }
     }
@@ -266,12 +268,14 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
   View<Real***> frame("frame", n_faces, dim, dim);
   View<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);
+  View<Real*> bubble_mean("bubble mean", n_faces);
   View<laws::Joint*> law("law", parameters_.joints.size());
   View<int*> number("number", n_faces);
   View<laws::Augmentation*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
+  const auto bubble_h = Kokkos::create_mirror_view(bubble_mean);
   const auto law_h = Kokkos::create_mirror_view(law);
   const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
@@ -288,6 +292,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
         const auto shares = tip_shares(face, side);
         for (int k = 0; k < n; ++k) tip_share_h(f, side * n + k) = shares[k];
       }
+    bubble_h(f) = assembly::bubble_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
     Real modulus = 0, height = 0;  // of the softer side; of the cells
@@ -304,11 +309,12 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   Kokkos::deep_copy(frame, frame_h);
   Kokkos::deep_copy(share, share_h);
   Kokkos::deep_copy(tip_share, tip_share_h);
+  Kokkos::deep_copy(bubble_mean, bubble_h);
   Kokkos::deep_copy(law, law_h);
   Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
-  op_ = std::make_unique<Op>(Op{frame, share, tip_share, law, number, initial_jump(), augmentation, {}});
+  op_ = std::make_unique<Op>(Op{frame, share, tip_share, bubble_mean, law, number, initial_jump(), augmentation, {}});
 }
 
 template <Shape shape, bool tips>

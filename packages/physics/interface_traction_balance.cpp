@@ -190,7 +190,7 @@ class InterfaceTractionBalance final : public assembly::Module {
       const Real signed_area = side == mesh::plus ? face.area : -face.area;
       stiffness(s) =
           n_faces[cell] * integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
-      bubble(s) = signed_area * Op::Cell::bubble_mean;
+      bubble(s) = signed_area * assembly::bubble_mean<shape>(*mesh_, cell, local_face);
       const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
         push(s, mesh::face_nodes(shape)[local_face][k]) = signed_area * shares[k];
