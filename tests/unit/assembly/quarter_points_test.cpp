@@ -1,0 +1,281 @@
+#include "assembly/quarter_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/geometry.hpp"
+#include "base/check.hpp"
+#include "mesh/box.hpp"
+#include "mesh/cell_geometry.hpp"
+#include "mesh/tips.hpp"
+
+namespace sprekk::assembly {
+namespace {
+
+using mesh::dot;
+using mesh::GlobalMesh;
+using mesh::norm;
+using mesh::Vector;
+using mesh::operator+;
+using mesh::operator-;
+using mesh::operator*;
+
+const std::vector<std::string> all_cells = {"triangle", "quadrilateral", "tetrahedron", "hexahedron"};
+
+bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
+
+/// A box of unit steps, of order 2, with fractures {lowest x, y, greatest x, y} along all of its third direction.
+mesh::BoxMesh box(const std::string& cell, std::vector<int> n, const std::vector<std::array<Real, 4>>& fractures) {
+  mesh::BoxMesh result;
+  result.cell = cell;
+  result.order = 2;
+  if (is_flat(cell)) n.resize(2);
+  result.lower_corner.assign(n.size(), 0);
+  result.upper_corner.assign(n.begin(), n.end());
+  result.cells = n;
+  for (const auto& f : fractures) {
+    auto& fracture = result.fractures["f" + std::to_string(result.fractures.size())];
+    fracture.lower_corner = {f[0], f[1]};
+    fracture.upper_corner = {f[2], f[3]};
+    if (is_flat(cell)) continue;
+    fracture.lower_corner.push_back(0);
+    fracture.upper_corner.push_back(n[2]);
+  }
+  return result;
+}
+
+/// Where a node on an edge is, as a part of the edge from its first corner; NaN off the edge.
+Real place_on_edge(const GlobalMesh& mesh, GlobalIndex cell, const mesh::CellGeometry::Edge& edge) {
+  const auto x = [&](int k) { return point(mesh, mesh.cells[cell * mesh::n_nodes(mesh.shape) + k]); };
+  const Vector along = x(edge.to) - x(edge.from), off = x(edge.middle) - x(edge.from);
+  const Real place = dot(off, along) / dot(along, along);
+  return norm(off - place * along) < 1e-14 * norm(along) ? place : NAN;
+}
+
+/// What every edge of every cell has: visit(cell, edge, whether its ends are tips, its node's place).
+template <class Visit>
+void for_each_edge(const GlobalMesh& mesh, const Visit& visit) {
+  const auto is_tip = mesh::tip_nodes(mesh);
+  const mesh::CellGeometry geometry(mesh.shape);
+  for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell)
+    for (const auto& edge : geometry.edges()) {
+      const auto tip = [&](int k) { return is_tip[mesh.cells[cell * mesh::n_nodes(mesh.shape) + k]] == 1; };
+      visit(cell, edge, std::array<bool, 2>{tip(edge.from), tip(edge.to)}, place_on_edge(mesh, cell, edge));
+    }
+}
+
+/// The smallest determinant of a mesh's cells at the points of CurvedQuadrature, and the volume.
+std::array<Real, 2> least_determinant_and_volume(const GlobalMesh& mesh) {
+  return mesh::for_shape(mesh.shape, [&](auto s) {
+    constexpr Shape shape = s();
+    constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+    std::array<Real, 2> result{1e300, 0};
+    for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
+      Real X[n][dim], xi[dim], dN[n][dim];
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i) X[a][i] = mesh.coordinates[mesh.cells[cell * n + a] * dim + i];
+      const CurvedQuadrature<shape> rule(X);
+      for (int q = 0; q < rule.n; ++q) {
+        const Real weight = rule.at(q, xi);
+        ReferenceCell<shape>::gradients(xi, dN);
+        const Real determinant = CellPoint<shape>(X, dN).determinant;
+        result = {std::min(result[0], determinant), result[1] + weight * determinant};
+      }
+    }
+    return result;
+  });
+}
+
+TEST(QuarterPoints, OfEdgesFromTips) {
+  for (const auto& cell : all_cells) {
+    SCOPED_TRACE(cell);
+    auto mesh = make_box(box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 0, 3, 2}}));
+    const auto before = mesh;
+    move_to_quarter_points(mesh);
+    int moved = 0;
+    for_each_edge(mesh, [&](GlobalIndex c, const auto& edge, const auto& tip, Real place) {
+      EXPECT_NEAR(place, tip[0] == tip[1] ? 0.5 : tip[0] ? 0.25 : 0.75, 1e-14) << "cell " << c;
+      moved += tip[0] != tip[1];
+    });
+    EXPECT_GE(moved, 2 * 4 * (is_flat(cell) ? 1 : 3));
+    const auto [least, volume] = least_determinant_and_volume(mesh);
+    EXPECT_GT(least, 0);
+    EXPECT_NEAR(volume, is_flat(cell) ? 24 : 48, 1e-11);
+    for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)  // both sides of fractures move alike
+      EXPECT_LE(norm(point(mesh, static_cast<GlobalIndex>(node)) - point(mesh, mesh.parent_node[node])), 1e-14);
+    EXPECT_EQ(mesh.cells, before.cells);
+  }
+}
+
+/// In a cell [0, 1]^2 x [0, 1] with the tip at its origin, or along its third direction.
+TEST(QuarterPoints, NodesInside) {
+  auto square = make_box(box("quadrilateral", {2, 2}, {{0, 1, 1, 1}}));
+  move_to_quarter_points(square);
+  const auto of = [](const GlobalMesh& mesh, Vector corner, int k) {  // node k of the cell with this lowest corner
+    const int n = mesh::n_nodes(mesh.shape);
+    for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell)
+      if (norm(point(mesh, mesh.cells[cell * n]) - corner) < 1e-12) return point(mesh, mesh.cells[cell * n + k]);
+    throw Error("there is no such cell");
+  };
+  const auto near = [](const Vector& x, const Vector& y) { return norm(x - y) < 1e-14; };
+  EXPECT_TRUE(near(of(square, {1, 1}, 8), {1.375, 1.375}));
+  EXPECT_TRUE(near(of(square, {0, 1}, 8), {0.625, 1.375}));
+  auto cube = make_box(box("hexahedron", {2, 2, 1}, {{0, 1, 1, 1}}));
+  move_to_quarter_points(cube);
+  EXPECT_TRUE(near(of(cube, {1, 1, 0}, 26), {1.375, 1.375, 0.5}));
+  EXPECT_TRUE(near(of(cube, {1, 1, 0}, 24), {1.375, 1.375, 0}));
+  EXPECT_TRUE(near(of(cube, {1, 1, 0}, 20), {1, 1.25, 0.5}));
+  EXPECT_TRUE(near(of(cube, {1, 1, 0}, 21), {2, 1.5, 0.5}));
+}
+
+/// Of a fracture of one face both ends are tips: the cells beside it would collapse onto it.
+TEST(QuarterPoints, NotInCellsWithAFaceOfTips) {
+  for (const auto& cell : all_cells) {
+    SCOPED_TRACE(cell);
+    auto mesh = make_box(box(cell, {5, 4, 1}, {{2, 2, 3, 2}}));
+    move_to_quarter_points(mesh);
+    const int n = mesh::n_nodes(mesh.shape);
+    std::vector<GlobalIndex> still;  // nodes of cells with the fracture's corners
+    for (const auto& face : mesh.fracture_faces)
+      for (int side : {0, 1})
+        still.insert(still.end(), mesh.cells.begin() + face.cell[side] * n,
+                     mesh.cells.begin() + (face.cell[side] + 1) * n);
+    int moved = 0;
+    for_each_edge(mesh, [&](GlobalIndex c, const auto& edge, const auto&, Real place) {
+      const GlobalIndex node = mesh.cells[c * n + edge.middle];
+      if (std::find(still.begin(), still.end(), node) != still.end()) {
+        EXPECT_NEAR(place, 0.5, 1e-14);
+      }
+      moved += std::abs(place - 0.5) > 0.1;
+    });
+    EXPECT_GT(moved, 0);
+    EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+  }
+}
+
+/// The curved sides of a cell, which would cross if one of them became straight, keep their nodes.
+TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
+  const auto straight = make_box(box("triangle", {4, 4}, {{0, 2, 2, 2}}));
+  auto mesh = straight, curved = straight;
+  move_to_quarter_points(mesh);
+  const auto is_tip = mesh::tip_nodes(straight);
+  const auto x = [&](GlobalIndex cell, int k) { return point(straight, straight.cells[cell * 6 + k]); };
+  GlobalIndex bent = -1;
+  for (GlobalIndex cell = 0; cell < straight.n_cells() && bent < 0; ++cell)
+    for (int t = 0; t < 3; ++t) {
+      const int p = (t + 1) % 3, q = (t + 2) % 3;  // node 3 + t between t and p, 3 + p between p and q
+      if (!is_tip[straight.cells[cell * 6 + t]] || x(cell, 3 + t)[1] == 2 || x(cell, 3 + q)[1] == 2) continue;
+      bent = cell;
+      const auto bend = [&](int k, Real by) {
+        const Vector to = x(cell, k) + by * (x(cell, t) - x(cell, q));
+        std::copy_n(to.begin(), 2, curved.coordinates.begin() + straight.cells[cell * 6 + k] * 2);
+      };
+      bend(3 + t, 0.15);
+      bend(3 + p, 0.3);
+    }
+  ASSERT_GE(bent, 0);
+  const auto original = curved;
+  ASSERT_GT(least_determinant_and_volume(curved)[0], 0);
+  move_to_quarter_points(curved);
+  EXPECT_GT(least_determinant_and_volume(curved)[0], 0);
+  const auto differ = [&](const GlobalMesh& a, const GlobalMesh& b, GlobalIndex node) {
+    return norm(point(a, node) - point(b, node)) > 1e-12;
+  };
+  int still = 0, moved = 0;
+  for (GlobalIndex node = 0; node < curved.n_nodes(); ++node) {
+    const auto begin = curved.cells.begin() + bent * 6;
+    if (std::find(begin, begin + 6, node) != begin + 6) {
+      EXPECT_FALSE(differ(curved, original, node));
+      still += differ(mesh, straight, node);
+    } else {
+      EXPECT_LE(differ(curved, original, node), differ(mesh, straight, node));  // less next to the bent sides
+      moved += differ(curved, original, node);
+    }
+  }
+  EXPECT_EQ(still, 2);
+  EXPECT_GT(moved, 0);
+}
+
+/// Where the front of one fracture ends at another one, that one's sides have the same nodes still, though its far side
+/// has no tip.
+TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
+  for (const char* cell : {"tetrahedron", "hexahedron"}) {
+    SCOPED_TRACE(cell);
+    auto parameters = box(cell, {4, 4, 4}, {{0, 2, 4, 2}});
+    auto& other = parameters.fractures["other"];
+    other.lower_corner = {2, 2, 0};
+    other.upper_corner = {2, 4, 2};
+    auto mesh = make_box(parameters);
+    const auto before = mesh;
+    move_to_quarter_points(mesh);
+    int moved_copies = 0;
+    for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node) {
+      EXPECT_LE(norm(point(mesh, node) - point(mesh, mesh.parent_node[node])), 1e-14);
+      moved_copies += mesh.parent_node[node] != node && norm(point(mesh, node) - point(before, node)) > 0.1;
+    }
+    EXPECT_GT(moved_copies, 0);
+    EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+  }
+}
+
+TEST(QuarterPoints, ThroughPeriodicSides) {
+  auto parameters = box("triangle", {6, 4}, {{0, 2, 2, 2}});
+  parameters.periodic = {"x"};
+  auto mesh = make_box(parameters);
+  const auto before = mesh;
+  move_to_quarter_points(mesh);
+  int moved = 0;
+  for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node) {
+    const auto shift = [&](GlobalIndex k) { return point(mesh, k) - point(before, k); };
+    EXPECT_LE(norm(shift(node) - shift(mesh.free_node(node))), 1e-14);
+    moved += mesh.free_node(node) != node && norm(shift(node)) > 0.1;
+  }
+  EXPECT_GT(moved, 0);
+}
+
+/// Mean over a simplex of 1 over the sum of the barycentric coordinates of the corners that are no tips.
+template <Shape shape>
+Real mean_of_inverse(const std::vector<int>& tips) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  using Cell = ReferenceCell<shape>;
+  const auto tip = [&](int k) { return std::find(tips.begin(), tips.end(), k) != tips.end(); };
+  Real X[n][dim] = {}, N[n], dN[n][dim], xi[dim];
+  for (int i = 0; i < dim; ++i) X[i + 1][i] = 1;
+  for (int e = 0; e < n - Cell::n_corners; ++e) {
+    const int a = Cell::edge(e, 0), b = Cell::edge(e, 1);
+    const Real share = tip(a) == tip(b) ? 0.5 : tip(a) ? 0.25 : 0.75;
+    for (int i = 0; i < dim; ++i) X[Cell::n_corners + e][i] = X[a][i] + share * (X[b][i] - X[a][i]);
+  }
+  const CurvedQuadrature<shape> rule(X);
+  Real sum = 0, volume = 0;
+  for (int q = 0; q < rule.n; ++q) {
+    const Real weight = rule.at(q, xi);
+    Cell::shape_functions(xi, N);
+    Cell::gradients(xi, dN);
+    const CellPoint<shape> point(X, dN);
+    Real others = tip(0) ? 0 : 1;
+    for (int i = 0; i < dim; ++i) {
+      Real x = 0;
+      for (int a = 0; a < n; ++a) x += N[a] * X[a][i];
+      if (tip(0) != tip(i + 1)) others += tip(0) ? x : -x;
+    }
+    sum += weight * point.volume / others;
+    volume += weight * point.volume;
+  }
+  EXPECT_NEAR(volume, dim == 2 ? 1.0 / 2 : 1.0 / 6, 1e-14);
+  return sum / volume;
+}
+
+/// The sum is distributed as 2 R, 3 R^2 (one tip) and 6 R (1 - R) (two).
+TEST(CurvedRule, IsExactForTheSquareOfAFieldThatGrowsWithTheRoot) {
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(mean_of_inverse<Shape::triangle6>({a}), 2, 1e-13) << a;
+  for (int a = 0; a < 4; ++a) {
+    EXPECT_NEAR(mean_of_inverse<Shape::tetrahedron10>({a}), 1.5, 1e-13) << a;
+    for (int b = 0; b < a; ++b) EXPECT_NEAR(mean_of_inverse<Shape::tetrahedron10>({a, b}), 3, 1e-13) << a << b;
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::assembly
