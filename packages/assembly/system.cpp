@@ -1,6 +1,7 @@
 // Construction: from declarations to blocks, sparsity, ghosts and constant operators.
 #include "assembly/system.hpp"
 
+#include "assembly/order_one.hpp"
 #include "base/check.hpp"
 #include "mesh/extents.hpp"
 
@@ -77,16 +78,16 @@ RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout&
 }
 
 /// Translations and rotations about a point that is no node (a node at the centre would give an aggregate of that node
-/// a zero column), [unknown, mode].
-RCP<MultiVector> rigid_body_modes(const fields::Layout& layout, const MultiVector& coordinates) {
+/// a zero column), [unknown, mode], of the unknowns of a map at the places [entity, dim].
+RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const MultiVector& coordinates) {
   const int dim = static_cast<int>(coordinates.getNumVectors()), n_rotations = dim == 2 ? 1 : 3;
   Teuchos::Array<Real> centre(dim);
   coordinates.meanValue(centre());
   for (int i = 0; i < dim; ++i) centre[i] += 0.0123456789 * (1 + 0.37 * i) * (1 + std::abs(centre[i]));
-  auto modes = rcp(new MultiVector(layout.owned(), dim + n_rotations));
+  auto modes = rcp(new MultiVector(map, dim + n_rotations));
   const auto X = coordinates.getLocalViewHost(Tpetra::Access::ReadOnly);
   auto view = modes->getLocalViewHost(Tpetra::Access::ReadWrite);
-  for (LocalIndex n = 0; n < layout.n_owned_entities(); ++n) {
+  for (std::size_t n = 0; n < X.extent(0); ++n) {
     for (int i = 0; i < dim; ++i) view(n * dim + i, i) = 1;
     for (int k = 0; k < n_rotations; ++k) {  // rotation in the plane of axes a, b
       const int a = dim == 2 ? 0 : (k + 1) % 3, b = dim == 2 ? 1 : (k + 2) % 3;
@@ -122,10 +123,8 @@ void System::declare_fields() {
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     const auto& layout = layouts_[b];
     fields::Block block{layout.field().name, layout.owned(), layout.field().n_components, 1, 1, {}, {}};
-    if (unknowns_[b].rigid_body_modes) {
-      block.coordinates = owned_coordinates(*mesh_, layout);
-      block.near_null_space = rigid_body_modes(layout, *block.coordinates);
-    }
+    block.enriches = unknowns_[b].enriches;
+    if (unknowns_[b].rigid_body_modes) set_multigrid(layout, block);
     blocks_.push_back(block);
     ghosted_.push_back(rcp(new Vector(layout.ghosted())));
     weights_.push_back(rcp(new Vector(layout.owned())));
@@ -133,6 +132,16 @@ void System::declare_fields() {
     load_.push_back(rcp(new Vector(layout.owned())));
   }
   face_area_ = typical_face_area(*mesh_);
+}
+
+void System::set_multigrid(const fields::Layout& layout, fields::Block& block) const {
+  block.coordinates = owned_coordinates(*mesh_, layout);
+  if (mesh::order(mesh_->shape) == 2) {
+    block.interpolation = interpolation_from_corners(*mesh_, layout);
+    block.coordinates = at_corners(*mesh_, *block.coordinates);
+  }
+  const auto map = block.interpolation.is_null() ? layout.owned() : block.interpolation->getDomainMap();
+  block.near_null_space = rigid_body_modes(map, *block.coordinates);
 }
 
 void System::declare_groups() {

@@ -76,6 +76,7 @@ class System : public fields::BlockProblem {
   void declare_fields();
   std::vector<DirichletCondition> conditions_on(std::size_t block,
                                                 const std::vector<DirichletCondition>& conditions) const;
+  void set_multigrid(const fields::Layout& layout, fields::Block& block) const;
   void declare_groups();
   void bind_modules();
   void create_matrices();

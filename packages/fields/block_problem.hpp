@@ -19,6 +19,10 @@ struct Block {
   Real residual_scale;                     ///< typical size of a row of this block under the present loads
   RCP<const MultiVector> coordinates;      ///< [owned entity, dim], metre; null where multigrid has no use for it
   RCP<const MultiVector> near_null_space;  ///< [owned unknown, modes]; null likewise
+  /// Of order 2: from the unknowns of order 1 that multigrid starts from, and that coordinates and near_null_space
+  /// belong to, to those of the block. Null: multigrid starts from the block itself.
+  RCP<const CrsMatrix> interpolation = {};
+  std::string enriches = "";  ///< the block whose functions it adds to; multigrid on that one does without it
 };
 
 /// Blocks whose unknowns couple only within one entity among themselves, so that they can be eliminated entity by

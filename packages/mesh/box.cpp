@@ -309,8 +309,8 @@ void BoxMesh::Region::describe(base::Section& s) {
 
 void describe_tips(base::Section& s, std::string& tips) {
   s.choice(tips, "tips", {"enriched", "plain"},
-           "crack tips; enriched: at order 2 with nodes at quarter points, so that displacements grow with the square "
-           "root of the distance; plain: like the rest of the mesh");
+           "crack tips; enriched: displacements grow with the square root of the distance from them, at order 1 by "
+           "further unknowns, at order 2 by nodes at quarter points; plain: like the rest of the mesh");
 }
 
 void BoxMesh::describe(base::Section& s) {

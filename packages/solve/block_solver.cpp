@@ -4,6 +4,7 @@
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
+#include "solve/fine_level.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -83,6 +84,21 @@ class Multigrid : public BlockSolver {
   RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> hierarchy_;
 };
 
+/// A fine level for one block among others.
+class TwoLevel : public BlockSolver {
+ public:
+  TwoLevel(const ParameterList& muelu, const Block& block) : level_(muelu, {block}) {}
+  void setup(const DiagonalBlock& block) override {
+    auto alone = block;
+    alone.scale = 1;
+    level_.setup({block.matrix, true, {alone}});
+  }
+  RCP<const Operator> inverse() const override { return level_.inverse(); }
+
+ private:
+  FineLevel level_;
+};
+
 bool has_zero_on_diagonal(const CrsMatrix& matrix) {
   Vector diagonal(matrix.getRowMap());
   matrix.getLocalDiagCopy(diagonal);
@@ -157,6 +173,11 @@ ParameterList multigrid_parameters(const ParameterList& muelu, const Block& bloc
 
 RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& block) {
   if (block.coordinates.is_null()) return rcp(new Relaxation);
+  if (!block.interpolation.is_null()) return rcp(new TwoLevel(muelu, block));
+  return make_multigrid(muelu, block);
+}
+
+RCP<BlockSolver> make_multigrid(const ParameterList& muelu, const Block& block) {
   return rcp(new Multigrid(multigrid_parameters(muelu, block)));
 }
 

@@ -14,8 +14,12 @@ class BlockSolver {
   virtual RCP<const fields::Operator> inverse() const = 0;
 };
 
-/// Multigrid for blocks with coordinates, Gauss-Seidel within a rank for others. `muelu` goes over the defaults.
+/// Multigrid for blocks with coordinates, below a fine level if they have one; Gauss-Seidel within a rank for others.
+/// `muelu` goes over the defaults.
 RCP<BlockSolver> make_block_solver(const Teuchos::ParameterList& muelu, const Block& block);
+
+/// Multigrid on what its coordinates and near null space belong to.
+RCP<BlockSolver> make_multigrid(const Teuchos::ParameterList& muelu, const Block& block);
 
 /// All that MueLu is told of a block.
 Teuchos::ParameterList multigrid_parameters(const Teuchos::ParameterList& muelu, const Block& block);

@@ -5,6 +5,7 @@
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
+#include "solve/fine_level.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -71,7 +72,7 @@ class IterativeSolver : public LinearSolver {
       coarse_ = make_direct_solver(options.mumps, true);
       parameters_.sublist("MUMPS") = coarse_->parameters();
     } else {
-      for (const auto& block : blocks) solvers_.push_back(make_block_solver(options.muelu, block));
+      make_solvers(blocks);
     }
   }
 
@@ -79,23 +80,21 @@ class IterativeSolver : public LinearSolver {
 
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
-    symmetric_ = system.symmetric && solvers_.size() == 1;  // a sweep over blocks is not symmetric
+    symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
     // Belos' interface takes operators that may change; nothing here changes the matrix.
     matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(system.matrix);
     failure_.clear();
-    for (std::size_t r = 0; r < solvers_.size() && failure_.empty(); ++r) {
-      const auto& part = system.diagonal[r];
-      try {
-        base::collectively(*matrix_->getComm(), [&] { solvers_[r]->setup(part); });
-      } catch (const Error& error) {
-        failure_ = fmt::format("preconditioner of block '{}': {}", part.block.name, gist(error.what()));
-        for (std::size_t s = 0; s < solvers_.size(); ++s)  // what the libraries left may differ among ranks
-          solvers_[s] = make_block_solver(muelu_, system.diagonal[s].block);
-        preconditioner_ = Teuchos::null;
-      }
+    for (std::size_t r = 0; r < solvers_.size() && failure_.empty(); ++r)
+      prepare(system.diagonal[r].block.name, [&] { solvers_[r]->setup(system.diagonal[r]); });
+    if (fine_level_) prepare(system.diagonal.front().block.name, [&] { fine_level_->setup(system); });
+    if (!failure_.empty()) {
+      make_solvers(blocks_);  // what the libraries left may differ among ranks
+      preconditioner_ = Teuchos::null;
+      return failure_;
     }
-    if (failure_.empty())
-      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system, solvers_);
+    preconditioner_ = fine_level_            ? fine_level_->inverse()
+                      : solvers_.size() == 1 ? solvers_.front()->inverse()
+                                             : make_block_sweep(system, solvers_);
     return failure_;
   }
 
@@ -126,6 +125,25 @@ class IterativeSolver : public LinearSolver {
   const ParameterList& parameters() const override { return parameters_; }
 
  private:
+  void make_solvers(const std::vector<Block>& blocks) {
+    blocks_ = blocks;
+    solvers_.clear();
+    fine_level_.reset();
+    if (have_fine_level(blocks))
+      fine_level_ = std::make_unique<FineLevel>(muelu_, blocks);
+    else
+      for (const auto& block : blocks) solvers_.push_back(make_block_solver(muelu_, block));
+  }
+
+  template <class Work>
+  void prepare(const std::string& block, const Work& work) {
+    try {
+      base::collectively(*matrix_->getComm(), work);
+    } catch (const Error& error) {
+      failure_ = fmt::format("preconditioner of block '{}': {}", block, gist(error.what()));
+    }
+  }
+
   int iterate(const Vector& b, Vector& x, Real tolerance) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
@@ -146,7 +164,9 @@ class IterativeSolver : public LinearSolver {
 
   ParameterList muelu_, parameters_;
   std::unique_ptr<LinearSolver> coarse_;
-  std::vector<RCP<BlockSolver>> solvers_;  // [block]
+  std::vector<Block> blocks_;
+  std::vector<RCP<BlockSolver>> solvers_;  // [block], or
+  std::unique_ptr<FineLevel> fine_level_;  // of all blocks
   RCP<CrsMatrix> matrix_;
   RCP<const Operator> preconditioner_;
   bool symmetric_ = false;

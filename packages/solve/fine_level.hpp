@@ -1,0 +1,27 @@
+// A level above multigrid: what displacements of order 2 and around crack tips have over those of order 1.
+#pragma once
+
+#include "solve/block_solver.hpp"
+
+namespace sprekk::solve {
+
+/// Whether the first of these blocks has a finer level than order 1, and all others enrich it.
+bool have_fine_level(const std::vector<Block>& blocks);
+
+/// The symmetric two-level cycle for a system of such blocks,
+///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
+/// with S a smoother of A, K multigrid on the part of order 1, and P its interpolation: that of the first block, zero
+/// in blocks that enrich it.
+class FineLevel {
+ public:
+  FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);
+  /// Makes ready for these values. Throws where a library does. Collective.
+  void setup(const LinearSystem& system);
+  RCP<const fields::Operator> inverse() const { return cycle_; }
+
+ private:
+  RCP<BlockSolver> order_one_;
+  RCP<const fields::Operator> cycle_;
+};
+
+}  // namespace sprekk::solve
