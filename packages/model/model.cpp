@@ -5,6 +5,7 @@
 #include "mesh/extents.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
+#include "model/uniqueness.hpp"
 #include "physics/bulk_momentum.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "physics/interface_traction_balance.hpp"
@@ -104,24 +105,6 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
   return {modulus, *std::max_element(extents.begin(), extents.end())};
 }
 
-/// To be appended to the reason of a step that failed, if a joint has so much friction that this may be why: examples
-/// of Klarbring (1990).
-std::string friction_note(const Scene& scene) {
-  std::string largest;
-  Real mu = 1;
-  for (const auto& [name, fracture] : scene.fractures) {
-    const auto here = scene.materials.at(fracture.material).uniform_friction();
-    if (!here || *here <= mu) continue;
-    mu = *here;
-    largest = fracture.material;
-  }
-  return largest.empty() ? ""
-                         : fmt::format(
-                               "; the friction coefficient of \"{}\" is {:.4g}: above about 1 equilibrium need "
-                               "not exist, nor be unique",
-                               largest, mu);
-}
-
 /// The element of that name, or an Error that lists those there are.
 template <class T, class Name>
 T& named(std::vector<T>& all, const std::string& name, const Name& name_of, const char* what) {
@@ -161,13 +144,21 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(physics::make_bulk_momentum(mesh.shape, bulk));
   if (mesh.fracture_names.empty()) return modules;
-  modules.push_back(physics::make_interface_traction_balance(mesh.shape, {rock.values, force, stress, rock.number}));
+  const auto fluid = scene.fluid_pressure(mesh.fracture_names);
+  modules.push_back(
+      physics::make_interface_traction_balance(mesh.shape, {rock.values, force, stress, rock.number, fluid}));
   const auto joint = joints(scene, mesh);
   modules.push_back(physics::make_elastic_plastic_jump(
-      mesh.shape,
-      {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation, mesh.n_global_enriched > 0}));
-  if (mesh.n_global_enriched > 0) modules.push_back(physics::make_tip_enrichment(mesh.shape, bulk));
+      mesh.shape, {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation, fluid,
+                   scene.time.start, mesh.n_global_enriched > 0}));
+  if (mesh.n_global_enriched > 0) modules.push_back(physics::make_tip_enrichment(mesh.shape, bulk, fluid));
   return modules;
+}
+
+std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
+                                                              const fields::Layout& displacement) {
+  const auto rock = elasticity(scene, *mesh);
+  return physics::make_stress_recovery(mesh, displacement, rock.values, rock.number);
 }
 
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
@@ -208,7 +199,9 @@ solve::StepReport Model::step_to(Real t) {
   SPREKK_CHECK(t > time_, "a step to t = {} is no step forward: the model is at t = {}", t, time_);
   const auto scope = timers_->scope("time steps");
   auto report = stepper_->advance(x_, time_, t);
-  if (!report.converged) report.reason += friction_note(scene_);
+  if (report.converged) return report;
+  for (const auto& doubt : {friction_doubt(scene_), dilation_doubt(scene_, mesh())})
+    if (!doubt.empty()) report.reason += "; " + doubt;
   return report;
 }
 

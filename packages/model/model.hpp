@@ -8,6 +8,7 @@
 #include "base/timer.hpp"
 #include "io/checkpoints.hpp"
 #include "model/scene.hpp"
+#include "physics/stress_recovery.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/time_stepping.hpp"
 
@@ -59,6 +60,7 @@ class Model {
   assembly::System& system() { return *system_; }
   const assembly::System& system() const { return *system_; }
   const solve::Newton& newton() const { return *newton_; }
+  solve::Newton& newton() { return *newton_; }
   /// The present unknowns, one vector per block, owned by the model.
   const fields::BlockVector& state() const { return x_; }
   base::Timers& timers() { return *timers_; }
@@ -77,5 +79,9 @@ class Model {
 
 /// The equation system of a scene is a list of modules.
 std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh);
+
+/// Recovers the stress of the displacement in this rock; refers to the layout. Collective.
+std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
+                                                              const fields::Layout& displacement);
 
 }  // namespace sprekk::model

@@ -193,6 +193,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
     bulk_.emplace(comm, directory_, "bulk", written);
     if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures", written);
   }
+  if (model_.scene().output.error_estimate) estimator_.emplace(model_);
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();
@@ -246,12 +247,17 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
     json_["steps"].push_back(step);
     return {0, 0, 0};
   }
-  const auto outputs = model_.system().outputs(model_.state());
+  auto outputs = model_.system().outputs(model_.state());
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
   step["reactions"] = json::object();
   for (const auto& [name, force] : model_.system().reactions(model_.state())) {
     auto& sum = step["reactions"][model_.scene().boundary_conditions.at(name).boundary];
     for (std::size_t i = 0; i < force.size(); ++i) sum[i] = force[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
+  }
+  if (estimator_) {
+    const auto estimate = (*estimator_)(outputs);
+    step["error_estimate"] = estimate.summary();
+    outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
   json_["steps"].push_back(step);
   ++n_steps_;

@@ -3,7 +3,7 @@
 
 #include "base/log.hpp"
 #include "io/vtu.hpp"
-#include "model/model.hpp"
+#include "model/error_estimate.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -44,6 +44,7 @@ class Results {
 
   Model& model_;
   std::string directory_;
+  std::optional<ErrorEstimator> estimator_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   nlohmann::json json_;
   int n_steps_ = 0;

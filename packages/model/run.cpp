@@ -5,6 +5,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
+#include "model/uniqueness.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -112,6 +113,7 @@ void describe(const Model& model, base::Log& log) {
              partition.cells[0], partition.cells[1], partition.cell_imbalance, partition.fracture_faces[0],
              partition.fracture_faces[1], partition.fracture_face_imbalance, partition.edge_cut);
   log.info("linear solver: {}", model.newton().linear().solver().describe());
+  if (const auto doubt = dilation_doubt(model.scene(), mesh); !doubt.empty()) log.warning("{}", doubt);
 }
 
 /// Warns when what nothing holds has changed.

@@ -165,6 +165,9 @@ void Region::describe(base::Section& s) {
 
 void Fracture::describe(base::Section& s) {
   s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
+  s.entry(
+      fluid_pressure, "fluid pressure", "Pa", base::any(),
+      "p, a value or an expression of x, y, z, t: it pushes the sides apart; the traction on the rock is lambda - p n");
 }
 
 void BoundaryCondition::describe(base::Section& s) {
@@ -212,6 +215,9 @@ void CheckpointTimes::describe(base::Section& s) {
 void Output::describe(base::Section& s) {
   s.entry(vtu, "vtu", "-", "write bulk.pvd and fractures.pvd for ParaView");
   s.entry(every, "every", "-", base::at_least(1), "write them after every so many steps, and after the last");
+  s.entry(error_estimate, "error estimate", "-",
+          "estimate after every step how far stress and jumps are off on this mesh: error_estimate in results.json, and "
+          "fields; costs about one more linear solve per step");
   s.section(checkpoints, "checkpoints", "what --restart goes on from; one is also written after the last step");
 }
 
@@ -300,6 +306,16 @@ physics::InitialStress Scene::initial_stress() const {
   }
   for (auto& component : stress) component.compile();
   return {stress};
+}
+
+physics::FluidPressure Scene::fluid_pressure(const std::vector<std::string>& fracture_names) const {
+  physics::FluidPressure fluid;
+  bool any = false;
+  for (const auto& name : fracture_names) {
+    const auto& p = fluid.value.emplace_back(fractures.at(name).fluid_pressure);
+    any = any || !p.is_constant() || p({}, 0) != 0;
+  }
+  return any ? fluid : physics::FluidPressure();
 }
 
 const Material& Scene::material_of(const std::string& region) const {

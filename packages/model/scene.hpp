@@ -89,6 +89,7 @@ struct Region {
 
 struct Fracture {
   std::string material;
+  base::Expression fluid_pressure = 0;
   void describe(base::Section& section);
 };
 
@@ -119,6 +120,7 @@ struct CheckpointTimes {
 struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
+  bool error_estimate = false;
   std::optional<CheckpointTimes> checkpoints;
   void describe(base::Section& section);
 };
@@ -145,6 +147,7 @@ struct Scene {
   mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
+  physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;
 };
 
 /// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,

@@ -250,6 +250,8 @@ ConstView<Real**> ElasticPlasticJump<shape, tips>::initial_jump() const {
     Real traction[dim] = {};
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) traction[k] += face.frame[k][i] * mean[i];
+    if (const auto& fluid = parameters_.fluid_pressure; !fluid.empty())
+      traction[0] += mean_fluid_pressure<shape>(fluid, *mesh_, face, mesh::minus, parameters_.start);
     host(f, 0) = law.gap.initial + (traction[0] < 0 ? law.gap.closure(traction[0]) : 0);
     for (int k = 1; k < dim; ++k) host(f, k) = law.elastic.compliance * traction[k];
   }

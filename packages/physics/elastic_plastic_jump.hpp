@@ -25,6 +25,8 @@ struct ElasticPlasticJumpParameters {
   std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
   /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
   Real augmentation = 0.3;
+  FluidPressure fluid_pressure = {};
+  Real start = 0;  ///< time of the initial state, s
   bool tips = false;  ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
 };
 
@@ -32,7 +34,8 @@ struct ElasticPlasticJumpParameters {
 /// rows the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
 ///   w = w_0 + mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
 /// w_0 is the jump that the joint has under the initial stress, (g0 + B(lambda_n), lambda_t/K_t) with lambda =
-/// mean(sigma_0 n), so that the initial state is one of rest; zero without initial stress. History: the plastic
+/// mean(sigma_0 n) + p n, p the fluid's pressure at the start, so that the initial state is one of rest; zero without
+/// initial stress. History: the plastic
 /// tangential jump p_old [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t -
 /// lambda_t/K_t where it slips. Outputs on fracture faces, local and global: total, elastic and plastic jump, traction;
 /// opening, slip, aperture (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.

@@ -26,6 +26,7 @@ namespace {
 /// | frame     | [side, dim, dim] | -    | rows n, t1[, t2]                                           |
 /// | force     | [side, dim]      | N    | load on the bubble: integral F_i b, initial stress         |
 /// | nodal     | [side, node dim] | N    | load on the nodes: initial stress; empty without           |
+/// | pressure  | [side]           | Pa   | of the fluid; empty without                                |
 template <Shape shape>
 struct BalancedSide {
   using Cell = assembly::ReferenceCell<shape>;
@@ -35,7 +36,7 @@ struct BalancedSide {
   static constexpr int beta = n * dim, lambda = beta + dim;  // where they start in x
 
   View<Real***> coupling, frame;
-  View<Real*> stiffness, bubble;
+  View<Real*> stiffness, bubble, pressure;
   View<Real**> push, force, nodal;
 
   explicit BalancedSide(std::size_t n_sides)
@@ -47,9 +48,10 @@ struct BalancedSide {
         force("force", n_sides, dim) {}
 
   KOKKOS_INLINE_FUNCTION void residual(int side, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const {
+    const Real p = pressure.extent(0) > 0 ? pressure(side) : 0;
     Real traction[dim] = {};  // global components
     for (int i = 0; i < dim; ++i)
-      for (int k = 0; k < dim; ++k) traction[i] += frame(side, k, i) * x[lambda + k];
+      for (int k = 0; k < dim; ++k) traction[i] += frame(side, k, i) * (x[lambda + k] - (k == 0 ? p : 0));
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i) {
         r[a * dim + i] = push(side, a) * traction[i] - (nodal.extent(0) > 0 ? nodal(side, a * dim + i) : 0);
@@ -97,6 +99,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     d.couplings = {{Loop::fracture_sides, "displacement", {"side bubble", "traction"}},
                    {Loop::fracture_sides, "side bubble", {"displacement", "side bubble", "traction"}}};
     d.linear = true;
+    if (!parameters_.fluid_pressure.empty()) d.outputs = {{"fluid pressure", "Pa", fields::Entity::fracture_face, 1}};
     return d;
   }
 
@@ -117,11 +120,25 @@ class InterfaceTractionBalance final : public assembly::Module {
     sides_->add_jacobian(*op_, state, J);
   }
 
-  bool constant_load() const override { return parameters_.body_force.constant_in_time(); }
+  bool constant_load() const override {
+    return parameters_.body_force.constant_in_time() && parameters_.fluid_pressure.constant_in_time();
+  }
+
+  /// The fluid's largest pressure.
+  Real load(Real t) const override {
+    Real largest = 0;
+    for_each_pressure(t, [&](Real p) { largest = std::max(largest, std::abs(p)); });
+    return largest;
+  }
+
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+    for_each_pressure(state.t, [&](Real p) { fields[0].values.push_back(p); });
+  }
 
   void set_time(Real t, const assembly::Scales&) override {
-    const bool stressed = !parameters_.initial_stress.empty();
-    if ((parameters_.body_force.empty() && !stressed) || (loaded_ && constant_load())) return;
+    set_pressure(t);
+    const bool stressed = !parameters_.initial_stress.empty(), constant = parameters_.body_force.constant_in_time();
+    if ((parameters_.body_force.empty() && !stressed) || (loaded_ && constant)) return;
     if (stressed) op_->nodal = View<Real**>("nodal", op_->force.extent(0), n * dim);
     const auto force = Kokkos::create_mirror_view(op_->force), nodal = Kokkos::create_mirror_view(op_->nodal);
     Kokkos::deep_copy(force, 0.0);
@@ -146,6 +163,25 @@ class InterfaceTractionBalance final : public assembly::Module {
   }
 
  private:
+  /// Calls visit(p) for every owned face, if there is fluid.
+  template <class Visit>
+  void for_each_pressure(Real t, const Visit& visit) const {
+    if (parameters_.fluid_pressure.empty()) return;
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      visit(mean_fluid_pressure<shape>(parameters_.fluid_pressure, *mesh_, mesh_->fracture_faces[f], mesh::minus, t));
+  }
+
+  void set_pressure(Real t) {
+    const auto& fluid = parameters_.fluid_pressure;
+    if (fluid.empty() || (op_->pressure.extent(0) > 0 && fluid.constant_in_time())) return;
+    const auto sides = assembly::fracture_sides(*mesh_);
+    if (op_->pressure.extent(0) == 0) op_->pressure = View<Real*>("pressure", sides.size());
+    const auto pressure = Kokkos::create_mirror_view(op_->pressure);
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      pressure(s) = mean_fluid_pressure<shape>(fluid, *mesh_, mesh_->fracture_faces[sides[s][0]], sides[s][1], t);
+    Kokkos::deep_copy(op_->pressure, pressure);
+  }
+
   /// Loads of the initial stress on the bubble and on the nodes of one side.
   template <class Host>
   void add_initial_stress(const mesh::Mesh::FractureFace& face, int side, const Host& force, const Host& nodal) const {

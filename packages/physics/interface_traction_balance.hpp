@@ -15,6 +15,7 @@ struct InterfaceTractionBalanceParameters {
   BodyForce body_force;
   InitialStress initial_stress = {};
   std::vector<int> elasticity_of_cell = {};
+  FluidPressure fluid_pressure = {};
 };
 
 /// Declares the unknown "side bubble" beta (fracture faces; dim components of side minus, then of side plus; m). With
@@ -29,6 +30,8 @@ struct InterfaceTractionBalanceParameters {
 /// its mean on the face: s integral (sigma_0 n - mean(sigma_0 n)) . v over the face. lambda: field "traction", frame of
 /// the face. alpha = m lambda_max(B), B_ij = integral sigma(b e_i) : grad(b e_j), m the number of fracture faces of the
 /// cell, bounds the bubbles' own stiffness, so that sides do not couple and the balance of a face stays isotropic.
+/// Where there is fluid, lambda - p n takes the place of lambda, p its mean pressure on the face: output "fluid
+/// pressure" (fracture faces, Pa).
 std::unique_ptr<assembly::Module> make_interface_traction_balance(mesh::Shape shape,
                                                                   InterfaceTractionBalanceParameters parameters);
 

@@ -57,6 +57,32 @@ struct InitialStress {
   }
 };
 
+/// Pressure p of a fluid in the fractures, Pa, compression positive: the traction on the rock is lambda - p n. Empty:
+/// none.
+struct FluidPressure {
+  std::vector<base::Expression> value = {};  ///< [fracture]
+
+  bool empty() const { return value.empty(); }
+  bool constant_in_time() const {
+    return std::all_of(value.begin(), value.end(), [](const base::Expression& e) { return e.constant_in_time(); });
+  }
+};
+
+/// Mean of a fluid's pressure over a fracture face at time t, as the cell on `side` sees the face, Pa.
+template <mesh::Shape shape>
+Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
+                         int side, Real t) {
+  const auto& p = fluid.value[face.fracture];
+  if (p.is_constant()) return p({}, t);
+  Real sum = 0, total = 0;
+  assembly::for_each_face_point<shape>(mesh, face.cell[side], face.local_face[side],
+                                       [&](const auto&, Real area, const auto& x) {
+                                         sum += area * p(x, t);
+                                         total += area;
+                                       });
+  return sum / total;
+}
+
 /// Mean of sigma_0 n over a fracture face, n from minus to plus, as the cell on `side` sees it; global components, Pa.
 template <mesh::Shape shape>
 std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mesh::Mesh& mesh,

@@ -96,7 +96,8 @@ class TipEnrichment final : public assembly::Module {
   using Tip = assembly::TipCell<shape>;
   static constexpr int dim = Tip::dim, n = Tip::n;
 
-  explicit TipEnrichment(BulkMomentumParameters parameters) : parameters_(std::move(parameters)) {}
+  TipEnrichment(BulkMomentumParameters parameters, FluidPressure fluid)
+      : parameters_(std::move(parameters)), fluid_(std::move(fluid)) {}
 
   std::string name() const override { return "tip enrichment"; }
 
@@ -145,7 +146,7 @@ class TipEnrichment final : public assembly::Module {
   }
 
   bool constant_load() const override {
-    bool all = parameters_.body_force.constant_in_time();
+    bool all = parameters_.body_force.constant_in_time() && fluid_.constant_in_time();
     for (const auto& traction : parameters_.tractions)
       for (const auto& component : traction.value) all = all && component.constant_in_time();
     return all;
@@ -158,9 +159,11 @@ class TipEnrichment final : public assembly::Module {
     for (LocalIndex cell : cell_of_) add_volume_loads(cell, t, load);
     for (const auto& face : mesh_->boundary_faces)
       if (assembly::has_tip(*mesh_, face.cell)) add_tractions(face, t, load);
-    if (!parameters_.initial_stress.empty())
-      for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
-        if (assembly::has_tip(*mesh_, mesh_->fracture_faces[f].cell[side])) add_deviation(f, side, load);
+    for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
+      if (!assembly::has_tip(*mesh_, mesh_->fracture_faces[f].cell[side])) continue;
+      if (!parameters_.initial_stress.empty()) add_deviation(f, side, load);
+      if (!fluid_.empty()) add_pressure(f, side, t, load);
+    }
     Kokkos::deep_copy(load_, load);
     loaded_ = true;
   }
@@ -290,7 +293,21 @@ class TipEnrichment final : public assembly::Module {
         });
   }
 
+  /// The fluid pushes the sides apart with its mean pressure over the face.
+  template <class Host>
+  void add_pressure(LocalIndex f, int side, Real t, const Host& load) const {
+    const auto& face = mesh_->fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
+    const Real p = mean_fluid_pressure<shape>(fluid_, *mesh_, face, side, t);
+    const auto means = Tip(*mesh_, cell).face_means(face.local_face[side]);
+    const Real force = (side == mesh::plus ? face.area : -face.area) * p;
+    for (int k = 0; k < Tip::n_face; ++k)
+      for (int i = 0; i < dim; ++i)
+        add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i, force * means[k] * face.frame[0][i]);
+  }
+
   BulkMomentumParameters parameters_;
+  FluidPressure fluid_;
   RCP<const mesh::Mesh> mesh_;
   int q_ = -1;
   bool loaded_ = false;
@@ -304,10 +321,12 @@ class TipEnrichment final : public assembly::Module {
 
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_tip_enrichment(Shape shape, BulkMomentumParameters parameters) {
+std::unique_ptr<assembly::Module> make_tip_enrichment(Shape shape, BulkMomentumParameters parameters,
+                                                      FluidPressure fluid_pressure) {
   SPREKK_CHECK(mesh::order(shape) == 1, "tip enrichment: needs cells of order 1");
   return mesh::for_shape(mesh::linear(shape), [&](auto s) -> std::unique_ptr<assembly::Module> {
-    if constexpr (mesh::order(s()) == 1) return std::make_unique<TipEnrichment<s()>>(std::move(parameters));
+    if constexpr (mesh::order(s()) == 1)
+      return std::make_unique<TipEnrichment<s()>>(std::move(parameters), std::move(fluid_pressure));
     return nullptr;
   });
 }

@@ -146,4 +146,13 @@ NewtonReport Newton::solve(BlockVector& x) {
   return report;
 }
 
+LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
+  if (linear_->n_setups() == 0) {
+    problem_.damp(0);
+    problem_.jacobian(x);
+    linear_->update();
+  }
+  return linear_->solve(b, dx, tolerance);
+}
+
 }  // namespace sprekk::solve

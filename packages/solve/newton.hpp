@@ -50,6 +50,10 @@ class Newton {
   /// rank.
   NewtonReport solve(BlockVector& x);
 
+  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with, or that at x if there was none: how x answers
+  /// to small forces b. Rows of constrained unknowns are dx_i = b_i. Collective.
+  LinearReport answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance);
+
   const CondensedSolve& linear() const { return *linear_; }
 
  private:

@@ -52,18 +52,21 @@ def column(joint, rock, height, d_t, d_n, slipped):
 
 
 def table(run, name):
-    return run.input.numbers("Tables", name, "values")[1:]
+    """Its values after the first; empty without such a table."""
+    return run.input.numbers("Tables", name, "values")[1:] if run.input.text("Tables", name, "values") else []
 
 
 def block(run):
-    """Every face of every step of a periodic block, see column(); the loads stand in tables."""
+    """Every face of every step of a periodic block, see column(); the loads stand in tables. A fluid pressure p acts on
+    the column like a displacement p/k_n more of its top."""
     rock, joint = run.input.rock("rock"), run.input.joints[0]
     height = run.input.numbers("Mesh", "upper corner")[-1] - run.input.numbers("Mesh", "lower corner")[-1]
-    loads = list(zip(table(run, "tangential"), table(run, "normal")))
+    loads, pressures = list(zip(table(run, "tangential"), table(run, "normal"))), table(run, "p")
+    k_n = (rock["lam"] + 2 * rock["G"]) / height
     size, slipped, answers = max(map(abs, sum(loads, ()))), 0.0, Answers()
     assert len(loads) == len(run.faces)
-    for (d_t, d_n), faces in zip(loads, run.faces):
-        state, shear, normal, p, opening = column(joint, rock, height, d_t, d_n, slipped)
+    for (d_t, d_n), pressure, faces in zip(loads, pressures or [0] * len(loads), run.faces):
+        state, shear, normal, p, opening = column(joint, rock, height, d_t, d_n + pressure / k_n, slipped)
         tangent = 1 if run.dim == 2 else 2  # in the frame of a horizontal face x is t in 2D, t2 in 3D
         for values, reference, scale in ((faces.traction[:, 0], normal, rock["G"] * size / height),
                                          (faces.traction[:, tangent], shear, rock["G"] * size / height),
@@ -102,16 +105,20 @@ def cycles(run):
     return max(np.abs(shear * signs / (joint.friction * N) - 1).max(), np.abs(p * signs / far - 1).max())
 
 
-def turns(run):
-    """Radial return along a circle of radius 0.5; it ends on the circle of the steady state of implicit Euler,
-    |p| = -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)) for turns by D."""
+def turns(steps):
+    """Radial return along a circle of radius 0.5, in so many steps a turn; it ends on the circle of the steady state of
+    implicit Euler, |p| = -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)) for turns by D."""
+    return lambda run: _turns(run, 2 * math.pi / steps)
+
+
+def _turns(run, turn):
     rock, joint = run.input.rock("rock"), run.input.joints[0]
     bound = joint.friction * 0.1 * (rock["lam"] + 2 * rock["G"])
     stiffness = 1 / (1 / rock["G"] + 1 / joint.stiffness)
-    p, S, half = np.zeros(2), bound / stiffness, math.pi / 64
+    p, S, half = np.zeros(2), bound / stiffness, turn / 2
     worst = 0.0
     for k, values in enumerate(means(run, "mean_plastic_jump")[:, :2]):
-        angle = math.pi * (k + 1) / 32
+        angle = turn * (k + 1)
         trial = 0.5 * np.array([math.cos(angle), math.sin(angle)]) - p
         p = p + max(0, 1 - S / np.linalg.norm(trial)) * trial
         worst = max(worst, np.linalg.norm(values - p) / 0.5)

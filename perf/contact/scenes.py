@@ -27,6 +27,22 @@ def joint(**entries):
     return tuple(f"{names[key]}={value}" for key, value in entries.items())
 
 
+def pressure(names, text="p(t)"):
+    """A fluid pressure in the fractures of these names."""
+    return tuple(f"Fractures.{name}.fluid pressure={text}" for name in names)
+
+
+def table(name, *points):
+    """Points (t, value) of a table."""
+    times, values = ("{" + ", ".join(map(str, row)) + "}" for row in zip(*points))
+    return f"Tables.{name}.arguments={times}", f"Tables.{name}.values={values}"
+
+
+def held(end, **loads):
+    """So many steps of length 1; loads, by the names of their tables, that rise in the first and then stay."""
+    return sum((table(name, (0, 0), (1, load), (end, load)) for name, load in loads.items()), (f"Time.end={end}", f"Time.steps={end}"))
+
+
 SOFT_CLOSURE = dict(closure="1e-2", normal="1")     # relative to E = 1 of a domain of size 1
 STIFF_CLOSURE = dict(closure="1e-4", normal="1e3")
 NO_EQUILIBRIUM = r"no equilibrium"
@@ -50,13 +66,18 @@ def networks():
     yield Scene("network X dilation 20 mu=1", x, joint(dilation=20, friction=1))
     yield Scene("network X soft closure", x, joint(**SOFT_CLOSURE), quick=True)
     yield Scene("network X stiff closure", x, joint(**STIFF_CLOSURE))
-    yield Scene("network X all of it", x, joint(stiffness=10, dilation=5, closure="1e-3", normal=10), quick=True)
+    all_of_it = joint(stiffness=10, dilation=5, closure="1e-3", normal=10)
+    yield Scene("network X all of it", x, all_of_it, quick=True)
     yield Scene("network X gap 1e-12", x, joint(gap="1e-12"))
     yield Scene("network X gap -1", x, joint(gap=-1))  # so wide that no faces meet
-    pressure = ("Tables.p.values={0, 0, 0.005, 0.015, 0.045}", "Tables.ax.values={0, 0.01, 0.01, 0.01, 0.01}",
-                "Tables.ay.values={0, 0.02, 0.02, 0.02, 0.02}", "Tables.sx.values={0, 0.01, 0.01, 0.01, 0.01}")
-    yield Scene("network X pressure", x, pressure, quick=True)
-    yield Scene("network X pressure all of it", x, pressure + joint(stiffness=10, dilation=5, closure="1e-3", normal=10))
+    all_fractures = pressure(f"f{k:02}" for k in range(1, 16)) + ("Tables.p.arguments={0, 1, 2, 3, 4}",
+        "Tables.p.values={0, 0, 0.005, 0.015, 0.045}", "Tables.ax.values={0, 0.01, 0.01, 0.01, 0.01}",
+        "Tables.ay.values={0, 0.02, 0.02, 0.02, 0.02}", "Tables.sx.values={0, 0.01, 0.01, 0.01, 0.01}")
+    yield Scene("network X pressure", x, all_fractures, quick=True)
+    yield Scene("network X pressure all of it", x, all_fractures + all_of_it)
+    injection = pressure(("f01", "f13")) + table("p", (0, 0), (1, 0), (8, 0.035), (12, 0)) + held(12, ax=0.01, ay=0.02, sx=0.01)
+    yield Scene("network X injection", x, injection, quick=True)
+    yield Scene("network X injection all of it", x, injection + all_of_it)
     yield Scene("network X nu=0.4999", x, ("Materials.rock.Poisson's ratio=0.4999",), quick=True)
     yield Scene("network T", t, quick=True)
     yield Scene("network T K_t=1 dilation 5", t, joint(stiffness=1, dilation=5))
@@ -70,6 +91,8 @@ def networks():
     yield Scene("network 3D mu=2", box, joint(friction=2), refused=r"friction coefficient of .* is 2")
     yield Scene("network 3D dilation 20", box, joint(dilation=20))
     yield Scene("network 3D all of it", box, joint(stiffness=10, dilation=10, closure="1e-3", normal=10))
+    injection = table("p", (0, 0), (1, 0), (7, 0.02), (10, 0)) + held(10, az=0.01, sx=0.008, sy=0.004)
+    yield Scene("network 3D injection", box, pressure(("f05", "f07"), "p(t)*(1 + (4 - z)/20)") + injection)
     cells = "contact/one_cell_blocks_3d.xml"  # some pieces of rock are single cells, held at six points
     yield Scene("one-cell blocks 3D", cells)
     yield Scene("one-cell blocks 3D mu=0", cells, joint(friction=0))
@@ -84,6 +107,8 @@ def blocks():
     yield Scene("floating 3D K_t=1e-5", "contact/floating_3d.xml", joint(stiffness="1e-5"))
     yield Scene("floating 3D mu=1.5", "contact/floating_3d.xml", joint(friction=1.5))
     yield Scene("floating 3D all of it", "contact/floating_3d.xml", joint(stiffness=10, dilation=10, closure="1e-3", normal=10))
+    lifting = table("p", (0, 0), (1, 0), (6, 0.02), (8, 0)) + held(8, ax=0, az=0.01, sx=0.005, sy=0)
+    yield Scene("floating 3D injection", "contact/floating_3d.xml", pressure(("below", "west")) + lifting, quick=True)
     for dim in (2, 3):
         yield Scene(f"masonry X {dim}D", f"contact/masonry_cross_{dim}d.xml", quick=dim == 2)
         yield Scene(f"masonry T {dim}D", f"contact/masonry_wall_{dim}d.xml", quick=True)
@@ -111,6 +136,10 @@ def extremes():
              "g0=1": joint(gap=1), "g0=-1": joint(gap=-1) + ("Tables.normal.values={0, -1.2}",),
              "G=1e12": tiny + joint(stiffness="1e-12") + ("Materials.rock.shear modulus=1e12", "Materials.rock.Lame's first parameter=1e12"),
              "G=1e-12": tiny + joint(stiffness="1e12") + ("Materials.rock.shear modulus=1e-12", "Materials.rock.Lame's first parameter=1e-12")}
+    for dim in (2, 3):
+        loads = {"p": (0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.45, 0.5, 0.4, 0.2, 0.1, 0), "tangential": [0.15] * 13, "normal": [-0.1] * 13}
+        sets = sum((table(name, *enumerate(values)) for name, values in loads.items()), pressure(("fracture",)) + held(12))
+        yield Scene(f"block {dim}D injection", f"contact/block_{dim}d.xml", sets, exact.block, newton=20, quick=dim == 2)
     for dim, names in ((2, cases), (3, ("K_t=1e-12", "mu=1e6", "theta=89", "nu=0.4999", "g0=-1"))):
         for name in names:
             yield Scene(f"block {dim}D {name}", f"contact/block_{dim}d.xml", cases[name], exact.block, newton=20,
@@ -195,7 +224,11 @@ def all_change():
 
 def drift():
     yield Scene("1000 cycles", "contact/cycles_2d.xml", exact=exact.cycles, tolerance=1e-9)
-    yield Scene("50 turns of 64 steps", "contact/turns_3d.xml", exact=exact.turns, tolerance=1e-9)
+    turns = "contact/turns_3d.xml"
+    yield Scene("50 turns of 64 steps", turns, exact=exact.turns(64), tolerance=1e-9)
+    yield Scene("1000 turns of 8 steps", turns, ("Boundary conditions.moved.displacement={0.5*cos(pi*t/4), 0.5*sin(pi*t/4), -0.1}",
+                                                 "Time.end=8000", "Time.steps=8000", "Output.every=100"),
+                exact=exact.turns(8), tolerance=1e-9)
 
 
 def scenes():

@@ -95,6 +95,7 @@ class Faces:
     jump: np.ndarray
     plastic: np.ndarray
     traction: np.ndarray
+    pressure: np.ndarray = field(default=None)  # of the fluid, where there is some
     bound: np.ndarray = field(default=None)  # mu N
     distance: np.ndarray = field(default=None)  # w_n - g
 
@@ -107,7 +108,8 @@ def faces(time, file, joints, extent):
     place = np.round(centre / extent * 1e8).astype(np.int64)
     order = np.lexsort((place[:, 2], place[:, 1], place[:, 0], data["fracture"]))
     f = Faces(time, centre[order], data["fracture"].astype(int)[order], data["state"].astype(int)[order],
-              *(data[name][order] for name in ("jump local", "plastic jump local", "traction local")))
+              *(data[name][order] for name in ("jump local", "plastic jump local", "traction local")),
+              data["fluid pressure"][order] if "fluid pressure" in data else np.zeros(len(order)))
     slip, normal = np.linalg.norm(f.plastic[:, 1:], axis=1), f.traction[:, 0]
     f.bound, f.distance = np.empty(len(slip)), np.empty(len(slip))
     for k, joint in enumerate(joints):
@@ -120,7 +122,7 @@ def faces(time, file, joints, extent):
 @dataclass
 class Scales:
     length: float    # largest displacement of a node in the run
-    traction: float  # largest traction on a face in the run, at least 1e-9 E u/L
+    traction: float  # largest traction or fluid pressure on a face in the run, at least 1e-9 E u/L
     extent: float
 
 
@@ -135,7 +137,7 @@ def history(directory, input_):
         displacement = read.arrays(read.grid(file).GetPointData())["displacement"]
         length = max(length, np.linalg.norm(displacement, axis=1).max())
     steps = [faces(time, file, input_.joints, extent) for time, file in read.written_steps(directory, "fractures")]
-    traction = max(np.linalg.norm(step.traction, axis=1).max() for step in steps)
+    traction = max(max(np.linalg.norm(step.traction, axis=1).max(), np.abs(step.pressure).max()) for step in steps)
     return steps, Scales(length, max(traction, 1e-9 * input_.modulus * length / extent), extent)
 
 

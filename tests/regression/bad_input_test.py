@@ -273,6 +273,7 @@ class Scenes(BadInput):
         self.refuse_set(['"steps": is the string "many", expected an integer'], "Time.steps=many")
         self.refuse_set(["Boundary conditions > moved > \"displacement\": has 1 value, must have 2"], moved + "={0}")
         self.refuse_set(["Bulk > \"body force\": has 3 values, must have 2"], "Bulk.body force={0, 0, 0}")
+        self.refuse_set(['Fractures > fracture > "fluid pressure": is "infinite", must be a number'], "Fractures.fracture.fluid pressure=infinite")
         self.refuse_set(["cells", "has 1 component", "needs 2"], "Mesh.cells={2}")
         self.refuse_set(["cells", "{2000000000, 2000000000}", "may make"], "Mesh.cells={2000000000, 2000000000}")
         self.refuse([': missing; it is required: '], "check", self.scene_with(('<Parameter name="boundary" type="string" value="north"/>', "")))
@@ -302,6 +303,8 @@ class Scenes(BadInput):
                         "Boundary conditions.moved.displacement={0, sqrt(x-0.3)}")
         self.refuse_set(['Bulk > "body force"[0]: "sqrt(-1-t)" at x = (0', "t = 1: is nan, must be finite"],
                         "Bulk.body force={sqrt(-1-t), 0}", any_point=True)
+        self.refuse_set(['Fractures > fracture > "fluid pressure": "log(-1-t)" at x = (', "t = 1: is nan, must be finite"],
+                        "Fractures.fracture.fluid pressure=log(-1-t)", any_point=True)
         self.refuse_set(['friction coefficient', "x-5", "must be at least 0"], "Materials.joint.friction coefficient=x-5",
                         "Mesh.cells={1, 2}")
 

@@ -87,6 +87,18 @@ class Violation(ProgramTest):
                                 ((0.3, 0.05), 0, (2, 0.011301447522, -0.018835745870, 0.283047828717, 0.056278581957)),
                                 ((0.35, -0.1), 0.209312864497, (1, 0.093791423668, -0.322985706114, 0.209312864497, 0.007661902038))):
             self.assertTrue(np.allclose(exact.column(R1(), rock, 1, *d, slipped), row, rtol=0, atol=2e-12), (d, row))
+        # under a fluid pressure p, with k_n = 3: the same as with a top that is p/k_n higher
+        for p, row in ((0.05, (1, 0.1, -0.195631429996, 0, -0.018122856668)),
+                       (0.2, (2, 0.063729626370, -0.106216043949, 0.054405560446, 0.002072014650)),
+                       (0.45, (0, 0, 0, 0.15, 0.05))):
+            self.assertTrue(np.allclose(exact.column(R1(), rock, 1, 0.15, -0.1 + p / 3, 0), row, rtol=0, atol=2e-12), (p, row))
+
+    def test_fluid_pressure_is_in_the_scale(self):
+        """Pressed open, the block has no traction on its fracture."""
+        open_faces, = self.steps("contact/block_2d.xml", "Fractures.fracture.fluid pressure=2*y")
+        self.assertEqual(set(open_faces.state), {violation.OPEN})
+        self.assertTrue(np.allclose(open_faces.pressure, 1))
+        self.assertAlmostEqual(self.scales.traction, 1)
 
 
 class Table(ProgramTest):
@@ -97,10 +109,11 @@ class Table(ProgramTest):
         return done.stdout.splitlines()
 
     def test_lines_and_files(self):
-        lines = self.contact("--only", "^(block 2D K_t=1e12|seed pull 2D)$", "--ranks", "2", expect=0)
-        self.assertEqual([line.split()[:2] for line in lines[:3]], [["scene", "dim"], ["seed", "pull"], ["block", "2D"]])
+        lines = self.contact("--only", "^(block 2D (injection|K_t=1e12)|seed pull 2D)$", "--ranks", "2", expect=0)
+        self.assertEqual([line.split()[:3] for line in lines[:4]],
+                         [["scene", "dim", "unknowns"], ["seed", "pull", "2D"], ["block", "2D", "injection"], ["block", "2D", "K_t=1e12"]])
         self.assertRegex(lines[-1], r"^failures=0 median=\S+ p90=\d+ max=\d+ worst_violation=\S+e-\d+$")
-        self.assertEqual(len((self.folder / "out/contact.csv").read_text().splitlines()), 3)
+        self.assertEqual(len((self.folder / "out/contact.csv").read_text().splitlines()), 4)
         self.assertTrue((self.folder / "out/contact.png").is_file())
         self.assertTrue(Path(self.folder / "out/block_2D_K_t_1e12/2/results.json").is_file())
 

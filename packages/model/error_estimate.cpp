@@ -1,0 +1,93 @@
+#include "model/error_estimate.hpp"
+
+#include "physics/traction_recovery.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::model {
+
+using assembly::OutputField;
+
+namespace {
+
+constexpr Real solve_tolerance = 1e-6;  ///< of an iterative solver; an estimate needs no more
+
+const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, const std::string& name) {
+  return std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; })->values;
+}
+
+/// part / whole; 0 for 0 / 0.
+Real share(Real part, Real whole) { return part == 0 ? 0 : part / whole; }
+
+}  // namespace
+
+nlohmann::json ErrorEstimate::summary() const {
+  nlohmann::json result = {{"stress", {{"relative", relative_stress}, {"energy_norm", stress}}}};
+  if (!failure.empty())
+    result["jump"] = {{"failure", failure}};
+  else if (fields.size() > 1)
+    result["jump"] = {{"relative", relative_jump}, {"norm", jump}};
+  return result;
+}
+
+ErrorEstimator::ErrorEstimator(Model& model)
+    : model_(model),
+      recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()),
+                                     model.system().layouts()[block("displacement")])) {}
+
+int ErrorEstimator::block(const std::string& name) const {
+  const auto& blocks = model_.system().blocks();
+  return static_cast<int>(std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.name == name; }) -
+                          blocks.begin());
+}
+
+ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs) {
+  const auto scope = model_.timers().scope("error estimate");
+  auto error = (*recovery_)(*model_.state()[block("displacement")]);
+  ErrorEstimate estimate;
+  estimate.stress = error.error;
+  estimate.relative_stress = share(error.error, error.stress);
+  estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, std::move(error.density)});
+  if (!model_.mesh().fracture_names.empty()) estimate_jump(error.forces, outputs, estimate);
+  return estimate;
+}
+
+void ErrorEstimator::estimate_jump(RCP<fields::Vector> forces, const std::vector<OutputField>& outputs,
+                                   ErrorEstimate& estimate) {
+  auto& system = model_.system();
+  const auto& mesh = model_.mesh();
+  const int u = block("displacement"), beta = block("side bubble"), lambda = block("traction"), dim = mesh.dim();
+  auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
+  right_side[u] = forces;
+  const auto& layouts = system.layouts();
+  physics::add_unresolved_traction(mesh, {layouts[u], layouts[beta], layouts[lambda]}, model_.scene().initial_stress(),
+                                   *model_.state()[lambda], *right_side[u], *right_side[beta]);
+  {
+    const auto prescribed = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(u));
+    const auto view = right_side[u]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < prescribed.extent(0); ++i)
+      if (prescribed(i)) view(i, 0) = 0;
+  }
+  const auto report = model_.newton().answer(model_.state(), right_side, x, solve_tolerance);
+  estimate.failure = report.reason;
+  if (!report.converged) return;
+  for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
+  OutputField error{"jump error", "m", fields::Entity::fracture_face, dim, values_of(system.outputs(x), "jump")};
+  const auto& jump = values_of(outputs, "jump");
+  Real here[2] = {}, all[2];
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    for (int k = f * dim; k < (f + 1) * dim; ++k) {
+      error.values[k] -= jump[k];
+      here[0] += mesh.fracture_faces[f].area * error.values[k] * error.values[k];
+      here[1] += mesh.fracture_faces[f].area * jump[k] * jump[k];
+    }
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 2, here, all);
+  estimate.jump = std::sqrt(all[0]);
+  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]));
+  estimate.fields.push_back(std::move(error));
+}
+
+}  // namespace sprekk::model

@@ -1,0 +1,46 @@
+// How far the stress and the jumps of a model's present state are off, as far as the mesh is to blame.
+#pragma once
+
+#include "model/model.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprekk::model {
+
+struct ErrorEstimate {
+  Real stress = 0, relative_stress = 0;  ///< of the stress in the norm of the energy, sqrt(J); by that of the stress
+  Real jump = 0, relative_jump = 0;      ///< of the jumps of all faces in L2, m sqrt(m^2) (2D: m sqrt(m)); by the jumps
+  std::string failure;                   ///< why there is no estimate of the jumps
+  /// On cells "error density", J/m^3: energy of the stress' error per volume; on fracture faces "jump error", m: what
+  /// the jump lacks, in global components.
+  std::vector<assembly::OutputField> fields;
+
+  /// What results.json has of it.
+  nlohmann::json summary() const;
+};
+
+/// Keeps tables from state to state. Refers to the model.
+class ErrorEstimator {
+ public:
+  /// Collective.
+  explicit ErrorEstimator(Model& model);
+
+  /// Of the present state. `outputs` are its. The stress against the recovered one (see physics::StressRecovery); for
+  /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over,
+  /// with states of contact as they are. Collective.
+  ErrorEstimate operator()(const std::vector<assembly::OutputField>& outputs);
+
+ private:
+  int block(const std::string& name) const;
+  void estimate_jump(RCP<fields::Vector> forces, const std::vector<assembly::OutputField>& outputs,
+                     ErrorEstimate& estimate);
+
+  Model& model_;
+  std::unique_ptr<physics::StressRecovery> recovery_;
+};
+
+}  // namespace sprekk::model

@@ -1,0 +1,278 @@
+"""The cases: scenes, meshes, what is measured on them, and the bounds."""
+import csv
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+
+import exact
+import measure
+import meshes
+
+REFERENCES = Path(__file__).resolve().parent / "references"
+
+
+@dataclass
+class Series:
+    """Runs that differ by the mesh. `meshes` are pairs of a label and either entries of the scene or a function of a folder that
+    makes a mesh of gmsh there. The first `quick` of them belong to --quick."""
+    name: str
+    meshes: list
+    scene: str = ""       # under xml/, if not that of the case
+    sets: tuple = ()
+    exact: object = None  # likewise
+    quick: int = 0
+    prescribed: Callable = None  # likewise
+    dimension: int = 0    # in how many directions meshes are refined, if not in all
+
+
+@dataclass
+class Bound:
+    """error <= most on the mesh with this label, which may have `unknowns` at most."""
+    series: str
+    mesh: str
+    error: str
+    most: float
+    unknowns: float = math.inf
+
+
+@dataclass
+class Order:
+    """The observed order between the last two meshes of each series whose name contains `series` is at least `least`."""
+    series: str
+    error: str
+    least: float
+
+
+@dataclass
+class Case:
+    name: str
+    title: str
+    scene: str
+    series: list
+    errors: Callable      # of a run and its exact solution: {name: error}
+    prescribed: Callable  # of the points of all nodes: how many components of the displacement are no unknowns
+    headline: tuple       # series, mesh, error of the last line
+    orders: tuple         # the errors whose orders the last line has, as u and as traction; "" where there is none
+    exact: object = None
+    bounds: list = field(default_factory=list)
+    points: list = field(default_factory=list)  # given elsewhere: (label, unknowns, error)
+
+
+def on_box(low, high):
+    """Counts the components on nodes of the boundary of a box, where all of them are prescribed."""
+    def count(points):
+        outside = (np.abs(points - low) < 1e-9 * (high - low)) | (np.abs(points - high) < 1e-9 * (high - low))
+        return points.shape[1] * int(outside.any(axis=1).sum())
+    return count
+
+
+def turned_box(half, degrees):
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return lambda points: on_box(-half, half)(points @ np.array([[c, -s], [s, c]]))
+
+
+def gmsh(order, *makers):
+    """[(label, function)] of meshes of gmsh with cells of this order."""
+    def entries(make):
+        return lambda folder: (f"Mesh file.path={make(folder)}", f"Mesh file.order={order}")
+    return [(label, entries(make)) for label, make in makers]
+
+
+# Cracks in infinite bodies
+
+def uniform(order, sizes, angle=0):
+    return gmsh(order, *[(f"h={h:g}", lambda folder, h=h: meshes.uniform_crack(folder, h, angle)) for h in sizes])
+
+
+def graded(order, *sizes):
+    return gmsh(order, *[(f"h={h:g} tip h/{round(1 / ratio)}", lambda folder, h=h, ratio=ratio: meshes.graded_crack(folder, h, ratio))
+                         for h, ratio in sizes])
+
+
+def crack_errors(run, known):
+    found = {"jump": measure.jump_error(run, known.jump_mean(run.corners())), "u": measure.displacement_error(run, known)}
+    if np.any(known.exact_traction):
+        found["traction"], found["centre"] = measure.traction_errors(run, known, [known.tangent])
+    return found
+
+
+GRADED = ((0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # h, size at the tip relative to it
+
+
+def crack_series():
+    return [Series("U order 1", uniform(1, (0.4, 0.2, 0.1, 0.05)), quick=3), Series("U order 2", uniform(2, (0.4, 0.2, 0.1)), quick=2),
+            Series("graded order 2", graded(2, *GRADED), quick=2)]
+
+
+def sneddon():
+    fine, finer = (label for label, _ in graded(2, *GRADED)[1:])
+    bounds = [Bound("U order 1", "h=0.1", "jump", 1.4e-2), Bound("U order 2", "h=0.2", "jump", 3e-3),
+              Bound("graded order 2", fine, "jump", 5e-4, 4500), Bound("graded order 2", finer, "jump", 1e-4, 20000)]
+    return Case("sneddon", "crack under pressure", "verification/sneddon.xml", crack_series(), crack_errors, on_box(-2, 2),
+                ("U order 2", "h=0.2", "jump"), ("u", ""), exact.Crack(1, 1e-3, 1, 0.25), bounds,
+                [("MPSA, mesh U", (2844, 11028, 43412), (6.8e-3, 4.6e-3, 2.2e-3))])
+
+
+def sneddon_shear():
+    return Case("sneddon_shear", "crack that slides", "verification/sneddon_shear.xml", crack_series(), crack_errors, on_box(-2, 2),
+                ("U order 2", "h=0.2", "jump"), ("u", "traction"), exact.Crack(2, 1e-3, 1, 0.25, traction=(-1e-3, 0.5e-3)),
+                [Bound("U order 1", "h=0.1", "jump", 2e-2), Bound("U order 2", "h=0.2", "jump", 4e-3)],
+                [("MPSA, mesh U", (2844, 11028), (7.2e-2, 3.6e-2))])
+
+
+def inclined():
+    psi, G, K = math.radians(20), 10e9, 16.67e9
+    lam, mu, load = K - 2 * G / 3, math.tan(math.radians(30)), 100e6
+    N, shear = load * math.sin(psi)**2, load * math.sin(psi) * math.cos(psi)
+    known = exact.Crack(2, shear - mu * N, G, lam / (2 * (lam + G)), 20, (-load, 0, 0), (-N, mu * N))
+    series = [Series("U order 1", uniform(1, (0.4, 0.2, 0.1), 20), quick=2), Series("U order 2", uniform(2, (0.4, 0.2, 0.1), 20), quick=2)]
+    return Case("inclined", "crack at 20 degrees to compression", "verification/inclined_crack.xml", series, crack_errors,
+                turned_box(2, 20), ("U order 2", "h=0.2", "jump"), ("u", "traction"), known, [Bound("U order 2", "h=0.2", "jump", 4e-3)])
+
+
+def penny():
+    def mesh(h, smallest, growth):
+        return f"front {smallest:g}", lambda folder: meshes.penny(folder, h, smallest, growth)
+
+    def errors(run, known):
+        means = measure.face_means(known.jump, run.corners(), 12)
+        return {"jump": measure.jump_error(run, means), "u": measure.displacement_error(run, known)}
+    series = [Series("order 1", gmsh(1, mesh(1, 0.2, 0.5), mesh(0.8, 0.1, 0.35), mesh(0.6, 0.05, 0.25), mesh(0.5, 0.025, 0.2)), quick=2),
+              Series("order 2", gmsh(2, mesh(1, 0.2, 0.5), mesh(1, 0.1, 0.5), mesh(1, 0.05, 0.5), mesh(1, 0.035, 0.5)), quick=1)]
+    return Case("penny", "disc under pressure", "verification/penny.xml", series, errors, on_box(-2, 2),
+                ("order 2", "front 0.035", "jump"), ("u", ""), exact.Penny(1e-3, 1, 0.25),
+                [Bound("order 2", "front 0.035", "jump", 3e-2, 60000), Order("order", "jump", 1)])
+
+
+# Manufactured solutions
+
+def manufactured(dimension, cells):
+    """`cells`: {(shape, order): counts}; all regimes."""
+    def errors(run, known):
+        means = measure.face_means(known.jump, run.corners())
+        u = measure.displacement_error(run, known)
+        traction, centre = measure.traction_errors(run, known, np.eye(dimension)[:-1])
+        return {"u": u, "jump": measure.jump_error(run, means), "traction": traction, "centre": centre}
+    series = []
+    for regime in ("mixed", "stick", "slip", "uniform"):
+        for (shape, order), counts in cells.items():
+            sets = (f"Mesh.cell={shape}", f"Mesh.order={order}")
+            grids = [(f"n={n}", (f"Mesh.cells={{{', '.join([str(n)] * dimension)}}}",)) for n in counts[:None if regime == "mixed" else 3]]
+            quick = {"mixed": 3 if dimension == 2 else 2, "uniform": 2}.get(regime, 0) if shape in ("triangle", "tetrahedron") else 0
+            series.append(Series(f"{regime} {shape} {order}", grids, f"verification/manufactured_{regime}_{dimension}d.xml", sets,
+                                 exact.Manufactured(dimension, regime), quick))
+    shape = "triangle" if dimension == 2 else "tetrahedron"
+    bounds = [Order(one.name, name, least) for one in series for name, least in (("jump", 1.5), ("traction", 1))]
+    bounds += [Order(one.name, "u", 3 if one.name.startswith("uniform") and one.name.endswith("2") else 2) for one in series]
+    bounds += [Order(one.name, "centre", 2) for one in series if one.name.endswith("2")]
+    bounds.append(Bound(f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u", 1e-4 if dimension == 2 else 5e-4))
+    return Case(f"mms{dimension}d", f"manufactured solution in {dimension}D: stick, slip, mixed", "", series, errors, on_box(0, 1),
+                (f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u"), ("u", "centre"), None, bounds)
+
+
+def mms2d():
+    return manufactured(2, {("triangle", 1): (8, 16, 32, 64), ("quadrilateral", 1): (8, 16, 32, 64),
+                            ("triangle", 2): (4, 8, 16, 32), ("quadrilateral", 2): (4, 8, 16, 32)})
+
+
+def mms3d():
+    return manufactured(3, {("tetrahedron", 1): (4, 8, 12), ("hexahedron", 1): (4, 8, 12),
+                            ("tetrahedron", 2): (4, 6, 8, 12), ("hexahedron", 2): (4, 6, 8, 12)})
+
+
+# Independent references
+
+def t_junction():
+    """Values of references/t_junction.py."""
+    volume, slip = 22.823, 1.0722
+    apertures, slips, loads = (0.24187, 0.28184, 0.25141), (3.513e-3, 16.20e-3, 39.51e-3), (118.67e6, 116.20e6, 98.46e6)
+
+    def along(run, name, axis, values):
+        """A function of the coordinate along a fracture, linear between the centres of faces."""
+        on = run.on(name)
+        x = run.corners()[on].mean(axis=1)[:, axis]
+        order = np.argsort(x)
+        return lambda places: np.interp(places, x[order], values[on][order])
+
+    def errors(run, _):
+        size, local = measure.area(run.corners()), run.data("jump local")
+        sliding = np.abs(local[:, 1])
+        opened, slid = (size * local[:, 0])[run.on("vertical")].sum(), (size * sliding)[run.on("horizontal")].sum()
+        at = np.array([-20, -12.5, -5])
+        found = {"volume": opened / volume - 1, "slip": slid / slip - 1,
+                 "aperture": along(run, "vertical", 1, local[:, 0])(np.array([25, 50, 75]) - 50) / apertures - 1,
+                 "slip at x": along(run, "horizontal", 0, sliding)(at) / slips - 1,
+                 "traction": -along(run, "horizontal", 0, run.data("traction local")[:, 0])(at) / loads - 1}
+        return {name: float(np.max(np.abs(value))) for name, value in found.items()}
+
+    def mesh(h, ratio, half_width=8000):
+        return f"growth {h:g}", lambda folder: meshes.t_junction(folder, h, ratio, half_width)
+    series = [Series("order 1", gmsh(1, mesh(0.5, 0.02), mesh(0.25, 0.02), mesh(0.125, 0.02)), quick=2),
+              Series("order 2", gmsh(2, mesh(0.5, 0.02), mesh(0.25, 0.02), mesh(0.125, 0.02)), quick=1),
+              Series("order 2, box of half the width", gmsh(2, mesh(0.25, 0.02, 4000)), prescribed=on_box(-4000, 4000))]
+    return Case("t_junction", "pressurised fracture that ends on a frictional one", "verification/t_junction.xml", series, errors,
+                on_box(-8000, 8000), ("order 2", "growth 0.125", "volume"), ("volume", "traction"), None,
+                [Bound("order 2", "growth 0.125", name, 2e-2) for name in ("volume", "slip", "aperture", "slip at x", "traction")]
+                + [Bound("order 2", "growth 0.5", "volume", 2e-2), Order("order 1", "volume", 1)])
+
+
+def wavy():
+    known = exact.Wavy(0.4, 1, 0.25)
+
+    def errors(run, known):
+        corners = run.corners()
+        a, b = corners[:, :, 0].min(axis=1), corners[:, :, 0].max(axis=1)
+        means, pressure = known.pressure_mean(a, b), -run.data("traction local")[:, 0]
+        opening = known.opening_mean(a, b)
+        return {"jump": measure.relative((run.data("opening") - opening)[:, None], opening[:, None], b - a),
+                "traction": measure.traction_errors(run, known, [[1, 0]], 40)[0],
+                "mean": measure.relative((pressure - means)[:, None], means[:, None], b - a),
+                "contact": abs((b - a)[pressure > 0].sum() / known.half_width - 1)}
+
+    def prescribed(points):
+        """Components x of the nodes of both sides, component y of the nodes below."""
+        x, y = points.T
+        return int((np.abs(x) < 1e-9).sum() + (np.abs(x - 0.5) < 1e-9).sum() + (np.abs(y + 2) < 1e-9).sum())
+    sizes = [(f"h={h:g}", lambda folder, h=h: meshes.wavy(folder, h)) for h in (0.05, 0.025, 0.0125, 0.00625)]
+    return Case("wavy", "wavy fracture pressed together", "verification/wavy.xml",
+                [Series(f"order {k}", gmsh(k, *sizes), quick=3) for k in (1, 2)], errors, prescribed,
+                ("order 2", "h=0.00625", "mean"), ("jump", "mean"), known,
+                [Order("order", "traction", 0.8), Bound("order 2", "h=0.0125", "mean", 2e-2)])
+
+
+def free_sides():
+    """Reference of references/free_sides.py: quadratic elements graded towards the corners."""
+    rows = np.array([[float(word) for word in row] for row in csv.reader(open(REFERENCES / "free_sides.csv")) if row[0][0].isdigit()])
+    (shear, load), profile = rows[0], rows[1:].T
+
+    def errors(run, _):
+        means = measure.face_means(lambda points: np.interp(points[:, 0], *profile), run.corners(), 10)[:, 0]
+        tangential, normal = run.data("jump")[:, 0], run.data("opening")
+        width = 1 if run.dimension == 2 else 0.125
+        forces = run.results["steps"][-1]["reactions"][{2: "north", 3: "top"}[run.dimension]]
+        return {"jump": measure.relative(np.column_stack([tangential - means, normal]), means[:, None], measure.area(run.corners())),
+                "shear force": abs(forces[0] / width / shear - 1), "load": abs(-forces[-1] / width / load - 1)}
+
+    def prescribed(points):
+        """All components of the nodes below and above; in 3D those at the far end in y are tied, and not counted."""
+        held = (np.abs(points[:, -1]) < 1e-9) | (np.abs(points[:, -1] - 1) < 1e-9)
+        if points.shape[1] == 3:
+            held &= points[:, 1] < 0.125 - 1e-9
+        return points.shape[1] * int(held.sum())
+
+    def series(shape, order, counts):
+        scene, cells = ("3d", "{{{n}, 1, {n}}}") if shape in ("tetrahedron", "hexahedron") else ("2d", "{{{n}, {n}}}")
+        grids = [(f"n={n}", (f"Mesh.cells={cells.format(n=n)}",)) for n in counts]
+        return Series(f"{shape} {order}", grids, f"verification/free_sides_{scene}.xml", (f"Mesh.cell={shape}", f"Mesh.order={order}"),
+                      quick=3 if scene == "2d" else 2, dimension=2)
+    every = [series(shape, order, counts) for shape in ("triangle", "quadrilateral", "tetrahedron", "hexahedron")
+             for order, counts in ((1, (8, 16, 32, 64) if shape[-1] != "n" else (8, 16, 32)), (2, (8, 16, 32)))]
+    return Case("free_sides", "block with free sides and a compliant fracture", "", every, errors, prescribed,
+                ("quadrilateral 2", "n=32", "jump"), ("jump", "shear force"), None,
+                [Bound(one.name, one.meshes[-1][0], name, 1e-3) for one in every if one.name[-1] == "2" for name in ("shear force", "load")])
+
+
+CASES = (sneddon, sneddon_shear, inclined, penny, t_junction, wavy, free_sides, mms2d, mms3d)

@@ -1,0 +1,58 @@
+"""Displacement and body force of the manufactured solution as expressions of a scene, by symbolic differentiation. See
+exact.Manufactured, which states the construction and shares nothing with this."""
+import sympy as sp
+
+COORDINATES = sp.symbols("x y z", real=True)
+G = LAM = sp.Integer(1)
+FRICTION, STIFFNESS, GAP, CLOSURE, NORMAL = sp.Rational(1, 2), 2, sp.Rational(1, 50), sp.Rational(1, 10), 5
+DILATION = sp.tan(sp.Float("0.1", 30))
+
+
+def stress(u, x):
+    gradient = sp.Matrix(len(x), len(x), lambda i, j: sp.diff(u[i], x[j]))
+    return G * (gradient + gradient.T) + LAM * gradient.trace() * sp.eye(len(x))
+
+
+def sides(dimension, ratio, slip, uniform=False):
+    """[(displacement, body force) of side -, of side +] for lambda_t = mu N ratio m, u^p = slip m; N and m may be uniform."""
+    x, half, varies = COORDINATES[:dimension], sp.Rational(1, 2), 0 if uniform else 1
+    s, last, y = x[:-1], x[-1], x[1] if dimension == 3 else 0
+    h, angle = last - half, half + (x[0] - y / sp.Integer(2)) * varies
+    direction = [sp.cos(angle), sp.sin(angle)] if dimension == 3 else [1]
+    N = (3 + sp.sin(2 * x[0] + y) * varies) / sp.Integer(5)
+    shear = [FRICTION * N * ratio * m for m in direction]
+    tangential = [slip * m + t / STIFFNESS for m, t in zip(direction, shear)]
+    normal = GAP + DILATION * slip - CLOSURE * N / (CLOSURE * NORMAL + N)
+    smooth = [w / 10 for w in (sp.sin(2 * x[0] + last + y), sp.cos(x[0] - 2 * last + y), sp.sin(x[0] + y - last))][:dimension]
+    on = stress(smooth, x)[:, -1].subs(last, half)
+    c = [(t - on[i]) / G for i, t in enumerate(shear)] + [(-N - on[dimension - 1]) / (LAM + 2 * G)]
+    minus = [w + h * k for w, k in zip(smooth, c)]
+    slope = [-sp.diff(normal, k) for k in s] + [-LAM / (LAM + 2 * G) * sum(sp.diff(t, k) for t, k in zip(tangential, s))]
+    plus = [u + j + h * k for u, j, k in zip(minus, tangential + [normal], slope)]
+    found = []
+    for u in (minus, plus):
+        sigma = stress(u, x)
+        found.append((u, [-sum(sp.diff(sigma[i, k], x[k]) for k in range(dimension)) for i in range(dimension)]))
+    return found
+
+
+def text(expression):
+    return str(sp.N(expression, 17)).replace("**", "^").replace(" ", "")
+
+
+def expressions(dimension, regime):
+    """(displacement of side -, of side +, body force of side -, of side +), each a list of texts. Where the regime is mixed
+    both have a form for x < 1/2, which sticks, and one for x > 1/2, which slips."""
+    x = COORDINATES[0]
+    y = COORDINATES[1] if dimension == 3 else 0
+    if regime == "stick":
+        forms = [sides(dimension, sp.Rational(1, 2) + sp.cos(3 * x) / 4, sp.Integer(0))]
+    elif regime in ("slip", "uniform"):
+        forms = [sides(dimension, sp.Integer(1), (3 + sp.cos(2 * x + y)) / 10, regime == "uniform")]
+    else:
+        e = x - sp.Rational(1, 2)
+        forms = [sides(dimension, 1 - 8 * e**4, sp.Integer(0)), sides(dimension, sp.Integer(1), 6 * e**4)]
+    def joined(side, what, i):
+        texts = [text(form[side][what][i]) for form in forms]
+        return texts[0] if len(texts) == 1 else f"x<0.5 ? {texts[0]} : {texts[1]}"
+    return [[joined(side, what, i) for i in range(dimension)] for what in (0, 1) for side in (0, 1)]

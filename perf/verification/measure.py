@@ -1,0 +1,169 @@
+"""Runs a scene and measures its results against exact functions, from the files that the run wrote."""
+import json
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import vtkmodules.vtkCommonDataModel as vtk
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import read  # of apps/plot
+
+ROOT = Path(__file__).resolve().parents[2]
+TIME_LIMIT = 900  # seconds, of one run
+CELLS = {5: vtk.vtkTriangle, 9: vtk.vtkQuad, 10: vtk.vtkTetra, 12: vtk.vtkHexahedron, 22: vtk.vtkQuadraticTriangle,
+         28: vtk.vtkBiQuadraticQuad, 24: vtk.vtkQuadraticTetra, 29: vtk.vtkTriQuadraticHexahedron}
+SIMPLICES = {5: 2, 22: 2, 10: 3, 24: 3}
+GAUSS = 5  # points per direction
+
+
+class RunError(Exception):
+    """Why there are no results."""
+
+
+def cube_rule(dimension, points=GAUSS):
+    """Points [q, dimension] and weights [q] of [0, 1]^dimension."""
+    x, w = np.polynomial.legendre.leggauss(points)
+    grid = np.meshgrid(*[(x + 1) / 2] * dimension, indexing="ij")
+    weights = np.meshgrid(*[w / 2] * dimension, indexing="ij")
+    return np.stack([g.ravel() for g in grid], axis=1), np.prod([g.ravel() for g in weights], axis=0)
+
+
+def simplex_rule(dimension, points=GAUSS):
+    """The rule of the cube, collapsed to x1 + x2 (+ x3) <= 1."""
+    x, w = cube_rule(dimension, points)
+    placed, left = np.empty_like(x), np.ones(len(x))
+    for k in range(dimension):
+        placed[:, k] = x[:, k] * left
+        w = w * left
+        left = left - placed[:, k]
+    return placed, w
+
+
+@dataclass
+class Run:
+    results: dict
+    rock: object        # grid of VTK
+    faces: object       # read.Surface: points, polygons, cell_data
+    dimension: int
+
+    def corners(self):
+        """[face, corner, coordinates], without the nodes of order 2."""
+        sizes = {2: 2, 3: 2} if self.dimension == 2 else {3: 3, 6: 3, 4: 4, 9: 4}
+        polygons = [cell[:sizes[len(cell)]] for cell in self.faces.polygons]
+        return self.faces.points[np.array(polygons)][:, :, :self.dimension]
+
+    def on(self, name):
+        """Which faces belong to the fracture; they are numbered in the order of names."""
+        names = sorted(self.results["steps"][-1]["fractures"])
+        return self.faces.cell_data["fracture"] == names.index(name)
+
+    def data(self, name):
+        return self.faces.cell_data[name]
+
+    def unknowns(self, prescribed):
+        """Of the linear system: what is not eliminated face by face, without the prescribed displacements."""
+        eliminated = {block for group in self.results["blocks"].get("local_groups", []) for block in group["blocks"]}
+        kept = sum(f["unknowns"] for f in self.results["blocks"]["fields"] if f["name"] not in eliminated)
+        points, values = vtk_to_numpy(self.rock.GetPoints().GetData()), self.rock.GetPointData().GetArray("displacement")
+        if self.results["ranks"] > 1:  # a node that pieces share is in each of them; the two sides of a fracture differ
+            points = np.unique(np.hstack([points, vtk_to_numpy(values)]), axis=0)
+        return kept - prescribed(points[:, :self.dimension])
+
+    @property
+    def seconds(self):
+        """Assembly and solution: time steps and the solver's set-up, but for the evaluation of loads, here of long expressions."""
+        timing = {name: phase["seconds"] for name, phase in self.results["timing"].items()}
+        return timing["time_steps"] + timing["set-up_of_the_solver"] - timing["loads"]
+
+
+def start(binary, scene, sets, directory, ranks=1):
+    """Runs xml/SCENE with entries replaced; its last step."""
+    shutil.rmtree(directory, ignore_errors=True)
+    command = [str(binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
+    command += [word for entry in sets for word in ("--set", entry)]
+    if ranks > 1:
+        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
+    done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    if done.returncode != 0:
+        words = [line for line in (done.stdout + done.stderr).splitlines() if any(c.isalpha() for c in line)] or ["no word"]
+        raise RunError(f"status {done.returncode}: {words[-1]}")
+    results = json.loads((directory / "results.json").read_text())
+    rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
+    faces = read.segments(read.grid(read.written_steps(directory, "fractures")[-1][1]))
+    return Run(results, rock, faces, results["mesh"]["dimension"])
+
+
+def relative(error, reference, weights):
+    """|error|/|reference| in L2; values [..., components] at points with weights [...]."""
+    return float(np.sqrt((weights * (error**2).sum(-1)).sum() / (weights * (reference**2).sum(-1)).sum()))
+
+
+def displacement_error(run, exact):
+    """In L2 over the rock, of what bulk.vtu holds: the displacement without face bubbles and tip functions."""
+    kind, d = run.rock.GetCellType(0), run.dimension
+    cell = CELLS[kind]()
+    nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(run.rock.GetNumberOfCells(), -1)
+    points = vtk_to_numpy(run.rock.GetPoints().GetData())[:, :d]
+    values = vtk_to_numpy(run.rock.GetPointData().GetArray("displacement"))[:, :d]
+    rule, weights = simplex_rule(d) if kind in SIMPLICES else cube_rule(d)
+    n, error, size = nodes.shape[1], 0.0, 0.0
+    for x, w in zip(rule, weights):
+        shape, slopes = [0.0] * n, [0.0] * (n * d)
+        place = [*x, *[0.0] * (3 - d)]
+        cell.InterpolateFunctions(place, shape)
+        cell.InterpolateDerivs(place, slopes)
+        jacobian = np.einsum("ka,cai->cki", np.reshape(slopes, (d, n)), points[nodes])
+        volume = w * np.abs(np.linalg.det(jacobian))
+        known = exact.displacement(np.einsum("a,cai->ci", shape, points[nodes]))[:, :d]
+        away = np.einsum("a,cai->ci", shape, values[nodes]) - known
+        error, size = error + (volume * (away**2).sum(1)).sum(), size + (volume * (known**2).sum(1)).sum()
+    return float(np.sqrt(error / size))
+
+
+def face_points(corners, points=GAUSS):
+    """Quadrature points [face, q, d] and weights [face, q], which sum to the area, of segments, triangles and quadrilaterals."""
+    n, d = corners.shape[1:]
+    x, w = simplex_rule(2, points) if n == 3 else cube_rule(n // 2, points)
+    if n == 4:
+        shape = np.stack([(1 - x[:, 0]) * (1 - x[:, 1]), x[:, 0] * (1 - x[:, 1]), x[:, 0] * x[:, 1], (1 - x[:, 0]) * x[:, 1]], axis=1)
+    else:
+        shape = np.column_stack([1 - x.sum(axis=1), x])
+    placed = np.einsum("qa,fai->fqi", shape, corners)
+    if n == 2:
+        area = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    else:  # parallelograms and triangles
+        a, b = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
+        area = np.linalg.norm(np.cross(a, b), axis=1)
+    return placed, area[:, None] * w
+
+
+def area(corners):
+    return face_points(corners)[1].sum(axis=1)
+
+
+def face_means(function, corners, points=GAUSS):
+    x, w = face_points(corners, points)
+    values = function(x.reshape(-1, x.shape[2])).reshape(*x.shape[:2], -1)
+    return (w[:, :, None] * values).sum(axis=1) / w.sum(axis=1)[:, None]
+
+
+def jump_error(run, means):
+    """Of the face-mean jump, in L2 over all faces: `means` [face, d], exact, in global components."""
+    return relative(run.data("jump")[:, :run.dimension] - means, means, area(run.corners()))
+
+
+def traction_errors(run, exact, tangents, points=8):
+    """(in L2, at the centres of faces), normal and tangential components; `tangents` [d - 1, d] are the directions in which
+    exact.traction counts the latter."""
+    corners = run.corners()
+    local, world = run.data("traction local"), run.data("traction")[:, :run.dimension]
+    computed = np.column_stack([local[:, 0], world @ np.transpose(tangents)])
+    x, w = face_points(corners, points)
+    known = exact.traction(x.reshape(-1, x.shape[2])).reshape(*x.shape[:2], -1)
+    centre = exact.traction(corners.mean(axis=1))
+    return relative(computed[:, None, :] - known, known, w), relative(computed - centre, centre, w.sum(axis=1))

@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""Errors against exact solutions, unknowns and seconds: runs cases on several meshes each, prints a table and draws the errors.
+
+The last line of each case sums it up; README.md beside this file tells what is in the columns."""
+import argparse
+import csv
+import math
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "apps/plot")]
+
+import cases  # noqa: E402
+import measure  # noqa: E402
+import meshes  # noqa: E402
+import style  # noqa: E402
+
+SLACK = 0.15  # by which an observed order may fall short of its bound: meshes are not yet fine
+
+
+@dataclass
+class Row:
+    """One run."""
+    series: str
+    mesh: str
+    cells: int
+    unknowns: int
+    errors: dict
+    newton: int
+    krylov: int
+    seconds: float
+    orders: dict = field(default_factory=dict)  # from the mesh before, with h ~ cells^(-1/d)
+
+
+def run(options, case, series, label, source):
+    folder = options.output / case.name
+    entries = source(options.output / "meshes") if callable(source) else source
+    directory = folder / re.sub(r"[^\w.+-]+", "_", f"{series.name} {label}")
+    done = measure.start(options.binary, series.scene or case.scene, (*series.sets, *entries), directory, options.ranks)
+    steps = done.results["steps"]
+    errors = case.errors(done, series.exact or case.exact)
+    return Row(series.name, label, done.results["mesh"]["cells"], done.unknowns(series.prescribed or case.prescribed), errors,
+               sum(step["newton_iterations"] for step in steps), sum(step["linear_iterations"] for step in steps), done.seconds), done.dimension
+
+
+def add_orders(row, before, dimension):
+    finer = math.log(row.cells / before.cells) / dimension
+    row.orders = {name: math.log(before.errors[name] / error) / finer for name, error in row.errors.items() if error > 0}
+
+
+def header(names):
+    return f"{'series, mesh':34}{'cells':>8}{'unknowns':>10}" + "".join(f"{name:>13}{'order':>7}" for name in names) + f"{'Newton':>8}{'Krylov':>8}{'seconds':>9}"
+
+
+def line(row, names):
+    words = f"{row.series + ', ' + row.mesh:34}{row.cells:>8}{row.unknowns:>10}"
+    for name in names:
+        order = row.orders.get(name)
+        words += f"{row.errors[name]:>13.2e}{'' if order is None else format(order, '.2f'):>7}" if name in row.errors else f"{'':20}"
+    return words + f"{row.newton:>8}{row.krylov:>8}{row.seconds:>9.2f}"
+
+
+def missed(case, rows, quick):
+    """What is wrong, in words. Bounds on meshes that have not been run say nothing."""
+    wrong, judged = [], 0
+    for bound in case.bounds:
+        if isinstance(bound, cases.Bound):
+            of = [row for row in rows if (row.series, row.mesh) == (bound.series, bound.mesh)]
+            wrong += [f"{row.series}, {row.mesh}: {bound.error} {row.errors[bound.error]:.2e}, the bound is {bound.most:g}"
+                      for row in of if not row.errors[bound.error] <= bound.most]
+            wrong += [f"{row.series}, {row.mesh}: {row.unknowns} unknowns, the bound is {bound.unknowns:g}"
+                      for row in of if row.unknowns > bound.unknowns]
+        else:
+            last = {row.series: row for row in rows if bound.series in row.series and bound.error in row.orders}
+            of = [row for row in last.values()]
+            wrong += [f"{row.series}, {row.mesh}: order of {bound.error} {row.orders[bound.error]:.2f}, the bound is {bound.least:g}"
+                      for row in of if not row.orders[bound.error] >= bound.least - SLACK * (2 if quick else 1)]
+        judged += len(of)
+    return wrong, judged
+
+
+def last_line(case, rows):
+    """CASE order_u=.. order_traction=.. error=.. unknowns=..: of the mesh that `headline` names, or of the last run of its series."""
+    series, mesh, error = case.headline
+    of = [row for row in rows if row.series == series]
+    row = next((row for row in of if row.mesh == mesh), of[-1] if of else None)
+    if row is None:
+        return f"{case.name} order_u=- order_traction=- error=- unknowns=-"
+    orders = [format(row.orders[name], ".2f") if name in row.orders else "-" for name in case.orders]
+    return f"{case.name} order_u={orders[0]} order_traction={orders[1]} error={row.errors[error]:.2e} unknowns={row.unknowns}"
+
+
+def looks(series):
+    """How each series is drawn: coloured by its first word, dashed for order 1, with a mark for what stands between."""
+    parts = [name.split() for name in series]
+    first, middle = (list(dict.fromkeys(of)) for of in ([p[0] for p in parts], [" ".join(p[1:-1]) for p in parts]))
+    return {name: dict(color=style.LINES[first.index(p[0]) % len(style.LINES)], linestyle="--" if p[-1] == "1" else "-",
+                       marker="osD^vP"[middle.index(" ".join(p[1:-1])) % 6]) for name, p in zip(series, parts)}
+
+
+def draw(case, rows, file):
+    """The error of the last line against unknowns and against seconds, a line for each series."""
+    error, look = case.headline[2], looks(list(dict.fromkeys(row.series for row in rows)))
+    figure, both = style.plt.subplots(1, 2, figsize=(8.6, 3.6), sharey=True)
+    for axes, quantity in zip(both, ("unknowns", "seconds")):
+        for name, how in look.items():
+            of = [row for row in rows if row.series == name]
+            axes.loglog([getattr(row, quantity) for row in of], [row.errors[error] for row in of], label=name, markersize=4, **how)
+        for label, unknowns, errors in case.points if quantity == "unknowns" else []:
+            axes.loglog(unknowns, errors, "*:", color=style.FAINT, label=label, markersize=7)
+        axes.set_xlabel({"unknowns": "unknowns (-)", "seconds": "assembly and solution (s)"}[quantity])
+        axes.grid(True, which="minor", linewidth=0.3)
+    both[0].set_ylabel(f"relative error: {error} (-)")
+    both[1].legend(*both[0].get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5))
+    figure.suptitle(case.title)
+    figure.savefig(file, dpi=130)
+    style.plt.close(figure)
+
+
+def measured(options, case):
+    """The rows of a case, printed as they come, and what is wrong."""
+    rows, wrong = [], []
+    chosen = [(one, one.meshes[:one.quick] if options.quick else one.meshes) for one in case.series]
+    names = None
+    for series, grids in chosen:
+        before = None
+        for label, source in grids:
+            try:
+                row, dimension = run(options, case, series, label, source)
+            except measure.RunError as error:
+                wrong.append(f"{series.name}, {label}: {error}")
+                continue
+            if before:
+                add_orders(row, before, series.dimension or dimension)
+            if names is None:
+                names = list(row.errors)
+                print(header(names))
+            rows.append(row)
+            before = row
+            print(line(row, names), flush=True)
+    return rows, wrong
+
+
+def write(rows, file):
+    names = list(dict.fromkeys(name for row in rows for name in row.errors))
+    with open(file, "w", newline="") as opened:
+        writer = csv.writer(opened)
+        writer.writerow(["series", "mesh", "cells", "unknowns", *names, *[f"order of {name}" for name in names], "newton", "krylov", "seconds"])
+        writer.writerows([row.series, row.mesh, row.cells, row.unknowns, *[row.errors.get(n) for n in names],
+                          *[row.orders.get(n) for n in names], row.newton, row.krylov, row.seconds] for row in rows)
+
+
+def arguments(words):
+    names = [make.__name__ for make in cases.CASES]
+    parser = argparse.ArgumentParser(prog="sprekk perf verification", description=__doc__)
+    parser.add_argument("--only", metavar="CASE", action="append", choices=names, help=f"one of {', '.join(names)}; may be repeated")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
+    parser.add_argument("--ranks", type=int, default=1, metavar="N", help="run on N ranks")
+    parser.add_argument("--output", type=Path, default=Path("output/perf/verification"), metavar="DIR")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    return parser.parse_args(words)
+
+
+def main(words):
+    options = arguments(words)
+    options.output = options.output.resolve()
+    above, lines = [], []
+    for make in cases.CASES:
+        if options.only and make.__name__ not in options.only:
+            continue
+        case = make()
+        print(f"{case.name}: {case.title}")
+        try:
+            rows, wrong = measured(options, case)
+        except meshes.NoGmsh as reason:
+            print(f"skipped: {reason}\n")
+            continue
+        more, judged = missed(case, rows, options.quick)
+        wrong += more
+        if rows:
+            write(rows, options.output / f"{case.name}.csv")
+            draw(case, rows, options.output / f"{case.name}.png")
+        print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds looked at"]))
+        print(last_line(case, rows) + "\n", flush=True)
+        above += wrong
+    return 1 if above else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,94 @@
+// Where dilation makes more than one state possible, and that a scene is told so from there on.
+#include "model/uniqueness.hpp"
+#include "verification/scenes.hpp"
+
+#include <gmock/gmock.h>
+
+namespace sprekk::tests {
+namespace {
+
+/// A block of height 1, lambda = G = 1, with a joint of K_t = 0.5 and mu = 0.6, so K_s = 1/3 and k_n = 3: slip turns
+/// back in one way only where mu tan(theta)/K_s < 1/k_n, tan(theta) < 5/27.
+constexpr Real k_n = 3, k_s = 1, K_s = 1 / 3.0, mu = 0.6, limit = 5 / 27.0;
+
+laws::Joint joint_with(Real tangent) {
+  laws::Joint law;
+  law.elastic.compliance = 2;
+  law.friction.coefficient = mu;
+  law.gap.dilation.tangent = tangent;
+  return law;
+}
+
+/// The states of the block whose top is displaced by (d_n, d_t) after a slip by p_old >= 0: those of an open, a
+/// sticking and two sliding joints that satisfy the law.
+std::vector<laws::ContactState> states(const laws::Joint& law, Real d_n, Real d_t, Real p_old) {
+  using laws::ContactState;
+  const Real T = law.gap.dilation.tangent, old[] = {p_old};
+  std::vector<ContactState> found;
+  const auto keep = [&](ContactState state, Real N, Real shear) {
+    const Real w[] = {d_n + N / k_n, d_t - shear / k_s}, lambda[] = {-N, shear};
+    Real R[2];
+    const auto is = laws::contact_residual<2>(law, laws::augmentation(law, 1), w, lambda, old, R);
+    if (is == state && std::hypot(R[0], R[1]) < 1e-13) found.push_back(state);
+  };
+  keep(ContactState::open, 0, 0);
+  keep(ContactState::stick, k_n * (T * p_old - d_n), K_s * (d_t - p_old));
+  for (const int sense : {1, -1})
+    for (const int side : {1, -1}) {
+      const Real N = (T * side * d_t - d_n) / (1 / k_n + side * sense * mu * T / K_s);
+      keep(ContactState::slip, N, sense * mu * N);
+    }
+  return found;
+}
+
+TEST(Uniqueness, EndsWhereDilationIsTooStrong) {
+  const auto below = joint_with(0.999 * limit);
+  for (int i = -30; i <= 30; ++i)
+    for (int j = -30; j <= 30; ++j)
+      for (const Real p_old : {0.0, 0.4, 1.0})
+        EXPECT_EQ(states(below, 0.01 * i + 0.0021, 0.05 * j + 0.0007, p_old).size(), 1)
+            << i << ' ' << j << ' ' << p_old;
+  for (const Real factor : {1.001, 1.1, 2.0}) {
+    const Real T = factor * limit, d_t = 0.5;
+    const Real d_n = T * d_t + (factor - 1) * (1 - d_t) / 4 * K_s / (k_n * mu);
+    EXPECT_THAT(
+        states(joint_with(T), d_n, d_t, 1),
+        testing::UnorderedElementsAre(laws::ContactState::open, laws::ContactState::stick, laws::ContactState::slip));
+  }
+}
+
+TEST(Uniqueness, IsToldOfAScene) {
+  const auto doubt = [](int dim, Real tangent, const std::vector<std::string>& others = {}) {
+    auto overrides = others;
+    overrides.insert(overrides.begin(),
+                     {"Materials.joint.tangential stiffness=0.5", "Materials.joint.maximum closure=0",
+                      fmt::format("Materials.joint.dilation angle={:.17g}", std::atan(tangent) * 180 / M_PI)});
+    const model::Model model(read_scene(fmt::format("contact/block_{}d.xml", dim), overrides),
+                             Tpetra::getDefaultComm());
+    return model::dilation_doubt(model.scene(), model.mesh());
+  };
+  for (const int dim : {2, 3}) {
+    EXPECT_EQ(doubt(dim, 0.999 * limit), "");
+    EXPECT_THAT(doubt(dim, 1.001 * limit), testing::AllOf(testing::HasSubstr("slip of \"joint\" that turns back"),
+                                                          testing::HasSubstr("above 10.49 the")));
+  }
+  // closure of compliance 1/5 at most raises the limit to tan(theta) = (1/3 + 1/5)/1.8
+  const std::vector<std::string> closes = {"Materials.joint.maximum closure=0.1"};
+  EXPECT_EQ(doubt(2, 0.999 * (1 / 3.0 + 0.2) / 1.8, closes), "");
+  EXPECT_NE(doubt(2, 1.001 * (1 / 3.0 + 0.2) / 1.8, closes), "");
+}
+
+/// A step that fails names both; here it may take no iteration.
+TEST(Uniqueness, IsInTheReasonOfAFailedStep) {
+  model::Model model(
+      read_scene("contact/block_2d.xml", {"Materials.joint.dilation angle=60", "Materials.joint.friction coefficient=2",
+                                          "Solver.maximum iterations=1", "Time.maximum halvings=0"}),
+      Tpetra::getDefaultComm());
+  const auto report = model.step_to(1);
+  ASSERT_FALSE(report.converged);
+  EXPECT_THAT(report.reason, testing::AllOf(testing::HasSubstr("the friction coefficient of \"joint\" is 2"),
+                                            testing::HasSubstr("slip of \"joint\" that turns back")));
+}
+
+}  // namespace
+}  // namespace sprekk::tests
