@@ -264,20 +264,23 @@ struct ReferenceCell {
 };
 
 /// A rule for cells that are not is_straight(), most of them at crack tips: 6 points in each direction of a simplex, of
-/// the 2 triangles of a quadrilateral, of the 6 tetrahedra of a hexahedron (along its diagonal). In each it collapses
-/// towards the corners that quarter points are next to: where all edges of one corner (of two, in 3D) have theirs, see
+/// the 2 triangles of a quadrilateral, of a hexahedron. In triangles and tetrahedra it collapses towards the corners
+/// that quarter points are next to: where all edges of one corner (of two, in 3D) have theirs, see
 /// move_to_quarter_points(), integrands of the stiffness are smooth in the rule's coordinates though not in the cell's,
-/// and polynomials in a triangle.
+/// and polynomials in a triangle. A hexahedron keeps the product rule: its parts would need 8 points for the divergence
+/// theorem to hold, and linear displacements to be exact.
 template <Shape shape>
 class CurvedQuadrature {
  public:
   using Cell = ReferenceCell<shape>;
-  static constexpr int dim = Cell::dim, n_pieces = is_simplex(shape) ? 1 : dim == 2 ? 2 : 6;
-  using Rule = Quadrature<dim == 2 ? Shape::triangle : Shape::tetrahedron, 6>;
+  static constexpr int dim = Cell::dim, n_pieces = dim == 2 && !is_simplex(shape) ? 2 : 1;
+  static constexpr bool collapses = dim == 2 || is_simplex(shape);
+  using Rule = Quadrature<!collapses ? shape : dim == 2 ? Shape::triangle : Shape::tetrahedron, 6>;
   static constexpr int n = n_pieces * Rule::n;
 
   /// X: node coordinates [node][component].
   KOKKOS_INLINE_FUNCTION explicit CurvedQuadrature(const Real (&X)[Cell::n_nodes][dim]) {
+    if (!collapses) return;
     bool is_tip[Cell::n_corners] = {};
     for (int a = Cell::n_corners; a < Cell::n_nodes; ++a) {
       int ends[2], n_ends = 0;
@@ -298,8 +301,9 @@ class CurvedQuadrature {
 
   /// Sets xi to point q and returns its weight on the reference cell.
   KOKKOS_INLINE_FUNCTION Real at(int q, Real (&xi)[dim]) const {
+    if (!collapses) return Rule::at(q, xi);
     Real l[dim];
-    const Real weight = Rule::at(q % Rule::n, l) * (is_simplex(shape) ? 1 : dim == 2 ? 4 : 8);
+    const Real weight = Rule::at(q % Rule::n, l) * (is_simplex(shape) ? 1 : 4);
     const int* corner = corner_[q / Rule::n];
     for (int i = 0; i < dim; ++i) {
       xi[i] = Cell::corner(corner[dim], i);
@@ -309,19 +313,8 @@ class CurvedQuadrature {
   }
 
  private:
-  /// Corner k of a piece: from corner to corner of the cell along its axes, in all orders.
-  KOKKOS_INLINE_FUNCTION static int corner(int piece, int k) {
-    if (is_simplex(shape)) return k;
-    constexpr int axis[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-    int place[3] = {-1, -1, -1};
-    for (int step = 0; step < k; ++step) place[axis[piece][step]] = 1;
-    int c = 0;
-    for (bool found = false; !found; c += !found) {
-      found = true;
-      for (int i = 0; i < dim; ++i) found = found && Cell::corner(c, i) == place[i];
-    }
-    return c;
-  }
+  /// Corner k of a piece: of a quadrilateral 0, 1, 2 or 0, 3, 2.
+  KOKKOS_INLINE_FUNCTION static int corner(int piece, int k) { return piece == 1 && k == 1 ? 3 : k; }
 
   int corner_[n_pieces][dim + 1];  // of each piece, in the order of the rule: its apex first
 };
