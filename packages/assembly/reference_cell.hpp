@@ -173,11 +173,15 @@ struct ReferenceCell {
     return true;
   }
 
-  /// Corner `end` (0, 1) of the edge with node n_corners + e of a simplex.
-  KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
-    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
-    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-    return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
+  /// Component i of a corner of the reference cell.
+  KOKKOS_INLINE_FUNCTION static int corner(int a, int i) { return is_simplex(shape) ? a == i + 1 : node_place(a, i); }
+
+  /// The function of order 1 of corner c at node a, which is no corner.
+  KOKKOS_INLINE_FUNCTION static Real corner_share(int a, int c) {
+    if (is_simplex(shape)) return edge(a - n_corners, 0) == c || edge(a - n_corners, 1) == c ? 0.5 : 0;
+    Real share = 1;
+    for (int i = 0; i < dim; ++i) share *= (1 + node_place(a, i) * node_place(c, i)) / 2.0;
+    return share;
   }
 
  private:
@@ -191,12 +195,11 @@ struct ReferenceCell {
   /// d l_a / d xi_i
   KOKKOS_INLINE_FUNCTION static Real dl(int a, int i) { return a == 0 ? -1 : a == i + 1 ? 1 : 0; }
 
-  /// The function of order 1 of corner c at node a, which is no corner.
-  KOKKOS_INLINE_FUNCTION static Real corner_share(int a, int c) {
-    if (is_simplex(shape)) return edge(a - n_corners, 0) == c || edge(a - n_corners, 1) == c ? 0.5 : 0;
-    Real share = 1;
-    for (int i = 0; i < dim; ++i) share *= (1 + node_place(a, i) * node_place(c, i)) / 2.0;
-    return share;
+  /// Corner `end` (0, 1) of the edge of a simplex that node n_corners + e is on.
+  KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
+    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
+    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
   }
 
   /// Component i of a node of the square or cube: -1, 0 or 1.
@@ -260,55 +263,60 @@ struct ReferenceCell {
   }
 };
 
-/// A rule for cells that are not is_straight(), most of them at crack tips: 6 points in each direction. The rule of a
-/// simplex collapses towards the corners that its quarter points are next to: with all edges of one corner (of two, in
-/// a tetrahedron) at their quarters, and straight otherwise, integrands of the stiffness are polynomials of the rule's
-/// coordinates (divided by powers of one that does not vanish), see move_to_quarter_points().
+/// A rule for cells that are not is_straight(), most of them at crack tips: 6 points in each direction of a simplex, of
+/// the 2 triangles of a quadrilateral, of a hexahedron. In triangles and tetrahedra it collapses towards the corners
+/// that quarter points are next to: where all edges of one corner (of two, in 3D) have theirs, see
+/// move_to_quarter_points(), integrands of the stiffness are smooth in the rule's coordinates though not in the cell's,
+/// and polynomials in a triangle. A hexahedron keeps the product rule: its parts would need 8 points for the divergence
+/// theorem to hold, and linear displacements to be exact.
 template <Shape shape>
 class CurvedQuadrature {
  public:
   using Cell = ReferenceCell<shape>;
-  using Rule = Quadrature<shape, 6>;
-  static constexpr int dim = Cell::dim, n = Rule::n;
+  static constexpr int dim = Cell::dim, n_pieces = dim == 2 && !is_simplex(shape) ? 2 : 1;
+  static constexpr bool collapses = dim == 2 || is_simplex(shape);
+  using Rule = Quadrature<!collapses ? shape : dim == 2 ? Shape::triangle : Shape::tetrahedron, 6>;
+  static constexpr int n = n_pieces * Rule::n;
 
   /// X: node coordinates [node][component].
   KOKKOS_INLINE_FUNCTION explicit CurvedQuadrature(const Real (&X)[Cell::n_nodes][dim]) {
-    if constexpr (is_simplex(shape) && Cell::order == 2) {
-      bool is_tip[dim + 1] = {};
-      for (int e = 0; e < Cell::n_nodes - Cell::n_corners; ++e) {
-        Real square[2] = {};  // of the distances from the edge's ends
-        for (int end = 0; end < 2; ++end)
-          for (int i = 0; i < dim; ++i) {
-            const Real d = X[Cell::n_corners + e][i] - X[Cell::edge(e, end)][i];
-            square[end] += d * d;
-          }
-        for (int end = 0; end < 2; ++end)
-          if (square[end] < square[1 - end] / 4) is_tip[Cell::edge(e, end)] = true;
-      }
-      int next = 0;
-      for (int pass = 0; pass < 2; ++pass)
-        for (int a = 0; a <= dim; ++a)
-          if (is_tip[a] == (pass == 0)) place_[next++] = a;
+    if (!collapses) return;
+    bool is_tip[Cell::n_corners] = {};
+    for (int a = Cell::n_corners; a < Cell::n_nodes; ++a) {
+      int ends[2], n_ends = 0;
+      for (int c = 0; c < Cell::n_corners; ++c)
+        if (Cell::corner_share(a, c) == 0.5) ends[n_ends++] = c;
+      if (n_ends < 2) continue;  // a node inside of a face or of the cell
+      Real square[2] = {};       // of the distances from the ends
+      for (int end = 0; end < 2; ++end)
+        for (int i = 0; i < dim; ++i) square[end] += (X[a][i] - X[ends[end]][i]) * (X[a][i] - X[ends[end]][i]);
+      for (int end = 0; end < 2; ++end)
+        if (square[end] < square[1 - end] / 4) is_tip[ends[end]] = true;
     }
+    for (int piece = 0; piece < n_pieces; ++piece)
+      for (int pass = 0, next = 0; pass < 2; ++pass)
+        for (int k = 0; k <= dim; ++k)
+          if (is_tip[corner(piece, k)] == (pass == 0)) corner_[piece][next++] = corner(piece, k);
   }
 
   /// Sets xi to point q and returns its weight on the reference cell.
   KOKKOS_INLINE_FUNCTION Real at(int q, Real (&xi)[dim]) const {
-    const Real weight = Rule::at(q, xi);
-    if constexpr (is_simplex(shape)) {
-      Real l[dim + 1];  // of the corners: those of the rule, whose apex is its first, put in their places
-      l[place_[dim]] = 1;
-      for (int i = 0; i < dim; ++i) {
-        l[place_[i]] = xi[i];
-        l[place_[dim]] -= xi[i];
-      }
-      for (int i = 0; i < dim; ++i) xi[i] = l[i + 1];
+    if (!collapses) return Rule::at(q, xi);
+    Real l[dim];
+    const Real weight = Rule::at(q % Rule::n, l) * (is_simplex(shape) ? 1 : 4);
+    const int* corner = corner_[q / Rule::n];
+    for (int i = 0; i < dim; ++i) {
+      xi[i] = Cell::corner(corner[dim], i);
+      for (int k = 0; k < dim; ++k) xi[i] += l[k] * (Cell::corner(corner[k], i) - Cell::corner(corner[dim], i));
     }
     return weight;
   }
 
  private:
-  int place_[dim + 1] = {};
+  /// Corner k of a piece: of a quadrilateral 0, 1, 2 or 0, 3, 2.
+  KOKKOS_INLINE_FUNCTION static int corner(int piece, int k) { return piece == 1 && k == 1 ? 3 : k; }
+
+  int corner_[n_pieces][dim + 1];  // of each piece, in the order of the rule: its apex first
 };
 
 /// The geometry of one cell at one point: gradients in space and the volume that the point stands for.

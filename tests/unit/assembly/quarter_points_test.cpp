@@ -1,5 +1,6 @@
 #include "assembly/quarter_points.hpp"
 
+#include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "base/check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/cell_geometry.hpp"
+#include "mesh/distribute.hpp"
 #include "mesh/tips.hpp"
 
 namespace sprekk::assembly {
@@ -235,6 +237,27 @@ TEST(QuarterPoints, ThroughPeriodicSides) {
   EXPECT_GT(moved, 0);
 }
 
+/// By hand: with l of the corners and rho the sum of those that are no tips, 27 l1 l2 l3 has the mean 3/7 under the
+/// area 2 rho^2 (one tip) or 2 rho (1 + rho) (two).
+TEST(QuarterPoints, MeansOfBubblesOnTriangles) {
+  const auto parameters = box("tetrahedron", {4, 4, 2}, {{1, 2, 4, 2}});
+  const auto mesh = mesh::make_distributed(
+      [&] {
+        auto global = make_box(parameters);
+        move_to_quarter_points(global);
+        return global;
+      },
+      Tpetra::getDefaultComm());
+  for (LocalIndex f = 0; f < mesh->n_owned_fracture_faces; ++f) {
+    const auto& face = mesh->fracture_faces[f];
+    int n_tips = 0;
+    for (int k = 0; k < 3; ++k) n_tips += mesh->coordinates[face.nodes[0][k] * 3] == 1;
+    for (int side : {0, 1})
+      EXPECT_NEAR(bubble_mean<Shape::tetrahedron10>(*mesh, face.cell[side], face.local_face[side]),
+                  n_tips == 0 ? 0.45 : 3.0 / 7, 1e-14);
+  }
+}
+
 /// Mean over a simplex of 1 over the sum of the barycentric coordinates of the corners that are no tips.
 template <Shape shape>
 Real mean_of_inverse(const std::vector<int>& tips) {
@@ -244,7 +267,8 @@ Real mean_of_inverse(const std::vector<int>& tips) {
   Real X[n][dim] = {}, N[n], dN[n][dim], xi[dim];
   for (int i = 0; i < dim; ++i) X[i + 1][i] = 1;
   for (int e = 0; e < n - Cell::n_corners; ++e) {
-    const int a = Cell::edge(e, 0), b = Cell::edge(e, 1);
+    constexpr int ends[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    const auto [a, b] = ends[e];
     const Real share = tip(a) == tip(b) ? 0.5 : tip(a) ? 0.25 : 0.75;
     for (int i = 0; i < dim; ++i) X[Cell::n_corners + e][i] = X[a][i] + share * (X[b][i] - X[a][i]);
   }
@@ -274,6 +298,39 @@ TEST(CurvedRule, IsExactForTheSquareOfAFieldThatGrowsWithTheRoot) {
   for (int a = 0; a < 4; ++a) {
     EXPECT_NEAR(mean_of_inverse<Shape::tetrahedron10>({a}), 1.5, 1e-13) << a;
     for (int b = 0; b < a; ++b) EXPECT_NEAR(mean_of_inverse<Shape::tetrahedron10>({a, b}), 3, 1e-13) << a << b;
+  }
+}
+
+/// In a square with its tip at one corner, (s (s + t - s t), t (s + t - s t)) in s, t from there: the mean of 1/(x +
+/// y).
+TEST(CurvedRule, OfSquares) {
+  const Real corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  for (int tip = 0; tip < 4; ++tip) {
+    Real X[9][2], N[9], dN[9][2], xi[2];
+    for (int i = 0; i < 2; ++i) {
+      for (int a = 0; a < 4; ++a) X[a][i] = corners[(a + 4 - tip) % 4][i];
+      for (int a = 0; a < 4; ++a) {
+        const int b = (a + 1) % 4;
+        const Real share = a == tip ? 0.25 : b == tip ? 0.75 : 0.5;
+        X[4 + a][i] = X[a][i] + share * (X[b][i] - X[a][i]);
+      }
+      X[8][i] = 0;
+      for (int a = 0; a < 4; ++a) X[8][i] += X[4 + a][i] / 2 - X[a][i] / 4;
+    }
+    const CurvedQuadrature<Shape::quadrilateral9> rule(X);
+    Real sum = 0, area = 0;
+    for (int q = 0; q < rule.n; ++q) {
+      const Real weight = rule.at(q, xi);
+      ReferenceCell<Shape::quadrilateral9>::shape_functions(xi, N);
+      ReferenceCell<Shape::quadrilateral9>::gradients(xi, dN);
+      const CellPoint<Shape::quadrilateral9> point(X, dN);
+      Real x = 0;
+      for (int a = 0; a < 9; ++a) x += N[a] * (X[a][0] + X[a][1]);
+      sum += weight * point.volume / x;
+      area += weight * point.volume;
+    }
+    EXPECT_NEAR(area, 1, 1e-13);
+    EXPECT_NEAR(sum, 2 * std::log(2), 1e-5);  // the integral of 1/(x + y) over [0, 1]^2
   }
 }
 
