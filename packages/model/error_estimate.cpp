@@ -1,5 +1,6 @@
 #include "model/error_estimate.hpp"
 
+#include "mesh/extents.hpp"
 #include "physics/traction_recovery.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -19,8 +20,8 @@ const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, cons
   return std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; })->values;
 }
 
-/// part / whole; 0 for 0 / 0.
-Real share(Real part, Real whole) { return part == 0 ? 0 : part / whole; }
+/// part / whole; close to 0 where the whole is nothing but round-off of something as large as scale.
+Real share(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / std::max(whole, 1e-10 * scale); }
 
 }  // namespace
 
@@ -36,7 +37,10 @@ nlohmann::json ErrorEstimate::summary() const {
 ErrorEstimator::ErrorEstimator(Model& model)
     : model_(model),
       recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()),
-                                     model.system().layouts()[block("displacement")])) {}
+                                     model.system().layouts()[block("displacement")])) {
+  const auto extents = mesh::domain_extents(model.mesh());
+  section_ = std::pow(*std::max_element(extents.begin(), extents.end()), model.mesh().dim() - 1);
+}
 
 int ErrorEstimator::block(const std::string& name) const {
   const auto& blocks = model_.system().blocks();
@@ -47,9 +51,10 @@ int ErrorEstimator::block(const std::string& name) const {
 ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs) {
   const auto scope = model_.timers().scope("error estimate");
   auto error = (*recovery_)(*model_.state()[block("displacement")]);
+  const auto& scales = model_.system().scales();
   ErrorEstimate estimate;
   estimate.stress = error.error;
-  estimate.relative_stress = share(error.error, error.stress);
+  estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * scales.stress * scales.length));
   estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, std::move(error.density)});
   if (!model_.mesh().fracture_names.empty()) estimate_jump(error.forces, outputs, estimate);
   return estimate;
@@ -86,7 +91,7 @@ void ErrorEstimator::estimate_jump(RCP<fields::Vector> forces, const std::vector
     }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 2, here, all);
   estimate.jump = std::sqrt(all[0]);
-  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]));
+  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * system.scales().length);
   estimate.fields.push_back(std::move(error));
 }
 

@@ -41,6 +41,7 @@ class ErrorEstimator {
 
   Model& model_;
   std::unique_ptr<physics::StressRecovery> recovery_;
+  Real section_;  // of a body of the domain's largest extent, m^2 (2D: m)
 };
 
 }  // namespace sprekk::model

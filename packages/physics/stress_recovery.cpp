@@ -71,7 +71,7 @@ class Recovery final : public StressRecovery {
   using Cell = assembly::ReferenceCell<shape>;
   using Corners = assembly::ReferenceCell<mesh::linear(shape)>;
   using Samples = SamplePoints<shape>;
-  using Rule = assembly::Quadrature<shape, order + 2>;
+  using Rule = assembly::Quadrature<shape, order + 1>;
   using Tensor = Symmetric<dim>;
   using Values = typename Tensor::Values;
   using Terms = std::array<Real, n_terms>;

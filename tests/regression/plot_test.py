@@ -119,6 +119,17 @@ class Pictures(PlotTest):
             self.draw(self.folder / "out", *words, "--dpi", "60", "--output", self.folder / "pictures")
             self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png"])
 
+    def test_where_the_error_sits(self):
+        self.run_scene("verification/crossing_3d.xml", "Output.error estimate=true")
+        self.expect_labels(self.figures("out")["error"], "error density (J/m³)", "error of the jump (")
+        self.run_scene("verification/uniaxial_2d.xml", "Output.error estimate=true")
+        made = self.figures("out")["error"]
+        self.expect_labels(made, "error density (J/m³)", "x (m)", "y (m)")
+        self.run_scene("verification/free_sides_2d.xml", "Output.error estimate=true")
+        made = self.figures("out")["error"]
+        self.expect_labels(made, "error density (J/m³)", "error of the jump (")
+        self.assertIn("relative error estimated: stress 0.", made._suptitle.get_text())
+
     def test_loops_are_the_means_of_the_results(self):
         content = self.run_scene("verification/cyclic_2d.xml")
         last = content["steps"][-1]["fractures"]["fracture"]

@@ -66,6 +66,23 @@ class Results(ProgramTest):
             self.assertLessEqual(memory["peak_bytes_largest_rank"], memory["peak_bytes_all_ranks"])
             self.assertIn("direct", r["solver"]["choice"])
 
+    def test_error_estimate(self):
+        """Only where it is asked for; on any number of ranks the same, in the fields as in the numbers."""
+        self.assertNotIn("error_estimate", self.run_scene("verification/free_sides_2d.xml")["steps"][-1])
+        self.assertNotIn(b"error density", (self.folder / "out/bulk/bulk_0001_0.vtu").read_bytes())
+        relative = []
+        for ranks in (1, 2):
+            r = self.run_scene("verification/free_sides_2d.xml", "Output.error estimate=true", ranks=ranks)
+            self.assertEqual(r["timing"]["error_estimate"]["count"], 2)
+            stress, jump = (r["steps"][-1]["error_estimate"][name] for name in ("stress", "jump"))
+            relative.append([stress["relative"], jump["relative"]])
+            self.assertLess(0.02, stress["relative"])
+            self.assertLess(stress["relative"], 0.2)
+            densities = [x for k in range(ranks) for x in cell_data(self.folder / f"out/bulk/bulk_0001_{k}.vtu", "error density")]
+            self.assertAlmostEqual(sum(densities) / 64, stress["energy_norm"]**2, delta=1e-12)  # 64 cells of equal size
+        for one, two in zip(*relative):
+            self.assertAlmostEqual(one, two, delta=1e-10 * one)
+
     def expect_step(self, step):
         for key in ("newton_iterations", "linear_iterations", "cuts", "substeps"):
             self.assertIsInstance(step[key], int)

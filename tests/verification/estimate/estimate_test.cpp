@@ -1,0 +1,223 @@
+// What a run says of its own error, against the error: of stress and jump, where both are known.
+#include "assembly/geometry.hpp"
+#include "model/results.hpp"
+#include "verification/scenes.hpp"
+
+#include <Teuchos_DefaultMpiComm.hpp>
+
+namespace sprekk::tests {
+namespace {
+
+using Function = std::function<Vector3(const Vector3& x, bool above)>;
+
+model::ErrorEstimate estimate(model::Model& model) { return model::ErrorEstimator(model)(Outputs(model).all()); }
+
+Real sum(const Comm& comm, Real here) {
+  Real all = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+  return all;
+}
+
+/// s : C^-1 s of rock with the constants of `law`.
+template <int dim>
+Real energy(const laws::Elasticity& law, const Real (&s)[dim][dim]) {
+  Real trace = 0, square = 0;
+  for (int i = 0; i < dim; ++i) trace += s[i][i];
+  for (const auto& row : s)
+    for (const Real component : row) square += component * component;
+  return (square - law.lambda / (dim * law.lambda + 2 * law.G) * trace * trace) / (2 * law.G);
+}
+
+/// Norm of the error of the stress of a model's displacement, in the energy of one uniform rock. The exact one comes
+/// from central differences of the displacement u on either side of y (z) = middle. Collective.
+Real stress_error(model::Model& model, const Function& u, Real middle) {
+  const auto& mesh = model.mesh();
+  const Outputs out(model);
+  const auto& values = out["displacement"].values;
+  const auto law = model.scene().materials.at("rock").elasticity({});
+  Real square = 0;
+  mesh::for_shape(mesh.shape, [&](auto s) {
+    constexpr auto shape = s();
+    constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+    for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
+      Real X[n][dim], dN[n][dim], g[dim], sigma[dim][dim], centre = 0;
+      assembly::gather_host<shape>(mesh, c, X);
+      for (const auto& node : X) centre += node[dim - 1] / n;
+      assembly::for_each_cell_point<shape>(mesh, c, [&](const Real(&xi)[dim], Real volume, const Vector3& x) {
+        Real H[dim][dim] = {};
+        assembly::ReferenceCell<shape>::gradients(xi, dN);
+        const assembly::CellPoint<shape> point(X, dN);
+        for (int a = 0; a < n; ++a) {
+          point.gradient(dN[a], g);
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) H[i][j] += values[mesh.cells[c * n + a] * dim + i] * g[j];
+        }
+        for (int j = 0; j < dim; ++j) {
+          Vector3 ahead = x, behind = x;
+          ahead[j] += 1e-6;
+          behind[j] -= 1e-6;
+          const auto difference = tests::difference(u(ahead, centre > middle), u(behind, centre > middle));
+          for (int i = 0; i < dim; ++i) H[i][j] -= difference[i] / 2e-6;
+        }
+        law.stress(H, sigma);
+        square += volume * energy(law, sigma);
+      });
+    }
+  });
+  return std::sqrt(sum(*mesh.comm, square));
+}
+
+/// Norm of the error of the faces' mean jumps. Collective.
+Real jump_error(model::Model& model, const Function& u) {
+  const auto& mesh = model.mesh();
+  const Outputs out(model);
+  Real square = 0;
+  mesh::for_shape(mesh.shape, [&](auto s) {
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      Vector3 error = out.vector("jump", f);
+      assembly::for_each_face_point<s()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                         [&](const auto&, Real area, const Vector3& x) {
+                                           const auto jump = difference(u(x, true), u(x, false));
+                                           for (int i = 0; i < 3; ++i) error[i] -= area / face.area * jump[i];
+                                         });
+      square += face.area * dot(error, error);
+    }
+  });
+  return std::sqrt(sum(*mesh.comm, square));
+}
+
+/// The displacement that a manufactured scene prescribes on the boundaries of its regions "below" and "above".
+Function manufactured(const model::Scene& scene) {
+  const auto* sides = &scene.boundary_conditions;
+  return [sides](const Vector3& x, bool above) {
+    const auto& value = sides->at(above ? "above west" : "below west").displacement;
+    Vector3 u{};
+    for (std::size_t i = 0; i < value.size(); ++i) u[i] = value[i](x, 1);
+    return u;
+  };
+}
+
+void expect_between(Real ratio, Real least, Real most, const char* what) {
+  EXPECT_GE(ratio, least) << what;
+  EXPECT_LE(ratio, most) << what;
+  if (Tpetra::getDefaultComm()->getRank() == 0) fmt::print("  {} {:.2f}", what, ratio);
+}
+
+/// Smooth solutions: both errors to a factor of two, on meshes that are not the coarsest.
+TEST(ErrorEstimate, ManufacturedSolutions) {
+  for (const int dim : {2, 3})
+    for (const std::string regime : {"stick", "slip", "mixed"})
+      for (const auto& d : discretisations(dim)) {
+        const int n = dim == 2 ? 16 : d.order == 1 ? 8 : 4;
+        if (dim == 3 && regime != "mixed") continue;
+        SCOPED_TRACE(regime + " " + d.name());
+        const auto cells =
+            dim == 2 ? fmt::format("Mesh.cells={{{0}, {0}}}", n) : fmt::format("Mesh.cells={{{0}, {0}, {0}}}", n);
+        model::Model model(
+            read_scene(fmt::format("verification/manufactured_{}_{}d.xml", regime, dim), d.with({cells})),
+            Tpetra::getDefaultComm());
+        ASSERT_TRUE(model.step_to(1).converged);
+        const auto u = manufactured(model.scene());
+        const auto e = estimate(model);
+        expect_between(e.stress / stress_error(model, u, 0.5), 0.5, 2, "stress");
+        expect_between(e.jump / jump_error(model, u), 0.5, 2, "jump");
+        if (Tpetra::getDefaultComm()->getRank() == 0) fmt::print("  {} {}\n", regime, d.name());
+      }
+}
+
+/// Cracks whose tips decide the error. The jump is 2 (1 - nu) s/G sqrt(1 - x^2) along x (mode II) or y (mode I).
+TEST(ErrorEstimate, Cracks) {
+  for (const std::string name : {"sneddon", "sneddon_shear"})
+    for (const int order : {1, 2}) {
+      SCOPED_TRACE(fmt::format("{} of order {}", name, order));
+      model::Model model(read_scene("verification/" + name + ".xml", {fmt::format("Mesh file.order={}", order)}),
+                         Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged);
+      const int component = name == "sneddon" ? 1 : 0;
+      const Real factor = 2 * (1 - 0.25) * 1e-3;
+      const auto primitive = [](Real x) { return (x * std::sqrt(std::max(1 - x * x, 0.0)) + std::asin(x)) / 2; };
+      const auto& mesh = model.mesh();
+      const Outputs out(model);
+      Real square = 0;
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+        const auto& face = mesh.fracture_faces[f];
+        const Real a = std::max(face.centre[0] - face.area / 2, -1.0),
+                   b = std::min(face.centre[0] + face.area / 2, 1.0);
+        Vector3 error = out.vector("jump", f);
+        error[component] -= factor * (primitive(b) - primitive(a)) / face.area;
+        square += face.area * dot(error, error);
+      }
+      const auto e = estimate(model);
+      expect_between(e.jump / std::sqrt(sum(*mesh.comm, square)), 0.5, 2, "jump");
+      if (mesh.comm->getRank() == 0) fmt::print("  {} of order {}\n", name, order);
+      // the error is largest in cells at the tips
+      const auto& density = e.fields[0].values;
+      const Real largest = *std::max_element(density.begin(), density.end());
+      Real global = 0;
+      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &largest, &global);
+      for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
+        if (density[c] != global) continue;
+        Real nearest = 10;
+        for (int k = 0; k < mesh.nodes_per_cell(); ++k) {
+          const Real* x = &mesh.coordinates[mesh.cells[c * mesh.nodes_per_cell() + k] * 2];
+          nearest = std::min(nearest, std::hypot(std::abs(x[0]) - 1, x[1]));
+        }
+        EXPECT_LT(nearest, 1e-9);
+      }
+    }
+}
+
+/// Solutions that are in the discrete space.
+TEST(ErrorEstimate, NoneWhereThereIsNone) {
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      model::Model model(read_scene(fmt::format("verification/regimes_{}d.xml", dim), d.with()),
+                         Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(model.scene().time.times().front()).converged);
+      const auto e = estimate(model);
+      EXPECT_LT(e.relative_stress, 1e-9);
+      EXPECT_LT(e.relative_jump, 1e-9);
+    }
+}
+
+TEST(ErrorEstimate, SameOnAnyNumberOfRanks) {
+  const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      const auto scene = read_scene(fmt::format("verification/manufactured_mixed_{}d.xml", dim), d.with());
+      model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone);
+      ASSERT_TRUE(together.step_to(1).converged);
+      ASSERT_TRUE(single.step_to(1).converged);
+      const auto a = estimate(together), b = estimate(single);
+      EXPECT_NEAR(a.relative_stress, b.relative_stress, 1e-10 * b.relative_stress);
+      EXPECT_NEAR(a.relative_jump, b.relative_jump, 1e-10 * b.relative_jump);
+    }
+}
+
+/// Rock without fractures, rock that does not move, and rock at rest under its initial stress.
+TEST(ErrorEstimate, OfWhatHasNoJump) {
+  model::Model intact(read_scene("verification/uniaxial_2d.xml"), Tpetra::getDefaultComm());
+  ASSERT_TRUE(intact.step_to(intact.scene().time.times().front()).converged);
+  const auto summary = estimate(intact).summary();
+  EXPECT_FALSE(summary.contains("jump"));
+  EXPECT_LT(summary["stress"]["relative"].get<Real>(), 1e-9);
+
+  model::Model unmoved(read_scene("verification/free_sides_2d.xml", {"Boundary conditions.moved.displacement={0, 0}"}),
+                       Tpetra::getDefaultComm());
+  ASSERT_TRUE(unmoved.step_to(1).converged);  // without a linear solve
+  const auto none = estimate(unmoved).summary();
+  EXPECT_EQ(none["stress"]["relative"], 0);
+  EXPECT_EQ(none["jump"]["relative"], 0);
+
+  model::Model resting(read_scene("verification/lithostatic_2d.xml"), Tpetra::getDefaultComm());
+  ASSERT_TRUE(resting.step_to(resting.scene().time.times().front()).converged);
+  const auto rest = estimate(resting);
+  EXPECT_LT(rest.relative_stress, 1e-3);
+  EXPECT_LT(rest.relative_jump, 1e-3);
+}
+
+}  // namespace
+}  // namespace sprekk::tests
