@@ -86,7 +86,7 @@ class Context {
 /// component).
 struct State {
   Real t = 0, dt = 0;
-  Real damping = 0;  ///< see BlockProblem::damp()
+  ConstView<Real*> damping = {};  ///< [owned fracture face], see BlockProblem::damp(); empty: zero
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };

@@ -37,13 +37,13 @@ class System : public fields::BlockProblem {
   ConstView<char*> constrained(int block) const override { return constraints_[block].mask(); }
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
-  std::size_t state_hash(const fields::BlockVector& x) override;
+  std::size_t state_hash(const std::vector<char>& states) override;
   std::vector<char> states(const fields::BlockVector& x) override;  ///< [owned fracture face]
   std::string where(const std::vector<char>& flagged) override;
   RCP<const fields::Vector> proximal(int block) const override;
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
-  void damp(Real damping) override { damping_ = damping; }
+  void damp(Real everywhere, const std::vector<Real>& here) override;
 
   /// Zero displacement, zero traction. [block]
   fields::BlockVector initial() const;
@@ -116,8 +116,9 @@ class System : public fields::BlockProblem {
   fields::BlockMatrix matrix_;                      // df/dx; shares the blocks that only linear modules write
   Reference reference_;
   Scales scales_;
+  ConstView<Real*> damping_;  // [owned fracture face], empty: none
   RCP<base::Timers> timers_;
-  Real t_ = 0, dt_ = 0, damping_ = 0, face_area_ = 1;
+  Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;
 };
 

@@ -84,7 +84,7 @@ std::vector<Real> System::work(const LoosePieces::Motion& motion, const BlockVec
 /// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks.
 /// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
 std::string System::balance(const BlockVector& x, BlockVector& dx) {
-  if (!watches_pieces() || !loose_->any() || damping_ > 0) return "";
+  if (!watches_pieces() || !loose_->any() || damped_everywhere_ > 0) return "";
   auto& du = *dx[displacement_];
   const int n = loose_->n_groups();
   const auto motion = loose_->part_of(du);

@@ -55,6 +55,17 @@ State System::state(int module) const {
   return s;
 }
 
+void System::damp(Real everywhere, const std::vector<Real>& here) {
+  damped_everywhere_ = everywhere;
+  damping_ = {};
+  if (everywhere == 0 && here.empty()) return;
+  View<Real*> damping("damping", mesh_->n_owned_fracture_faces);
+  const auto host = Kokkos::create_mirror_view(damping);
+  for (std::size_t f = 0; f < host.extent(0); ++f) host(f) = std::max(everywhere, here.empty() ? 0 : here[f]);
+  Kokkos::deep_copy(damping, host);
+  damping_ = damping;
+}
+
 /// Evaluates the loads at time t and lets the scales grow with them.
 void System::update_scales(Real t) {
   Real here[2] = {0, 0}, all[2];
@@ -230,9 +241,8 @@ std::vector<char> System::states(const BlockVector& x) {
   return states;
 }
 
-std::size_t System::state_hash(const BlockVector& x) {
+std::size_t System::state_hash(const std::vector<char>& states) {
   std::size_t here = 0;
-  const auto states = this->states(x);
   for (std::size_t f = 0; f < states.size(); ++f) {
     std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(states[f]) + 1;
     for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)

@@ -78,13 +78,13 @@ class BlockProblem {
   virtual std::string balance(const BlockVector& x, BlockVector& dx) { return ""; }
   /// What nothing holds in the state of the last jacobian() or commit(), in words; empty if all is held. Stored data.
   virtual std::string loose() const { return ""; }
-  /// From now on jacobian() makes what is free to slide or part resist it, the more the larger this factor (1: about as
-  /// much as the rock around it does), so that steps are shorter; 0 is the derivative of f. Solutions do not depend on
-  /// it.
-  virtual void damp(Real damping) {}
-  /// A hash of the discrete state (which faces are open, stick, slip) of x, the same on every rank and for any
+  /// From now on jacobian() makes what is free to slide or part resist it, so that steps are shorter: by the larger of
+  /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
+  /// derivative of f. Solutions do not depend on it. Local.
+  virtual void damp(Real everywhere, const std::vector<Real>& here) {}
+  /// A hash of discrete states [as states()] (which faces are open, stick, slip), the same on every rank and for any
   /// partition.
-  virtual std::size_t state_hash(const BlockVector& x) = 0;
+  virtual std::size_t state_hash(const std::vector<char>& states) = 0;
   /// The discrete states of x on this rank, one of each owned entity that has one, in a fixed order.
   virtual std::vector<char> states(const BlockVector& x) { return {}; }
   /// Where the entities are that are flagged, in the order of states(), in words; empty if none is on any rank.

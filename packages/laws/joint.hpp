@@ -101,8 +101,10 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t           open,  y > 0
 ///                                                            R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Faces that just touch (y = 0) are closed and stick. p_old is the plastic jump at the end of the last step. Where p
-/// is zero to rounding its direction is noise; |p| then grows along z, as it does when sliding begins.
+/// Faces that just touch (y = 0) are closed and stick; so do those that a step finds on the limit, |z| = b to 1e-10,
+/// until they move, c_t |p - p_old| > 1e-10 b: else rounding would say which of them slip. p_old is the plastic jump at
+/// the end of the last step. Where p is zero to rounding its direction is noise; |p| then grows along z, as it does
+/// when sliding begins.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1],
@@ -127,7 +129,7 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
   }
   R[0] = -penetration;
   const T b = law.friction.bound(y);
-  if (size <= b) {
+  if (size <= b || (size <= (1 + 1e-10) * b && norm(step) <= 1e-10 * b)) {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -step[i];
     return ContactState::stick;
   }

@@ -32,7 +32,7 @@ namespace {
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
-/// | damping      | scalar                                                   | -    | see damp()                   |
+/// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 template <Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
@@ -53,7 +53,7 @@ struct JointFace {
   ConstView<Real**> rest;
   ConstView<laws::Augmentation*> augmentation;
   View<Real**> p_old;
-  Real damping = 0;
+  ConstView<Real*> damping = {};
 
   /// w = mean of R (u+ - u-) over the face.
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
@@ -98,14 +98,15 @@ struct JointFace {
 
   /// Lets faces that are free to slide or part resist it like a spring of damping times c_t, c_n, in derivatives alone.
   KOKKOS_INLINE_FUNCTION void damp(int f, ContactState state, Fad (&R)[dim]) const {
-    if (damping == 0 || state == ContactState::stick) return;
+    const Real factor = damping.extent(0) > 0 ? damping(f) : 0;
+    if (factor == 0 || state == ContactState::stick) return;
     const auto& joint = law(number(f));
     const auto add = [&](int k, Real stiffness, Real compliance) {
       R[k].fastAccessDx(k) -= stiffness;
       R[k].fastAccessDx(dim + k) += stiffness * compliance;
     };
-    for (int k = 1; k < dim; ++k) add(k, damping * augmentation(f).tangential, joint.elastic.compliance);
-    if (state == ContactState::open) add(0, damping * augmentation(f).normal, joint.gap.closure.initial_compliance());
+    for (int k = 1; k < dim; ++k) add(k, factor * augmentation(f).tangential, joint.elastic.compliance);
+    if (state == ContactState::open) add(0, factor * augmentation(f).normal, joint.gap.closure.initial_compliance());
   }
 
   /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.

@@ -12,7 +12,8 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real smallest_step = 1.0 / 64, least_damping = 0.1, most_damping = 10;
-constexpr std::size_t memory = 3;
+constexpr std::size_t memory = 3, patience = 5, trial_period = 10;
+constexpr Real swing_damping = 0.3;
 constexpr int most_unbalanced = 3;
 
 BlockVector blocks_of(const NOX::Abstract::Vector& v) {
@@ -40,7 +41,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   std::optional<Trial> found;
   if (solved) found = search(group, from, *dx);
   while (!found && damping_ < most_damping) {
-    problem_.damp(damping_ = std::max(10 * damping_, least_damping));
+    problem_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
     if (solved) found = search(group, from, *dx);
   }
@@ -50,7 +51,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     return false;
   }
   step = found->a;
-  if (step == 1 && damping_ > 0) problem_.damp(damping_ = damping_ > least_damping ? damping_ / 10 : 0);
+  if (step == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
   accept(solution_of(group), found->merit);
   return true;
 }
@@ -68,22 +69,35 @@ std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group,
 
 Real LineSearch::limit() const {
   if (merits_.empty()) return std::numeric_limits<Real>::infinity();
-  return monotone_ ? merits_.back() : *std::max_element(merits_.begin(), merits_.end());
+  if (monotone_) return merits_.back();
+  return *std::max_element(merits_.end() - std::min(memory, merits_.size()), merits_.end());
 }
 
 void LineSearch::accept(const BlockVector& x, Real merit) {
   merits_.push_back(merit);
-  if (merits_.size() > memory) merits_.pop_front();
-  const auto states = problem_.states(x);
+  compare(problem_.states(x), merit);
+  problem_.damp(damping_, swinging_);
+  if (merits_.size() < trial_period) return;
+  const auto recent = merits_.end() - patience;
+  report_.stagnant = *std::min_element(recent, merits_.end()) > 0.5 * *std::min_element(merits_.begin(), recent);
+}
+
+void LineSearch::compare(const std::vector<char>& states, Real merit) {
+  const int now = static_cast<int>(merits_.size()) - 1;
+  report_.n_accepted = now + 1;
   report_.last_change.resize(states.size(), 0);
-  for (std::size_t k = 0; k < states.size() && report_.n_accepted > 0; ++k)
-    if (states[k] != states_[k]) report_.last_change[k] = report_.n_accepted;
+  swinging_.assign(states.size(), 0);
+  for (std::size_t k = 0; k < states.size() && now > 0; ++k) {
+    if (states[k] == states_[k]) continue;
+    int& last = report_.last_change[k];
+    if (last > 0 && last >= now - 2) swinging_[k] = swing_damping;
+    last = now;
+  }
   states_ = states;
-  ++report_.n_accepted;
-  const auto state = problem_.state_hash(x);
-  const auto seen = visited_.find(state);
+  const auto pattern = problem_.state_hash(states);
+  const auto seen = visited_.find(pattern);
   if (seen != visited_.end() && merit >= seen->second) monotone_ = true;
-  visited_[state] = merit;
+  visited_[pattern] = merit;
 }
 
 }  // namespace sprekk::solve

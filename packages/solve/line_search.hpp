@@ -4,7 +4,6 @@
 #include <NOX_LineSearch_Generic.H>
 #include <NOX_LineSearch_UserDefinedFactory.H>
 
-#include <deque>
 #include <map>
 #include <optional>
 #include <vector>
@@ -16,6 +15,7 @@ namespace sprekk::solve {
 struct SearchReport {
   std::string failure;           ///< why there was no step
   std::string loose;             ///< what nothing held in one of the iterates, the last such
+  bool stagnant = false;         ///< none of the last five merits is below half the best before
   int n_accepted = 0;            ///< iterates but for the start
   std::vector<int> last_change;  ///< [as states()] number of the iterate in which a state was last another one
 };
@@ -23,7 +23,8 @@ struct SearchReport {
 /// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
 /// if none is, the step is taken anew with damping 0.1, 1, 10. Before that the step's share of motions that nothing
 /// resists is balanced. When a discrete state comes back and the merit is no better than then, iterates would go round
-/// in circles: from there on only the last merit counts.
+/// in circles: from there on only the last merit counts. Entities whose state changes, and did in one of the two
+/// iterates before, are damped, by 0.3, in the next step.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
@@ -42,6 +43,7 @@ class LineSearch : public NOX::LineSearch::Generic {
                               const NOX::Abstract::Vector& dx) const;
   Real limit() const;
   void accept(const BlockVector& x, Real merit);
+  void compare(const std::vector<char>& states, Real merit);
 
   BlockProblem& problem_;
   const ThyraModel& model_;
@@ -49,7 +51,8 @@ class LineSearch : public NOX::LineSearch::Generic {
   int n_unbalanced_ = 0;
   Real damping_ = 0;
   std::vector<char> states_;             // of the last iterate
-  std::deque<Real> merits_;              // of the last iterates, at most 3
+  std::vector<Real> swinging_;           // [as states()] damping of entities that go to and fro
+  std::vector<Real> merits_;             // of all iterates
   std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
   bool monotone_ = false;
 };

@@ -17,11 +17,11 @@ namespace {
 using NOX::StatusTest::StatusType;
 
 /// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is
-/// not finite, or out of iterations. Keeps the history and the reason.
+/// not finite, without progress, or out of iterations. Keeps the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, NewtonReport& report)
-      : problem_(problem), options_(options), report_(report) {}
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const SearchReport& search, NewtonReport& report)
+      : problem_(problem), options_(options), search_(search), report_(report) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = solver.getSolutionGroup();
@@ -43,6 +43,9 @@ class MeasureTest : public NOX::StatusTest::Generic {
     } else if (report_.iterations >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
+    } else if (search_.stagnant) {
+      fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
+                       worst->name, value, options_.tolerance));
     }
     return status_;
   }
@@ -62,6 +65,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
 
   BlockProblem& problem_;
   const NewtonOptions& options_;
+  const SearchReport& search_;
   NewtonReport& report_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
@@ -123,13 +127,13 @@ Newton::~Newton() = default;
 NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
   model_->clear_history();
-  problem_.damp(0);
+  problem_.damp(0, {});
   const auto start = model_->make_vector(x);
   // NOX holds references by RCP; the model outlives the solver here
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model));
-  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, report));
   SearchReport search;
+  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, search, report));
   const auto parameters = nox_parameters(options_, problem_, *model_, search);
   const auto solver = NOX::Solver::buildSolver(group, test, parameters);
   report.converged = solver->solve() == NOX::StatusTest::Converged;

@@ -92,6 +92,27 @@ TEST(JointLaw, TouchingUnloadedFaceSticks) {
     }
 }
 
+/// Beyond the limit by rounding a face that has not moved sticks; beyond it by more, or moved, it slips.
+TEST(JointLaw, OnTheLimitAtRestSticks) {
+  Joint law;
+  law.friction.coefficient = 0.6;
+  law.elastic.compliance = 0.5;
+  const auto state = [&](Real beyond, Real moved) {
+    const Real lambda[] = {-1, 0.36 * (1 + beyond), -0.48 * (1 + beyond)};
+    const Real w[] = {0, 0.5 * lambda[1] + 0.6 * moved, 0.5 * lambda[2] - 0.8 * moved}, old[] = {0, 0};
+    Real R[3];
+    const auto state = contact_residual<3>(law, augmentation(law, 2.0), w, lambda, old, R);
+    for (int i = 1; i < 3 && state == ContactState::stick; ++i) EXPECT_NEAR(R[i], 0, 1e-10);
+    return static_cast<int>(state);
+  };
+  const int stick = static_cast<int>(ContactState::stick), slip = static_cast<int>(ContactState::slip);
+  EXPECT_EQ(state(1e-13, 0), stick);
+  EXPECT_EQ(state(-1e-13, 0), stick);
+  EXPECT_EQ(state(1e-8, 0), slip);
+  EXPECT_EQ(state(1e-13, 1e-8), slip);
+  EXPECT_EQ(state(0, -1e-13), stick);
+}
+
 TEST(JointLaw, SolutionDoesNotDependOnTheAugmentation) {
   for (const auto& d : loads) {
     std::vector<Real> first;

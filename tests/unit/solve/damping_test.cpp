@@ -70,6 +70,34 @@ TEST(Damping, RescuesASingularMatrix) {
   EXPECT_NEAR(x[0]->normInf(), 0, 1e-12);
 }
 
+/// Full steps to -0.9 of where they start: the states change in each. With the damping of the third the derivative is
+/// that of f.
+TEST(Damping, OfStatesThatGoToAndFro) {
+  auto problem = linear(1 / 1.9, 1 / 1.9);
+  problem.resistance = (1 - 1 / 1.9) / 0.3;
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  EXPECT_FALSE(newton.solve(x).converged);
+  problem.state_of = [](Real x) { return x > 0; };
+  problem.damps.clear();
+  x = problem.constant(1);
+  const auto report = newton.solve(x);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(report.iterations, 4);
+  EXPECT_EQ(problem.damps, (std::vector<Real>{0, 0.3, 0}));
+}
+
+/// The merit falls by 0.998 in each step.
+TEST(Newton, EndsWithoutProgress) {
+  auto problem = linear(1 / 1.999, 1 / 1.999);
+  Newton newton(problem, {});
+  auto x = problem.constant(1);
+  const auto report = newton.solve(x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 10);
+  EXPECT_EQ(report.reason, "no progress in 10 iterations: 'r' is 9.90e-01, wanted is 1e-11");
+}
+
 TEST(Damping, SaysWhereNothingHelps) {
   auto problem = linear(2, -1e-3);
   Newton newton(problem, {});

@@ -146,13 +146,18 @@ class GridProblem : public BlockProblem {
     for (const auto& v : r) sum += std::pow(v->norm2(), 2);
     return sum;
   }
-  std::size_t state_hash(const BlockVector& x) override {
-    if (!o_.faces) return 0;
+  std::vector<char> states(const BlockVector& x) override {
+    std::vector<char> states;
+    if (!o_.faces) return states;
     const auto w = jump(*x[0]);
-    long long here = 0, all = 0;
     for (LocalIndex i = 0; i < LocalIndex(w->getLocalLength()); i += o_.d)
-      if (x[2]->getData()[i] + c * (w->getData()[i] + beta * x[1]->getData()[i]) > 0)
-        here += 1LL << (w->getMap()->getGlobalElement(i) / o_.d % 60);
+      states.push_back(x[2]->getData()[i] + c * (w->getData()[i] + beta * x[1]->getData()[i]) > 0);
+    return states;
+  }
+  std::size_t state_hash(const std::vector<char>& states) override {
+    long long here = 0, all = 0;
+    for (std::size_t k = 0; k < states.size(); ++k)
+      if (states[k]) here += 1LL << (blocks_[2].map->getGlobalElement(LocalIndex(k) * o_.d) / o_.d % 60);
     Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 1, &here, &all);
     return all;
   }
@@ -275,10 +280,19 @@ class ScalarProblem : public BlockProblem {
 
   std::vector<Real> committed_times;
   Real resistance = 0;      ///< what damping of 1 adds to the derivative
-  std::vector<Real> damps;  ///< all that were asked for
+  std::vector<Real> damps;  ///< all that were asked for, one after another; of several the largest
   std::string free_body;    ///< that nothing ever resists
+  std::function<char(Real)> state_of;
 
-  void damp(Real damping) override { damps.push_back(damping); }
+  void damp(Real everywhere, const std::vector<Real>& here) override {
+    const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
+    if (damps.empty() || damps.back() != damping) damps.push_back(damping);
+  }
+  std::vector<char> states(const BlockVector& x) override {
+    std::vector<char> states;
+    for (std::size_t i = 0; state_of && i < x[0]->getLocalLength(); ++i) states.push_back(state_of(x[0]->getData()[i]));
+    return states;
+  }
   std::string loose() const override { return free_body; }
   std::string balance(const BlockVector&, BlockVector&) override { return free_body; }
 
@@ -302,7 +316,12 @@ class ScalarProblem : public BlockProblem {
   ConstView<char*> constrained(int) const override { return {}; }
   std::vector<Measure> measures(const BlockVector&, const BlockVector& r) override { return {{"r", r[0]->normInf()}}; }
   Real merit(const BlockVector&, const BlockVector& r) override { return std::pow(r[0]->norm2(), 2); }
-  std::size_t state_hash(const BlockVector&) override { return 0; }
+  std::size_t state_hash(const std::vector<char>& states) override {
+    long long here = 0, all = 0;
+    for (char state : states) here += state;
+    Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 1, &here, &all);
+    return all;
+  }
   BlockVector constant(Real value) const {
     BlockVector x{rcp(new Vector(blocks_[0].map))};
     x[0]->putScalar(value);
