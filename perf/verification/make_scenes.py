@@ -30,7 +30,8 @@ def section(name, content, indent=""):
 
 def write(name, comment, content):
     content["Time"] = {"end": 1.0, "steps": 1}
-    (FOLDER / f"{name}.xml").write_text(f"<!-- {comment} Written by perf/verification/make_scenes.py. -->\n{section('Sprekk', content)}\n")
+    comment = f"<!-- {comment} Written by perf/verification/make_scenes.py. -->"
+    (FOLDER / f"{name}.xml").write_text(f"{comment}\n{section('Sprekk', content)}\n")
 
 
 def scene(mesh, rock, joint, fractures, conditions, bulk={}, fluid={}):
@@ -67,10 +68,12 @@ def crack_displacement(mode, factor, nu, x="x", y="y"):
 def cracks():
     rock = {"shear modulus": 1.0, "Poisson's ratio": 0.25}
     meshes.uniform_crack(FOLDER, 0.4).rename(FOLDER / "sneddon.msh")
-    write("sneddon", "A crack under the pressure 1e-3, open, in a box on whose boundary the displacement of the infinite plane is prescribed (Sneddon 1946).",
+    write("sneddon", "A crack under the pressure 1e-3, open, in a box on whose boundary the displacement of the infinite plane is "
+          "prescribed (Sneddon 1946).",
           scene(mesh_file("sneddon", "crack", normal=[0.0, 1.0]), rock, {"friction coefficient": 0.5}, ["crack"],
                 around(crack_displacement(1, 0.5e-3, 0.25)), fluid={"fluid pressure": 1e-3}))
-    write("sneddon_shear", "A crack under the initial normal stress -1e-3 and shear stress 1.5e-3 that slides with friction 0.5: the stress drop is 1e-3. The exact displacement is prescribed on the box.",
+    write("sneddon_shear", "A crack under the initial normal stress -1e-3 and shear stress 1.5e-3 that slides with "
+          "friction 0.5: the stress drop is 1e-3. The exact displacement is prescribed on the box.",
           scene(mesh_file("sneddon", "crack", normal=[0.0, 1.0]), rock, {"friction coefficient": 0.5}, ["crack"],
                 around(crack_displacement(2, 0.5e-3, 0.25)), {"initial stress": [0.0, -1e-3, 0.0, 1.5e-3]}))
     meshes.uniform_crack(FOLDER, 0.4, 20).rename(FOLDER / "inclined_crack.msh")
@@ -80,10 +83,12 @@ def cracks():
     drop = load * s * (c - math.tan(math.radians(30)) * s)
     u, v = crack_displacement(2, drop / (2 * G), nu, f"({c:.17g}*x+{s:.17g}*y)", f"({c:.17g}*y-{s:.17g}*x)")
     xx, yy = -load * (1 - nu) / (2 * G), load * nu / (2 * G)
-    write("inclined_crack", "A crack at 20 degrees to uniaxial compression of 100 MPa that slides with friction of 30 degrees (Phan et al. 2003). The exact displacement is prescribed on the box.",
+    write("inclined_crack", "A crack at 20 degrees to uniaxial compression of 100 MPa that slides with friction of "
+          "30 degrees (Phan et al. 2003). The exact displacement is prescribed on the box.",
           scene(mesh_file("inclined_crack", "crack", normal=[-s, c]), {"shear modulus": "10 GPa", "bulk modulus": "16.67 GPa"},
                 {"friction angle": 30.0}, ["crack"],
-                around([f"{c:.17g}*{u}-{s:.17g}*{v}+{xx:.17g}*x", f"{s:.17g}*{u}+{c:.17g}*{v}+{yy:.17g}*y"])))
+                around([f"{c:.17g}*{u}-{s:.17g}*{v}+{xx:.17g}*x",
+                        f"{s:.17g}*{u}+{c:.17g}*{v}+{yy:.17g}*y"])))
 
 
 def penny():
@@ -96,7 +101,8 @@ def penny():
     axial = f"{factor:.17g}*(z<0 ? -1 : 1)*({2 * (1 - nu):g}*({root}-abs(z)*{angle})+abs(z)*({angle}-{out}/{product}))"
     displacement = [text.replace("(r", f"({r}") for text in (f"x*{radial}", f"y*{radial}", axial)]
     meshes.penny(FOLDER, 1, 0.25, 0.5).rename(FOLDER / "penny.msh")
-    write("penny", "A crack in the form of a disc under the pressure 1e-3, open, in a box on whose boundary the displacement of the infinite body is prescribed (Sneddon 1946).",
+    write("penny", "A crack in the form of a disc under the pressure 1e-3, open, in a box on whose boundary the "
+          "displacement of the infinite body is prescribed (Sneddon 1946).",
           scene(mesh_file("penny", "crack", normal=[0.0, 0.0, 1.0]), {"shear modulus": 1.0, "Poisson's ratio": nu},
                 {"friction coefficient": 0.5}, ["crack"], around(displacement), fluid={"fluid pressure": 1e-3}))
 
@@ -118,15 +124,16 @@ def t_junction():
                     {"far": {"boundary": "boundary", "displacement": [0.0, 0.0]}}, {"initial stress": [0.0, -100e6, 0.0, 0.0]})
     content["Mesh file"]["fractures"]["horizontal"]["reference normal"] = [0.0, 1.0]
     content["Fractures"]["vertical"]["fluid pressure"] = 100e6
-    write("t_junction", "A fracture under a fluid pressure of 100 MPa ends on one that slides, in rock under 100 MPa (Phan et al. 2003). The box is so large that its boundary does not matter.", content)
+    write("t_junction", "A fracture under a fluid pressure of 100 MPa ends on one that slides, in rock under 100 MPa "
+          "(Phan et al. 2003). The box is so large that its boundary does not matter.", content)
 
 
 def manufactured_solutions():
     joint = {"tangential stiffness": 2.0, "friction coefficient": 0.5, "dilation angle": "0.1 rad", "initial gap": 0.02,
              "maximum closure": 0.1, "normal stiffness": 5.0}
     for d in (2, 3):
-        last, sides, faces = "xyz"[d - 1], {"below": ("south", "bottom")[d - 2], "above": ("north", "top")[d - 2]}, ["west", "east"] + ["south", "north"] * (d - 2)
-        low, high = [0.0] * d, [1.0] * d
+        last, low, high = "xyz"[d - 1], [0.0] * d, [1.0] * d
+        sides, faces = {"below": ("south", "bottom")[d - 2], "above": ("north", "top")[d - 2]}, ["west", "east", "south", "north"][:2 * d - 2]
         mesh = {"Mesh": {"cell": ("triangle", "tetrahedron")[d - 2], "lower corner": low, "upper corner": high, "cells": [4] * d,
                          "regions": {"below": {"lower corner": low, "upper corner": [1.0] * (d - 1) + [0.5]},
                                      "above": {"lower corner": [0.0] * (d - 1) + [0.5], "upper corner": high}},

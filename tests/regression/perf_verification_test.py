@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""The measurement perf/verification: perf_verification_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+
+Its exact solutions obey the equations, its scenes prescribe them, and what it calls an error is one."""
+import subprocess
+import sys
+from pathlib import Path
+
+import program
+from program import ROOT, ProgramTest, main
+
+if ROOT:
+    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/verification")]
+try:
+    import numpy as np
+    import cases
+    import exact
+    import measure
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+STEP = 1e-4
+REGIMES = ("stick", "slip", "mixed", "uniform")
+
+
+def stress(known, points, lam, G, h=STEP):
+    """[point, i, j] of a displacement, by central differences."""
+    d = points.shape[1]
+    gradient = np.stack([(known.displacement(points + h * e)[:, :d] - known.displacement(points - h * e)[:, :d]) / (2 * h)
+                         for e in np.eye(d)], axis=2)
+    return G * (gradient + gradient.transpose(0, 2, 1)) + lam * np.trace(gradient, axis1=1, axis2=2)[:, None, None] * np.eye(d)
+
+
+def force(known, points, lam, G, h=1e-3):
+    """-div of the stress."""
+    return -sum((stress(known, points + h * e, lam, G) - stress(known, points - h * e, lam, G))[:, :, k] / (2 * h)
+                for k, e in enumerate(np.eye(points.shape[1])))
+
+
+class Exact(ProgramTest):
+    def test_cracks_are_in_equilibrium_and_jump_as_stated(self):
+        random = np.random.default_rng(1)
+        for known, d in ((exact.Crack(1, 0.7, 1.3, 0.25), 2), (exact.Crack(2, 0.7, 1.3, 0.25, 20, (-1, 0, 0)), 2),
+                         (exact.Penny(0.7, 1.3, 0.25), 3)):
+            points = random.uniform(1.2, 2, (20, d)) * random.choice([-1, 1], (20, d))
+            lam = exact.lame(1.3, 0.25)
+            self.assertLess(np.abs(force(known, points, lam, 1.3)).max(), 2e-5)
+        for mode in (1, 2):
+            known = exact.Crack(mode, 0.7, 1.3, 0.25, 20)
+            ends = np.array([[-0.4, 0.9], [0.3, 1.0], [-1.0, 1.0]])
+            along = ends[:, 0, None] + (np.arange(4000) + 0.5) / 4000 * (ends[:, 1] - ends[:, 0])[:, None]
+            on = along[:, :, None] * known.tangent
+            jumps = [(known.displacement(x + 1e-12 * known.normal) - known.displacement(x - 1e-12 * known.normal)).mean(axis=0) for x in on]
+            self.assertTrue(np.allclose(jumps, known.jump_mean(ends[:, :, None] * known.tangent), rtol=1e-4, atol=1e-6))
+        known = exact.Penny(0.7, 1.3, 0.25)
+        flat = np.array([[0.3, 0.2, 0.0], [0.1, -0.8, 0.0]])
+        up = np.array([0, 0, 1e-12])
+        self.assertTrue(np.allclose(known.displacement(flat + up) - known.displacement(flat - up), known.jump(flat), atol=1e-10))
+
+    def test_manufactured_tractions_are_those_of_the_stress(self):
+        for d in (2, 3):
+            for regime in REGIMES:
+                known = exact.Manufactured(d, regime)
+                on = np.random.default_rng(2).uniform(0.1, 0.9, (20, d))
+                on[:, -1] = 0.5
+                for side in (-1, 1):
+                    normal = stress(known, on + side * 2 * STEP * np.eye(d)[-1], 1, 1)[:, :, -1]
+                    computed = known.traction(on)
+                    self.assertLess(np.abs(normal[:, -1] - computed[:, 0]).max(), 2e-3)
+                    self.assertLess(np.abs(normal[:, :-1] - computed[:, 1:]).max(), 2e-3)
+
+    def test_wavy_pressure_carries_the_load(self):
+        known = exact.Wavy(0.4, 1, 0.25)
+        zero, half = np.array([0.0]), np.array([0.5])
+        self.assertAlmostEqual(known.pressure_mean(zero, half)[0], 0.4 * known.full, places=12)
+        inside = known.opening_mean(np.array([0.1]), np.array([0.1001]))[0]
+        self.assertAlmostEqual(inside, -0.01 * (1 - np.cos(2 * np.pi * 0.10005)), places=7)
+
+
+class Scenes(ProgramTest):
+    def run_case(self, make, name):
+        """The first run of a case on the mesh of its scene, with the exact solution."""
+        case = make()
+        series = next(s for s in case.series if not s.scene or name in s.scene)
+        return measure.start(program.PROGRAM, f"verification/{name}.xml", (), self.folder / name), case, series
+
+    def test_boundary_values_are_exact(self):
+        for make, name in ((cases.sneddon, "sneddon"), (cases.sneddon_shear, "sneddon_shear"), (cases.inclined, "inclined_crack"),
+                           (cases.penny, "penny"), *((cases.mms2d, f"manufactured_{r}_2d") for r in REGIMES),
+                           *((cases.mms3d, f"manufactured_{r}_3d") for r in REGIMES)):
+            run, case, series = self.run_case(make, name)
+            known, d = series.exact or case.exact, run.dimension
+            points = measure.vtk_to_numpy(run.rock.GetPoints().GetData())[:, :d]
+            values = measure.vtk_to_numpy(run.rock.GetPointData().GetArray("displacement"))[:, :d]
+            at = np.array([case.prescribed(p[None, :]) > 0 for p in points])
+            if name.startswith("manufactured"):
+                at &= np.abs(points[:, -1] - 0.5) > 1e-9  # there both sides have a node
+            away = np.abs(values[at] - known.displacement(points[at])[:, :d]).max()
+            self.assertGreater(at.sum(), 4)
+            self.assertLess(away, 2e-8 * np.abs(values).max(), name)
+
+    def test_errors_are_those_of_known_mistakes(self):
+        run, case, series = self.run_case(cases.mms2d, "manufactured_stick_2d")
+        known = series.exact
+
+        class Nodal:
+            """The computed field plus a tenth of it: the error relative to 1.1 of it is 1/11."""
+            def displacement(self, points):
+                return 1.1 * np.stack([points[:, 0] - 2 * points[:, 1], 3 * points[:, 1]], axis=1)
+        points = measure.vtk_to_numpy(run.rock.GetPoints().GetData())
+        values = measure.vtk_to_numpy(run.rock.GetPointData().GetArray("displacement"))
+        values[:, :2] = Nodal().displacement(points) / 1.1
+        self.assertAlmostEqual(measure.displacement_error(run, Nodal()), 1 / 11, places=12)
+        corners = run.corners()
+        means = measure.face_means(known.jump, corners)
+        run.faces.cell_data["jump"][:, :2] = 0.9 * means
+        self.assertAlmostEqual(measure.jump_error(run, means), 0.1, places=12)
+        run.faces.cell_data["traction local"][:, 0] = 1.2 * known.traction(corners.mean(axis=1))[:, 0]
+        run.faces.cell_data["traction"][:, 0] = 1.2 * known.traction(corners.mean(axis=1))[:, 1]
+        self.assertAlmostEqual(measure.traction_errors(run, known, [[1, 0]])[1], 0.2, places=12)
+
+    def test_rules_integrate(self):
+        for d in (1, 2, 3):
+            x, w = measure.simplex_rule(d)
+            self.assertAlmostEqual(w.sum(), 1 / np.prod(np.arange(1, d + 1)), places=14)
+            exponents = np.arange(1, d + 1)  # of x^1 y^2 z^3: a! b! c!/(a + b + c + d)!
+            factorial = lambda n: float(np.prod(np.arange(1, n + 1)))
+            value = np.prod([factorial(k) for k in exponents]) / factorial(exponents.sum() + d)
+            self.assertAlmostEqual((w * np.prod(x**exponents, axis=1)).sum(), value, places=15)
+        squares = np.array([[[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]]])
+        self.assertAlmostEqual(measure.area(squares)[0], 6)
+        self.assertTrue(np.allclose(measure.face_means(lambda p: p[:, :1] * p[:, 1:2], squares), 1.5))
+
+    def test_scenes_are_those_that_the_script_writes(self):
+        try:
+            import make_scenes
+        except ImportError as error:
+            self.skipTest(str(error))
+        make_scenes.FOLDER = self.folder
+        make_scenes.manufactured_solutions()
+        for file in self.folder.glob("*.xml"):
+            self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)
+
+
+class Table(ProgramTest):
+    def test_lines_and_files(self):
+        done = subprocess.run([sys.executable, "-B", ROOT / "perf/verification/verification.py", "--binary", program.PROGRAM,
+                               "--output", self.folder / "out", "--quick", "--only", "mms2d"], capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        number = r"-?\d\.\d+"
+        self.assertRegex(done.stdout.splitlines()[-2], rf"^mms2d order_u={number} order_traction={number} error=\S+e-\d+ unknowns=\d+$")
+        rows = (self.folder / "out/mms2d.csv").read_text().splitlines()
+        self.assertGreater(len(rows), 6)
+        self.assertTrue((self.folder / "out/mms2d.png").is_file())
+
+    def test_a_missed_bound_is_told(self):
+        import verification
+        case = cases.mms2d()
+        row = verification.Row("mixed triangle 2", "n=32", 1, 8064, {"u": 2e-4}, 1, 1, 0.0, {"u": 1.2})
+        wrong, judged = verification.missed(case, [row], False)
+        self.assertEqual((len(wrong), judged), (2, 2), wrong)
+
+
+if __name__ == "__main__":
+    main()
