@@ -151,7 +151,7 @@ class Distributor {
 
   /// Numbers the nodes that are no tips but in a cell with one.
   void number_enriched() {
-    if (global_.tip.empty()) return;
+    if (global_.tip.empty() || order(global_.shape) == 2) return;
     enriched_.assign(global_.n_nodes(), -1);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell) {
       bool has_tip = false;
@@ -164,11 +164,12 @@ class Distributor {
   }
 
   void fill_enriched() {
+    if (global_.tip.empty()) return;
+    for (GlobalIndex id : nodes_.ids) mesh_.tip.push_back(global_.tip[id]);
     if (enriched_.empty()) return;
     mesh_.n_global_enriched = n_enriched_;
     for (std::size_t i = 0; i < nodes_.ids.size(); ++i) {
       const GlobalIndex id = nodes_.ids[i];
-      mesh_.tip.push_back(global_.tip[id]);
       const bool is_new = enriched_[id] >= 0;  // of tied nodes only the free one is numbered, and comes before
       mesh_.enriched.push_back(is_new                         ? static_cast<LocalIndex>(mesh_.enriched_id.size())
                                : id >= global_.n_free_nodes() ? mesh_.enriched[nodes_.local_of[global_.free_node(id)]]

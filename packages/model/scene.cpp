@@ -271,7 +271,7 @@ mesh::GlobalMesh Scene::make_mesh() const {
   if (mesh::order(result.shape) == 1)
     mesh::mark_tips(result);
   else
-    assembly::move_to_quarter_points(result);
+    assembly::move_to_quarter_points(result), result.tip = mesh::tip_nodes(result);
   return result;
 }
 

@@ -152,7 +152,7 @@ NewtonReport Newton::solve(BlockVector& x) {
 
 LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (linear_->n_setups() == 0) {
-    problem_.damp(0);
+    problem_.damp(0, {});
     problem_.jacobian(x);
     linear_->update();
   }
