@@ -124,6 +124,29 @@ LoosePieces::Motion LoosePieces::selected(const Motion& motion, const std::funct
   return any ? part : Motion{};
 }
 
+int LoosePieces::most_modes() const {
+  std::size_t most = 0;
+  for (const auto& group : groups_) most = std::max(most, group.modes.size());
+  return static_cast<int>(most);
+}
+
+LoosePieces::Motion LoosePieces::mode(int k) const {
+  const auto modes = rigid_modes(dim());
+  Motion motion;
+  motion.q.assign(loose_.size(), {});
+  for (const auto& group : groups_) {
+    motion.largest.push_back(0);
+    if (k >= static_cast<int>(group.modes.size())) continue;
+    const auto& mode = group.modes[k];
+    for (std::size_t c = 0; c < mode.size(); ++c) {
+      auto& q = motion.q[group.first + c / modes.size()];
+      q[modes[c % modes.size()]] = mode[c];
+      motion.largest.back() = std::max(motion.largest.back(), size(q));
+    }
+  }
+  return motion;
+}
+
 LoosePieces::Motion LoosePieces::first() const {
   const auto modes = rigid_modes(dim());
   Motion motion;

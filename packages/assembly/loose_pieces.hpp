@@ -61,6 +61,9 @@ class LoosePieces {
 
   /// The motion of some groups alone; empty if there is none. Stored data.
   Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
+  /// The largest number of independent motions of a group, and the k-th of each group that has as many. Stored data.
+  int most_modes() const;
+  Motion mode(int k) const;
   /// One of the free motions, a translation if there is one. Stored data.
   Motion first() const;
   /// "a piece of rock around (0, 1) (12 cells) and 2 more can move along (1, 0)" for the piece that moves most. Stored

@@ -92,6 +92,10 @@ class System : public fields::BlockProblem {
   bool watches_pieces() const { return loose_ && loose_->possible(); }
   std::vector<Grip> grips();
   void find_loose();
+  /// Adds to dx what of a motion brings the forces along it into balance; with `mode`, of its opposite too. Empty, or
+  /// the part that finds no resistance: it goes a little way then, as a mode none.
+  std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
+                            bool mode);
   std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
 
   RCP<const mesh::Mesh> mesh_;

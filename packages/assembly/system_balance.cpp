@@ -33,6 +33,8 @@ void System::find_loose() {
 
 namespace {
 
+constexpr int n_sweeps = 2;
+
 /// The zero of a function that does not fall, below zero at 0: bracketed by steps that grow fourfold, then by false
 /// position (Illinois), to a tenth of the value at 0.
 class Search {
@@ -82,42 +84,50 @@ std::vector<Real> System::work(const LoosePieces::Motion& motion, const BlockVec
 
 /// A piece that nothing holds goes as far as the full step says, 1e4 times too far. So its motion is taken out of the
 /// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks.
-/// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
+/// After that the forces that are left along the free motions are balanced, one motion after the other.
 std::string System::balance(const BlockVector& x, BlockVector& dx) {
   if (!watches_pieces() || !loose_->any() || damped_everywhere_ > 0) return "";
+  const auto motion = loose_->part_of(*dx[displacement_]);
+  loose_->add(std::vector<Real>(loose_->n_groups(), -1), motion, *dx[displacement_]);
+  const auto unresisted = balance_along(motion, x, dx, false);
+  for (int sweep = 0; sweep < n_sweeps && unresisted.empty(); ++sweep)
+    for (int k = 0; k < loose_->most_modes(); ++k) balance_along(loose_->mode(k), x, dx, true);
+  return unresisted;
+}
+
+/// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
+std::string System::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx, bool mode) {
   auto& du = *dx[displacement_];
   const int n = loose_->n_groups();
-  const auto motion = loose_->part_of(du);
-  loose_->add(std::vector<Real>(n, -1), motion, du);
   auto y = fields::create_like(x);
   const auto at = [&](const std::vector<Real>& s) {
     for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
     loose_->add(s, motion, *y[displacement_]);
     return work(motion, y);
   };
-  std::vector<Real> s(n, 0);
+  std::vector<Real> s(n, 0), sign(n, 1);
   const auto start = at(s);
   std::vector<Search> searches;
   const Real reach = 4 * reference_.length + 1e3 * scales_.length;
   for (int g = 0; g < n; ++g) {
-    const bool round_off = !(motion.largest[g] > 1e-8 * scales_.length);
-    searches.emplace_back(round_off ? 0 : start[g], 0.1 * scales_.length / motion.largest[g],
-                          reach / motion.largest[g]);
+    const Real largest = motion.largest[g];
+    if (mode && start[g] > 0) sign[g] = -1;
+    const bool round_off = mode ? !(std::abs(start[g]) > 1e-10 * scales_.stress * face_area_ * largest)
+                                : !(largest > 1e-8 * scales_.length);
+    searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * scales_.length / largest, reach / largest);
   }
   const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };
-  driven_ = loose_->selected(motion, [&](int g) { return !searches[g].done(); });
+  if (!mode) driven_ = loose_->selected(motion, [&](int g) { return !searches[g].done(); });
   while (!all_done()) {
-    for (int g = 0; g < n; ++g) s[g] = searches[g].s;
+    for (int g = 0; g < n; ++g) s[g] = sign[g] * searches[g].s;
     const auto value = at(s);
-    for (int g = 0; g < n; ++g) searches[g].next(value[g]);
+    for (int g = 0; g < n; ++g) searches[g].next(sign[g] * value[g]);
   }
-  bool lost = false;
-  for (int g = 0; g < n; ++g) {
-    s[g] = searches[g].lost() ? scales_.length / motion.largest[g] : searches[g].s;
-    lost = lost || searches[g].lost();
-  }
+  for (int g = 0; g < n; ++g)
+    s[g] = !searches[g].lost() ? sign[g] * searches[g].s : mode ? 0 : scales_.length / motion.largest[g];
   loose_->add(s, motion, du);
-  return lost ? loose_->describe(loose_->selected(motion, [&](int g) { return searches[g].lost(); })) : "";
+  const auto lost = loose_->selected(motion, [&](int g) { return searches[g].lost(); });
+  return lost.q.empty() ? "" : loose_->describe(lost);
 }
 
 }  // namespace sprekk::assembly

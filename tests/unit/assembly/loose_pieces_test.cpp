@@ -328,6 +328,29 @@ TEST(LoosePieces, PartsAddUp) {
     }
 }
 
+/// Each mode is a free motion, all of it, and there are as many as there should be, each another one.
+TEST(LoosePieces, ModesAreFreeMotions) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south"});
+    column.find(open, open);  // two groups, of one piece each
+    const int n = dim_of(cell) == 2 ? 3 : 6;
+    ASSERT_EQ(column.pieces.most_modes(), n);
+    for (int k = 0; k < n; ++k) {
+      const auto mode = column.pieces.mode(k);
+      ASSERT_EQ(mode.largest.size(), 2u);
+      fields::Vector u(column.layout.owned());
+      column.pieces.add({1, 3}, mode, u);
+      const auto part = column.pieces.part_of(u);
+      for (std::size_t piece = 0; piece < 2; ++piece) {
+        EXPECT_GT(mode.largest[piece], 0.1);
+        for (int c = 0; c < 6; ++c) EXPECT_NEAR(part.q[piece][c], (piece == 0 ? 1 : 3) * mode.q[piece][c], 1e-9);
+      }
+      for (int l = 0; l < k; ++l) EXPECT_NE(column.pieces.mode(l).q, mode.q);
+    }
+    EXPECT_EQ(largest(column.pieces.mode(n)), 0);
+  }
+}
+
 TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
   for (const auto& cell : all_cells)
     for (bool periodic : {false, true}) {
