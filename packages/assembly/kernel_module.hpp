@@ -37,8 +37,10 @@ class KernelModule final : public Module {
     d.unknowns = description_.unknowns;
     d.linear = description_.linear;
     for (const char* row : Op::fields) d.couplings.push_back({Op::loop, row, {Op::fields.begin(), Op::fields.end()}});
-    for (const auto& [field, value, row, modes, group] : d.unknowns)
+    for (const auto& unknown : d.unknowns) {
+      const auto& field = unknown.field;
       d.outputs.push_back({field.name, field.unit, field.entity, field.n_components});
+    }
     return d;
   }
 

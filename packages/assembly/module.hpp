@@ -28,8 +28,8 @@ struct Unknown {
   fields::Field field;
   Quantity value, row;            ///< what the unknown and its equation are measured in
   bool rigid_body_modes = false;  ///< the near-null space that multigrid is told of
-  std::string enriches = "";      ///< the field that a field on enriched nodes adds to: zero where that is prescribed
   std::string local_group = "";   ///< fields with one group name are eliminated together, entity by entity; "" stays
+  std::string enriches = "";      ///< the field that a field on enriched nodes adds to: zero where that is prescribed
 };
 
 /// Rows that the module adds to in a loop, and the fields that those rows then depend on.

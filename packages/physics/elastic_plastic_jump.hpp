@@ -26,7 +26,7 @@ struct ElasticPlasticJumpParameters {
   /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
   Real augmentation = 0.3;
   FluidPressure fluid_pressure = {};
-  Real start = 0;  ///< time of the initial state, s
+  Real start = 0;     ///< time of the initial state, s
   bool tips = false;  ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
 };
 

@@ -131,8 +131,8 @@ TEST(ErrorEstimate, Cracks) {
   for (const std::string name : {"sneddon", "sneddon_shear"})
     for (const auto& [order, tips] : {std::pair{1, "plain"}, {1, "enriched"}, {2, "plain"}, {2, "enriched"}}) {
       SCOPED_TRACE(fmt::format("{} of order {}, {} tips", name, order, tips));
-      model::Model model(read_scene("verification/" + name + ".xml", {fmt::format("Mesh file.order={}", order),
-                                                                      fmt::format("Mesh file.tips={}", tips)}),
+      model::Model model(read_scene("verification/" + name + ".xml",
+                                    {fmt::format("Mesh file.order={}", order), fmt::format("Mesh file.tips={}", tips)}),
                          Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
       const int component = name == "sneddon" ? 1 : 0;
