@@ -3,7 +3,10 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/tip_rule.hpp"
+#include "base/check.hpp"
 #include "mesh/facets.hpp"
+
+#include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +20,9 @@ namespace sprekk::assembly {
 /// which is continuous, zero at all nodes and where rho = 1, and lets displacements grow with the root of the distance
 /// from the tip; on a triangle N and psi span what a quarter-point triangle has along its edges at the tip.
 ///
-/// Integrals of the gradients over a cell are those of psi n over its faces to round-off: a constant is added to each
-/// gradient for what the rule misses where cells are no simplices. So uniform stress is in equilibrium.
+/// Integrals over a cell of grad psi, and of grad (x psi), are those of psi n and x psi n over its faces to round-off:
+/// a function linear in x is added to each gradient for what the rule misses where cells are no simplices. So stress
+/// that is uniform, or linear and balanced by body forces, is in equilibrium.
 template <Shape shape>
 class TipCell {
  public:
@@ -51,12 +55,14 @@ class TipCell {
       for (int i = 0; i < dim; ++i) grad_rho[i] += v.grad_N[a][i];
     }
     const Real root = std::sqrt(rho);
+    Real offset[dim + 1];
+    offsets(place(v.N), offset);
     for (int a = 0; a < n; ++a) {
       v.psi[a] = tips_[a] ? 0 : v.N[a] * (1 / root - 1);
-      for (int i = 0; i < dim; ++i)
-        v.grad_psi[a][i] =
-            tips_[a] ? 0
-                     : v.grad_N[a][i] * (1 / root - 1) - v.N[a] * grad_rho[i] / (2 * rho * root) + correction_[a][i];
+      for (int i = 0; i < dim; ++i) {
+        v.grad_psi[a][i] = tips_[a] ? 0 : v.grad_N[a][i] * (1 / root - 1) - v.N[a] * grad_rho[i] / (2 * rho * root);
+        for (int m = 0; m <= dim; ++m) v.grad_psi[a][i] += correction_[a][i][m] * offset[m];
+      }
     }
     return point.volume;
   }
@@ -89,10 +95,7 @@ class TipCell {
     for (const auto& point : tip_rule(shape, tips_, n_points)) {
       std::copy_n(point.xi.begin(), dim, xi);
       const Real volume = point.weight * at(xi, v);
-      std::array<Real, 3> x{};
-      for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i) x[i] += v.N[a] * X_[a][i];
-      visit(xi, volume, x, v);
+      visit(xi, volume, place(v.N), v);
     }
   }
 
@@ -158,24 +161,49 @@ class TipCell {
     return sum / n;
   }
 
-  void balance() {
-    Real missing[n][dim] = {}, total = 0;
-    for (int f = 0; f < mesh::n_faces(shape); ++f)
-      for_each_face_point(f, [&](const auto&, const auto& psi, const auto& area, const auto&) {
-        for (int k = 0; k < n_face; ++k)
-          for (int i = 0; i < dim; ++i) missing[mesh::face_nodes(shape)[f][k]][i] += psi[k] * area[i];
-      });
-    for_each_point([&](const auto&, Real volume, const auto&, const Values& v) {
-      total += volume;
-      for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i) missing[a][i] -= volume * v.grad_psi[a][i];
-    });
+  std::array<Real, 3> place(const Real (&N)[n]) const {
+    std::array<Real, 3> x{};
     for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i) correction_[a][i] = missing[a][i] / total;
+      for (int i = 0; i < dim; ++i) x[i] += N[a] * X_[a][i];
+    return x;
+  }
+
+  /// 1, and the distance from the centre over the size of the cell.
+  void offsets(const std::array<Real, 3>& x, Real (&offset)[dim + 1]) const {
+    offset[0] = 1;
+    for (int i = 0; i < dim; ++i) offset[1 + i] = (x[i] - centre(i)) / size_;
+  }
+
+  void balance() {
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) size_ = std::max(size_, std::abs(X_[a][i] - X_[0][i]));
+    Real missing[n * dim][dim + 1] = {}, moments[(dim + 1) * (dim + 1)] = {}, offset[dim + 1];
+    for (int f = 0; f < mesh::n_faces(shape); ++f)
+      for_each_face_point(f, [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+        offsets(x, offset);
+        for (int k = 0; k < n_face; ++k)
+          for (int i = 0; i < dim; ++i)
+            for (int m = 0; m <= dim; ++m)
+              missing[mesh::face_nodes(shape)[f][k] * dim + i][m] += psi[k] * area[i] * offset[m];
+      });
+    for_each_point([&](const auto&, Real volume, const auto& x, const Values& v) {
+      offsets(x, offset);
+      for (int m = 0; m <= dim; ++m)
+        for (int l = 0; l <= dim; ++l) moments[m * (dim + 1) + l] += volume * offset[m] * offset[l];
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i)
+          for (int m = 0; m <= dim; ++m)
+            missing[a * dim + i][m] -= volume * (offset[m] * v.grad_psi[a][i] + (m == 1 + i ? v.psi[a] / size_ : 0));
+    });
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().POSV('L', dim + 1, n * dim, moments, dim + 1, &missing[0][0], dim + 1, &info);
+    SPREKK_CHECK(info == 0, "a cell at a crack tip has no volume");
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) std::copy_n(missing[a * dim + i], dim + 1, correction_[a][i]);
   }
 
   std::vector<char> tips_;  // [node]
-  Real X_[n][dim], correction_[n][dim] = {};
+  Real X_[n][dim], correction_[n][dim][dim + 1] = {}, size_ = 0;
 };
 
 }  // namespace sprekk::assembly

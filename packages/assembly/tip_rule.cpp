@@ -92,26 +92,24 @@ int neighbour(const std::vector<Point>& corners, int a, int axis) {
   return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
 }
 
-/// The tip with the most tips next to it: all simplices of the cut have it as a corner.
-int centre_of(const std::vector<Point>& corners, const std::vector<char>& tips, int dim) {
-  int best = -1, most = -1;
+/// The tips with the most tips next to them: all simplices of a cut have one as a corner.
+std::vector<int> centres_of(const std::vector<Point>& corners, const std::vector<char>& tips, int dim) {
+  std::vector<int> best;
+  int most = -1;
   for (int a = 0; a < static_cast<int>(corners.size()); ++a) {
     if (!tips[a]) continue;
     int n = 0;
     for (int axis = 0; axis < dim; ++axis) n += tips[neighbour(corners, a, axis)];
-    if (n > most) {
-      most = n;
-      best = a;
-    }
+    if (n > most) best.clear();
+    if (n >= most) best.push_back(a);
+    most = std::max(n, most);
   }
   return best;
 }
 
 /// The simplices around a corner of a square or cube: one for each order of the axes along which edges lead from it to
-/// the opposite corner. A square with tips at opposite corners is cut along the other diagonal.
-std::vector<std::vector<int>> cut(const std::vector<Point>& corners, const std::vector<char>& tips, int dim) {
-  int centre = centre_of(corners, tips, dim);
-  if (dim == 2 && tips[(centre + 2) % 4]) centre = (centre + 1) % 4;
+/// the opposite corner.
+std::vector<std::vector<int>> cut(const std::vector<Point>& corners, int centre, int dim) {
   std::vector<std::vector<int>> simplices;
   std::vector<int> axes(dim);
   for (int i = 0; i < dim; ++i) axes[i] = i;
@@ -151,7 +149,11 @@ std::vector<RulePoint> tip_rule(Shape shape, const std::vector<char>& tips, int 
     append(corners, tips, all, 1, n, rule);
   } else {
     const Real volume = dim == 2 ? 4 : 8;  // the factorial times the share of one simplex
-    for (const auto& simplex : cut(corners, tips, dim)) append(corners, tips, simplex, volume, n, rule);
+    auto centres = centres_of(corners, tips, dim);
+    if (dim == 2 && tips[(centres.front() + 2) % 4]) centres = {(centres.front() + 1) % 4};  // along the other diagonal
+    for (int centre : centres)  // the mean of all cuts, so that mirrored cells have mirrored rules
+      for (const auto& simplex : cut(corners, centre, dim))
+        append(corners, tips, simplex, volume / static_cast<Real>(centres.size()), n, rule);
   }
   return rule;
 }

@@ -16,8 +16,9 @@ struct RulePoint {
 
 /// A rule for a reference cell of order 1, or for a reference edge [0, 1] where `shape` is absent, whose functions are
 /// smooth in s = sqrt(rho), rho the sum of the node functions of all corners but the tips. The cell is cut into
-/// simplices around a tip; in each, rho = s^2 is the coordinate from its tips to its other corners, and Gauss points
-/// with n in each direction do the rest. Exact for polynomials of degree < 2 n in s and in directions across.
+/// simplices around a tip (the mean is taken where several tips will do); in each, rho = s^2 is the coordinate from its
+/// tips to its other corners, and Gauss points with n in each direction do the rest. Exact for polynomials of degree <
+/// 2 n in s and in directions across.
 ///   tips: [corner] 1 for a tip; at least one is and one is not.
 std::vector<RulePoint> tip_rule(mesh::Shape shape, const std::vector<char>& tips, int n);
 std::vector<RulePoint> tip_rule_of_edge(const std::vector<char>& tips, int n);

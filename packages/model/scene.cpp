@@ -268,10 +268,12 @@ void Scene::describe(base::Section& s) {
 mesh::GlobalMesh Scene::make_mesh() const {
   auto result = read_mesh();
   if ((mesh_file ? mesh_file->tips : mesh.tips) == "plain") return result;
-  if (mesh::order(result.shape) == 1)
+  if (mesh::order(result.shape) == 1) {
     mesh::mark_tips(result);
-  else
-    assembly::move_to_quarter_points(result), result.tip = mesh::tip_nodes(result);
+  } else {
+    assembly::move_to_quarter_points(result);
+    result.tip = mesh::tip_nodes(result);
+  }
   return result;
 }
 

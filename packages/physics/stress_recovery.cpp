@@ -344,7 +344,7 @@ class Recovery final : public StressRecovery {
   }
 
   /// Per patch, with coordinates scaled by its size.
-  static constexpr Real regularisation = order == 1 ? 1 : 0.1;
+  static constexpr Real regularisation = order == 1 ? 1 : 0.06;
 
   RCP<const mesh::Mesh> mesh_;
   const fields::Layout& displacement_;

@@ -69,7 +69,7 @@ TEST(Restart, OnOtherNumbersOfRanksEveryValueAgrees) {
     run(after, output(before, after), {}, true);
     if (world->getRank() != 0) continue;
     const auto whole = last_checkpoint(output(1, 1), 1), parts = last_checkpoint(output(before, after), after);
-    ASSERT_EQ(whole.size(), 5);
+    ASSERT_EQ(whole.size(), 6);
     ASSERT_EQ(parts.size(), whole.size());
     for (const auto& [name, values] : whole) {
       SCOPED_TRACE(name);

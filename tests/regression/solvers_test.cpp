@@ -45,7 +45,7 @@ TEST(LinearSolvers, GiveTheSameAnswer) {
 /// alone needs (18 on one rank), where multigrid on all unknowns, or on the displacement beside those functions, needs
 /// 27 to 34.
 TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
-  const std::vector<std::string> iterative = {"Solver.Linear solver.type=iterative", "Mesh.cells={9, 9, 9}"};
+  const std::vector<std::string> iterative = {"Solver.Linear solver.type=iterative", "Mesh.cells={6, 6, 6}"};
   for (const std::string entry : {"Mesh.order=2", "Mesh.tips=enriched"}) {
     SCOPED_TRACE(entry);
     auto overrides = iterative;

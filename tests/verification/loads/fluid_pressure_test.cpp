@@ -88,9 +88,10 @@ TEST(FluidPressure, InAllFracturesIsALoadOnTheBoundary) {
 
 /// The integrals of w and of w x over a crack from -1 to 1 in the middle of a box, under the pressure p (1 + x/2), with
 /// n cells on the crack.
-std::array<Real, 2> moments(const std::string& cell, int size, int n, Real p) {
+std::array<Real, 2> moments(const std::string& cell, const std::string& tips, int size, int n, Real p) {
   const Real middle = size / 2.0;
   auto scene = box_of_rock({cell, 2}, std::vector<Real>(2, size), {size * n / 2, size * n / 2}, "1e10");
+  scene.mesh.tips = tips;
   scene.mesh.fractures["crack"].lower_corner = {middle - 1, middle};
   scene.mesh.fractures["crack"].upper_corner = {middle + 1, middle};
   scene.materials["joint"].type = "joint";
@@ -115,19 +116,24 @@ std::array<Real, 2> moments(const std::string& cell, int size, int n, Real p) {
   return all;
 }
 
-/// In infinite rock, nu = 0, the crack opens by w = 4 p/E (1 + x/4) sqrt(1 - x^2) (Sneddon 1946). Its tips make errors
-/// of first order, a box holds it back with the inverse square of its size: extrapolation takes out both. What
-/// is left is of second order in the cells, (1/8)^2.
+/// In infinite rock, nu = 0, the crack opens by w = 4 p/E (1 + x/4) sqrt(1 - x^2) (Sneddon 1946). Plain tips make
+/// errors of first order, a box holds it back with the inverse square of its size: extrapolation takes out both. What
+/// is left is of second order in the cells, (1/8)^2; with enriched tips 1/40 is met without the first extrapolation, which plain ones miss
+/// by far.
 TEST(FluidPressure, OpensACrack) {
   const Real E = 1e10, p = 1e6, exact[] = {2 * M_PI * p / E, M_PI / 8 * p / E};
   for (const auto& cell : cells_of(2)) {
     SCOPED_TRACE(cell);
-    std::array<Real, 2> in_box[2];
+    std::array<std::array<Real, 2>, 2> in_box, enriched;
     for (const int k : {0, 1}) {
-      const auto coarse = moments(cell, 8 << k, 4, p), fine = moments(cell, 8 << k, 8, p);
+      const auto coarse = moments(cell, "plain", 8 << k, 4, p), fine = moments(cell, "plain", 8 << k, 8, p);
       for (const int i : {0, 1}) in_box[k][i] = 2 * fine[i] - coarse[i];
+      enriched[k] = moments(cell, "enriched", 8 << k, 8, p);
     }
-    for (const int i : {0, 1}) EXPECT_NEAR((4 * in_box[1][i] - in_box[0][i]) / 3 / exact[i], 1, 1 / 64.0);
+    for (const int i : {0, 1}) {
+      EXPECT_NEAR((4 * in_box[1][i] - in_box[0][i]) / 3 / exact[i], 1, 1 / 64.0);
+      EXPECT_NEAR((4 * enriched[1][i] - enriched[0][i]) / 3 / exact[i], 1, 1 / 40.0);
+    }
   }
 }
 

@@ -99,6 +99,7 @@ void expect_rest_at_surface(const Discretisation& cells, const QuadraticStress& 
   scene.bulk.initial_stress = expressions(stress.components);
   scene.bulk.body_force = expressions(stress.body_force);
   const Vector3 axis = dim == 2 ? Vector3{0, 0, 1} : Vector3{1, 1, 0.5};
+  scene.mesh.tips = "plain";  // rules of enriched cells are not exact for quadratic stress
   scene.mesh.rotation = 25;
   scene.mesh.rotation_axis = {axis[0], axis[1], axis[2]};
   const Matrix3 Q = rotation(25, axis);
