@@ -69,9 +69,10 @@ TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
 
 TEST(LinearSolvers, EntriesOfTheLibrariesTakeEffect) {
   const std::string name = "seed/immersed_3d.xml", iterative = "Solver.Linear solver.type=iterative";
-  const auto usual = run(name, {iterative}, 1);
+  const auto usual = run(name, {iterative, "Mesh.tips=plain"}, 1);
   ASSERT_TRUE(usual.report.converged);
-  const auto unsmoothed = run(name, {iterative, "Solver.Linear solver.MueLu.multigrid algorithm=unsmoothed"}, 1);
+  const auto unsmoothed =
+      run(name, {iterative, "Mesh.tips=plain", "Solver.Linear solver.MueLu.multigrid algorithm=unsmoothed"}, 1);
   ASSERT_TRUE(unsmoothed.report.converged);
   EXPECT_GT(unsmoothed.report.linear_iterations, usual.report.linear_iterations);
   const auto& muelu = unsmoothed.model->newton().linear().solver().solver->parameters();
@@ -81,7 +82,7 @@ TEST(LinearSolvers, EntriesOfTheLibrariesTakeEffect) {
       run(name, {iterative, "Solver.Linear solver.Belos.Maximum Iterations=2", "Time.maximum halvings=0"}, 1);
   EXPECT_FALSE(impatient.report.converged);
   EXPECT_FALSE(impatient.report.reason.empty());
-  const auto cg = run(name, {iterative, "Solver.Linear solver.Belos.Solver Type=Block CG"}, 1);
+  const auto cg = run(name, {iterative, "Mesh.tips=plain", "Solver.Linear solver.Belos.Solver Type=Block CG"}, 1);
   ASSERT_TRUE(cg.report.converged) << cg.report.reason;
   EXPECT_NE(cg.model->newton().linear().solver().describe().find("Block CG"), std::string::npos);
   EXPECT_LT(difference_of(usual, cg, 0), 1e-8);
