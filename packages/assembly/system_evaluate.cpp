@@ -304,6 +304,7 @@ std::vector<std::pair<std::string, std::vector<Real>>> System::reactions(const B
   raw_residual(x, r);
   std::vector<std::pair<std::string, std::vector<Real>>> result;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (!unknowns_[b].enriches.empty()) continue;  // the functions of the other field add up to 1: it has all the force
     const auto view = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
     const int n_components = blocks_[b].n_components, n = static_cast<int>(constraints_[b].conditions().size());
     std::vector<Real> here(n * n_components, 0), all(n * n_components);

@@ -35,7 +35,9 @@ struct GlobalMesh {
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
-  std::vector<char> tip = {};  ///< [node] 1 where the displacement is enriched around it, see tips.hpp; empty: nowhere
+  /// [node] 1 for crack tips around which displacements follow the root of the distance: by further unknowns at order 1
+  /// (see mark_tips()), by quarter points at order 2; empty: nowhere.
+  std::vector<char> tip = {};
 
   /// Nodes with unknowns of their own come first.
   GlobalIndex n_free_nodes() const { return n_nodes() - static_cast<GlobalIndex>(tied_to.size()); }

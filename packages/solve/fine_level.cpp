@@ -92,7 +92,7 @@ bool have_fine_level(const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
   const bool enriched =
       std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) { return block.enriches == first.name; });
-  return enriched && (blocks.size() > 1 || !first.interpolation.is_null());
+  return !first.coordinates.is_null() && enriched && (blocks.size() > 1 || !first.interpolation.is_null());
 }
 
 FineLevel::FineLevel(const ParameterList& muelu, const std::vector<Block>& blocks)

@@ -273,7 +273,7 @@ class Scenes(BadInput):
         self.refuse_set(['"steps": is the string "many", expected an integer'], "Time.steps=many")
         self.refuse_set(["Boundary conditions > moved > \"displacement\": has 1 value, must have 2"], moved + "={0}")
         self.refuse_set(["Bulk > \"body force\": has 3 values, must have 2"], "Bulk.body force={0, 0, 0}")
-        self.refuse_set(['Fractures > fracture > "fluid pressure": is "infinite", must be a number'], "Fractures.fracture.fluid pressure=infinite")
+        self.refuse_set(['Fractures > fracture > "fluid pressure": is infinite, must be finite'], "Fractures.fracture.fluid pressure=infinite")
         self.refuse_set(["cells", "has 1 component", "needs 2"], "Mesh.cells={2}")
         self.refuse_set(["cells", "{2000000000, 2000000000}", "may make"], "Mesh.cells={2000000000, 2000000000}")
         self.refuse([': missing; it is required: '], "check", self.scene_with(('<Parameter name="boundary" type="string" value="north"/>', "")))
