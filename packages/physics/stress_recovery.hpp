@@ -22,9 +22,10 @@ struct StressError {
 /// s* of Zienkiewicz and Zhu (1992): around every corner node a polynomial of the displacement's order is fitted to the
 /// stress s_h at those points of the cells around it where it is most accurate; in a cell the polynomials of its
 /// corners are added up, each times the linear shape function of its corner. Cells across a fracture or in another
-/// region are not around a node, nor are cells with an enriched tip (mesh::Mesh::tip): their stress is taken as it is. The fit also keeps its terms of highest order small, without which the error at crack
-/// tips is estimated too low. s_h is the stress of the nodal displacement: without bubbles, without initial stress.
-/// s(v)* is recovered in the same way, all v at once.
+/// region are not around a node, nor are cells with an enriched tip (mesh::Mesh::tip): their stress is taken as it is.
+/// The fit also keeps its terms of highest order small, without which the error at crack tips is estimated too low. s_h
+/// is the stress of the nodal displacement: without bubbles, without initial stress. s(v)* is recovered in the same
+/// way, all v at once.
 class StressRecovery {
  public:
   virtual ~StressRecovery() = default;
