@@ -69,6 +69,44 @@ LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) con
   return motion;
 }
 
+void LoosePieces::remove_rigid(fields::Vector& ghosted) const {
+  const auto modes = rigid_modes(dim());
+  const int m = static_cast<int>(modes.size()), n_pieces = static_cast<int>(frames_.size());
+  const auto u = ghosted.getLocalViewHost(Tpetra::Access::ReadWrite);
+  std::vector<Real> shares(n_pieces * m, 0);
+  for (std::size_t k = 0; k < piece_of_.size(); ++k)
+    for (int i = 0; i < dim(); ++i) {
+      const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
+      for (int c = 0; c < m; ++c) shares[piece_of_[k] * m + c] += row[modes[c]] * u(k * dim() + i, 0);
+    }
+  shares = sum_over_ranks(*mesh_->comm, shares);
+  std::vector<RigidRow> motion(n_pieces, RigidRow{});
+  for (int p = 0; p < n_pieces; ++p) {
+    if (tied_[p]) continue;
+    std::vector<Real> inertia;
+    for (int k : modes)
+      for (int l : modes) inertia.push_back(inertia_[p][k][l]);
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().POSV('U', m, 1, inertia.data(), m, &shares[p * m], m, &info);
+    SPREKK_CHECK(info == 0, "rigid motions: LAPACK's POSV failed with {}", info);
+    for (int c = 0; c < m; ++c) motion[p][modes[c]] = shares[p * m + c];
+  }
+  for (std::size_t k = 0; k < piece_of_ghosts_.size(); ++k) {
+    const int piece = piece_of_ghosts_[k];
+    const Vector v = rigid_displacement(frames_[piece], motion[piece], node(static_cast<LocalIndex>(k)));
+    for (int i = 0; i < dim(); ++i) u(k * dim() + i, 0) -= v[i];
+  }
+}
+
+void LoosePieces::set_rigid(int mode, fields::Vector& ghosted) const {
+  const auto u = ghosted.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (std::size_t k = 0; k < piece_of_ghosts_.size(); ++k)
+    for (int i = 0; i < dim(); ++i) {
+      const int piece = piece_of_ghosts_[k];
+      u(k * dim() + i, 0) = tied_[piece] ? 0 : rigid_row(frames_[piece], node(static_cast<LocalIndex>(k)), i)[mode];
+    }
+}
+
 int LoosePieces::group_of(int number) const {
   const auto after = std::upper_bound(groups_.begin(), groups_.end(), number,
                                       [](int value, const Group& group) { return value < group.first; });

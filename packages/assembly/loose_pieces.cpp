@@ -126,6 +126,7 @@ void LoosePieces::find_ties(const fields::Layout& displacement) {
   for (LocalIndex i = 0; i < displacement.n_owned(); ++i) owned.replaceLocalValue(i, piece_of_[i / dim()]);
   ghosted.doImport(owned, *displacement.import(), Tpetra::REPLACE);
   const auto piece_of = ghosted.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t k = 0; k < piece_of.extent(0); k += dim()) piece_of_ghosts_.push_back(std::lround(piece_of(k, 0)));
   const int n = mesh_->nodes_per_cell();
   for (LocalIndex k = 0; k < n * mesh_->n_owned_cells; ++k) {
     const LocalIndex here = mesh_->cells[k], free = mesh_->free_node(here);
@@ -133,6 +134,10 @@ void LoosePieces::find_ties(const fields::Layout& displacement) {
     if (here == free && a == b) continue;
     ties_.push_back(a <= b ? Tie{a, b, -1, node(here), node(free)} : Tie{b, a, -1, node(free), node(here)});
   }
+  std::vector<int> tied(mesh_->n_pieces, 0);
+  for (const auto& tie : ties_) tied[tie.a] = tied[tie.b] = 1;
+  tied_.assign(tied.size(), 0);
+  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, static_cast<int>(tied.size()), tied.data(), tied_.data());
 }
 
 void LoosePieces::hold(const Constraints& constraints) {
@@ -187,14 +192,28 @@ void LoosePieces::pair_up() {
     if (tie.a != tie.b) tie.pair = number.at({tie.a, tie.b});
 }
 
+/// What resists a stiff piece may be soft ones: the term is in proportion to the softest rock, measured by the
+/// diagonal.
 void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
   stiffness_ = rcp(new fields::Vector(diagonal, Teuchos::Copy));
   proximal_ = rcp(new fields::Vector(diagonal.getMap()));
   const auto view = stiffness_->getLocalViewHost(Tpetra::Access::ReadWrite);
+  std::vector<Real> modulus(mesh_->n_pieces, 0), n_nodes(mesh_->n_pieces, 0);
   for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const Real ratio = std::pow(volume_[k], 1.0 / dim()) / frames_[piece_of_[k]].size;
-    for (int i = 0; i < dim(); ++i) view(k * dim() + i, 0) *= proximal_share * ratio * ratio;
+    const Real size = std::pow(volume_[k], 1.0 / dim()), ratio = size / frames_[piece_of_[k]].size;
+    ++n_nodes[piece_of_[k]];
+    for (int i = 0; i < dim(); ++i) {
+      modulus[piece_of_[k]] += view(k * dim() + i, 0) * std::pow(size, 2 - dim());
+      view(k * dim() + i, 0) *= proximal_share * ratio * ratio;
+    }
   }
+  sum_over_ranks(*mesh_->comm, modulus);
+  sum_over_ranks(*mesh_->comm, n_nodes);
+  for (int p = 0; p < mesh_->n_pieces; ++p) modulus[p] /= n_nodes[p];
+  const auto [softest, stiffest] = std::minmax_element(modulus.begin(), modulus.end());
+  contrast_ = *stiffest / *softest;
+  for (std::size_t k = 0; k < piece_of_.size(); ++k)
+    for (int i = 0; i < dim(); ++i) view(k * dim() + i, 0) *= *softest / modulus[piece_of_[k]];
 }
 
 void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {

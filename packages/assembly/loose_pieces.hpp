@@ -8,6 +8,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,10 @@ namespace sprekk::assembly {
 struct Grip {
   std::array<mesh::Vector, 3> held{};  ///< projector on the directions in which they resist, global frame
   mesh::Vector excess{};  ///< what the traction, an unknown, is above the one that the law answers with, Pa, global
+  mesh::Vector traction{}, jump{};  ///< Pa, m, global
+  Real augmentation = 0;            ///< c of the face law, Pa/m
+  Real gap = 0;                     ///< how far the sides are from touching without traction, m
+  mesh::Vector away{};              ///< derivative of the gap in the jump
 };
 
 /// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
@@ -30,6 +35,14 @@ class LoosePieces {
 
   /// Some piece is not held by boundary conditions alone; if none, nothing else here needs to be called. Stored data.
   bool possible() const { return !candidates_.empty(); }
+
+  /// How much stiffer the stiffest piece is than the softest, as the diagonal tells. Stored data.
+  Real contrast() const { return contrast_; }
+  /// Takes from u [local node, component] the rigid motion of each piece that comes nearest to its owned part: what is
+  /// left deforms the rock in the same way. Pieces that share nodes keep theirs.
+  void remove_rigid(fields::Vector& ghosted) const;
+  /// Sets u [local node, component] to mode k (of those of a body) in pieces that remove_rigid() takes it from, else 0.
+  void set_rigid(int k, fields::Vector& ghosted) const;
 
   /// Finds the free motions for grips [owned fracture face].
   void find(const std::vector<Grip>& grips);
@@ -58,6 +71,20 @@ class LoosePieces {
   /// [group] Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions
   /// on the motion: zero in equilibrium under the tractions that the law answers with. N m (N in 2D).
   std::vector<Real> work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
+  /// normal . [[v]] >= least on a fracture face, of a displacement v.
+  struct Obstacle {
+    LocalIndex face;  ///< owned
+    mesh::Vector normal;
+    Real least;
+  };
+  /// The free motion v, [loose piece], for which `displacement` + v is smallest in the norm of proximal() among those
+  /// that satisfy the obstacles of all ranks; nothing, if none does. `unit`: a typical length, m. Unique.
+  std::optional<std::vector<RigidRow>> nearest(const fields::Vector& displacement,
+                                               const std::vector<Obstacle>& obstacles, Real unit) const;
+  /// Jump of a free motion at the centre of an owned fracture face. Stored data.
+  mesh::Vector jump(LocalIndex face, const std::vector<RigidRow>& motion) const;
+  /// Whether a side of an owned fracture face is loose. Stored data.
+  bool is_beside(LocalIndex face) const;
 
   /// The motion of some groups alone; empty if there is none. Stored data.
   Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
@@ -105,7 +132,8 @@ class LoosePieces {
   RCP<const mesh::Mesh> mesh_;
   std::vector<RigidFrame> frames_;                  // [piece]
   std::vector<GlobalIndex> n_cells_;                // [piece]
-  std::vector<int> piece_of_;                       // [owned node]
+  std::vector<int> piece_of_, piece_of_ghosts_;     // [owned node], [local node]
+  std::vector<int> tied_;                           // [piece] shares nodes with another piece, or has periodic ones
   std::vector<Real> volume_;                        // [owned node] share of the cells around, m^dim
   std::vector<Tie> ties_;                           // of nodes of owned cells
   std::vector<Pair> pairs_;                         // that share a fracture face or tied nodes, on any rank
@@ -119,6 +147,7 @@ class LoosePieces {
   std::vector<int> loose_number_;                   // [piece] in loose_, -1
   std::vector<Group> groups_;                       // by their first pieces
   RCP<fields::Vector> stiffness_, proximal_;
+  Real contrast_ = 1;
 };
 
 }  // namespace sprekk::assembly

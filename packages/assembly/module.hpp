@@ -87,6 +87,7 @@ class Context {
 struct State {
   Real t = 0, dt = 0;
   ConstView<Real*> damping = {};  ///< [owned fracture face], see BlockProblem::damp(); empty: zero
+  Real augmentation = 1;          ///< see BlockProblem::calibrate()
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };

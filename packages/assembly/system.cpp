@@ -249,6 +249,24 @@ void System::watch_pieces() {
   loose_ = std::make_unique<LoosePieces>(mesh_, layouts_[displacement_], constraints_[displacement_]);
   if (!loose_->possible()) return;
   loose_->set_stiffness(*diagonals_[displacement_]);
+  if (loose_->contrast() > 10 && linear_part_is_invariant())
+    deformation_ = rcp(new Vector(layouts_[displacement_].ghosted()));
+}
+
+/// No row of the linear part sees rigid motions of pieces.
+bool System::linear_part_is_invariant() const {
+  Vector motion(layouts_[displacement_].ghosted());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto& A = linear_(static_cast<int>(b), displacement_);
+    if (A.is_null()) continue;
+    Vector rows(blocks_[b].map);
+    for (int mode : rigid_modes(mesh_->dim())) {
+      loose_->set_rigid(mode, motion);
+      A->localApply(motion, rows, Teuchos::NO_TRANS, 1.0, 0.0);
+      if (!(rows.normInf() <= 1e-12 * A->getFrobeniusNorm())) return false;
+    }
+  }
+  return true;
 }
 
 BlockVector System::initial() const {

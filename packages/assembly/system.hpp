@@ -8,6 +8,7 @@
 #include "fields/block_problem.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -44,6 +45,8 @@ class System : public fields::BlockProblem {
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
+  bool calibrate(const fields::BlockVector& x, bool first) override;
+  bool settle(fields::BlockVector& x) override;
 
   /// Zero displacement, zero traction. [block]
   fields::BlockVector initial() const;
@@ -97,6 +100,8 @@ class System : public fields::BlockProblem {
   std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
                             bool mode);
   std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
+  bool linear_part_is_invariant() const;
+  std::optional<std::vector<RigidRow>> way_back(const fields::BlockVector& x, Real margin);
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
@@ -114,6 +119,11 @@ class System : public fields::BlockProblem {
   fields::BlockVector diagonals_;                   // [block] of linear_
   fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
   std::unique_ptr<LoosePieces> loose_;              // null without displacement, or where modules hold bodies
+  std::vector<Grip> grips_;                         // of the last calibrate()
+  Real augmentation_ = 1;                           // factor of the constant of the face law
+  bool calibrated_ = false;                         // it has been compared with the rock
+  RCP<fields::Vector> committed_;                   // displacement; null: not needed
+  RCP<fields::Vector> deformation_;                 // ghosted displacement without rigid motions; null: not needed
   LoosePieces::Motion driven_;                      // where forces out of balance move what is loose, if they do
   int displacement_ = -1;                           // its block
   fields::BlockMatrix linear_;                      // what the linear modules write

@@ -50,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, dt_, damping_, {}, history_[module]};
+  State s{t_, dt_, damping_, augmentation_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -115,14 +115,22 @@ void System::set_time(Real t, Real dt) {
   loaded_ = true;
 }
 
+/// Where pieces are much stiffer than others, stresses of rigid motions, zero but for rounding, would be as large as
+/// those of the soft ones: so the linear part is applied to the displacement without them.
 void System::raw_residual(const BlockVector& x, BlockVector& r) {
   refresh_ghosts(x, false);
   const auto scope = timers_->scope("residual");
   const int n = static_cast<int>(blocks_.size());
+  auto linear_in = ghosted_;
+  if (!deformation_.is_null()) {
+    Tpetra::deep_copy(*deformation_, *ghosted_[displacement_]);
+    loose_->remove_rigid(*deformation_);
+    linear_in[displacement_] = deformation_;
+  }
   for (int i = 0; i < n; ++i) {
     Tpetra::deep_copy(*r[i], *load_[i]);
     for (int j = 0; j < n; ++j)
-      if (!linear_(i, j).is_null()) linear_(i, j)->localApply(*ghosted_[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
+      if (!linear_(i, j).is_null()) linear_(i, j)->localApply(*linear_in[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
   }
   const auto views = rows(r);
   for (std::size_t m = 0; m < modules_.size(); ++m)
@@ -172,6 +180,7 @@ void System::jacobian(const BlockVector& x) {
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
   find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
+  if (watches_pieces()) committed_ = rcp(new fields::Vector(*x[displacement_], Teuchos::Copy));
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);

@@ -82,6 +82,13 @@ class BlockProblem {
   /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
   /// derivative of f. Solutions do not depend on it. Local.
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
+  /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
+  /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,
+  /// and f is another function. The same on every rank.
+  virtual bool calibrate(const BlockVector& x, bool first) { return false; }
+  /// Where f leaves it open where a body is, replaces the zero x of f by the one nearest to the last accepted x, and
+  /// returns true if x changed. x may then be a zero to a lesser accuracy.
+  virtual bool settle(BlockVector& x) { return false; }
   /// A hash of discrete states [as states()] (which faces are open, stick, slip), the same on every rank and for any
   /// partition.
   virtual std::size_t state_hash(const std::vector<char>& states) = 0;

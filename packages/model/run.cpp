@@ -122,7 +122,7 @@ void tell_loose(base::Log& log, Real t, const std::string& before, const std::st
   if (now.empty())
     log.info("t = {:.6g}: all rock is held again", t);
   else
-    log.warning("t = {:.6g}: {}, and nothing holds it; it stays where the last force left it", t, now);
+    log.warning("t = {:.6g}: {}, and nothing holds it; it lies as near as it can to where it was", t, now);
 }
 
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.

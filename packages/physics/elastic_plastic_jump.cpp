@@ -30,7 +30,8 @@ namespace {
 /// | law          | [number]                                                 |      | joint laws                   |
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
-/// | augmentation | [face]                                                   | Pa/m | c_n, c_t                     |
+/// | augmentation | [face]                                                   | Pa/m | c, but for the factor        |
+/// | factor       | scalar                                                   | -    | of c                         |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 template <Shape shape, bool tips>
@@ -51,9 +52,14 @@ struct JointFace {
   ConstView<laws::Joint*> law;
   ConstView<int*> number;
   ConstView<Real**> rest;
-  ConstView<laws::Augmentation*> augmentation;
+  ConstView<Real*> augmentation;
   View<Real**> p_old;
   ConstView<Real*> damping = {};
+  Real factor = 1;
+
+  KOKKOS_INLINE_FUNCTION laws::Augmentation constants(int f) const {
+    return laws::augmentation(law(number(f)), factor * augmentation(f));
+  }
 
   /// w = mean of R (u+ - u-) over the face.
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
@@ -75,7 +81,7 @@ struct JointFace {
   KOKKOS_INLINE_FUNCTION ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim], T (&R)[dim]) const {
     Real old[dim - 1];
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-    return laws::contact_residual<dim>(law(number(f)), augmentation(f), w, traction, old, R);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), w, traction, old, R);
   }
 
   /// Jump, traction, residual and state of a face.
@@ -98,15 +104,15 @@ struct JointFace {
 
   /// Lets faces that are free to slide or part resist it like a spring of damping times c_t, c_n, in derivatives alone.
   KOKKOS_INLINE_FUNCTION void damp(int f, ContactState state, Fad (&R)[dim]) const {
-    const Real factor = damping.extent(0) > 0 ? damping(f) : 0;
-    if (factor == 0 || state == ContactState::stick) return;
+    const Real share = damping.extent(0) > 0 ? damping(f) : 0;
+    if (share == 0 || state == ContactState::stick) return;
     const auto& joint = law(number(f));
     const auto add = [&](int k, Real stiffness, Real compliance) {
       R[k].fastAccessDx(k) -= stiffness;
       R[k].fastAccessDx(dim + k) += stiffness * compliance;
     };
-    for (int k = 1; k < dim; ++k) add(k, factor * augmentation(f).tangential, joint.elastic.compliance);
-    if (state == ContactState::open) add(0, factor * augmentation(f).normal, joint.gap.closure.initial_compliance());
+    for (int k = 1; k < dim; ++k) add(k, share * constants(f).tangential, joint.elastic.compliance);
+    if (state == ContactState::open) add(0, share * constants(f).normal, joint.gap.closure.initial_compliance());
   }
 
   /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.
@@ -194,6 +200,7 @@ class ElasticPlasticJump final : public assembly::Module {
   Op at(const assembly::State& state) const {
     Op op = *op_;
     op.p_old = state.history[0];
+    op.factor = state.augmentation;
     return op;
   }
 
@@ -274,7 +281,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   View<Real*> bubble_mean("bubble mean", n_faces);
   View<laws::Joint*> law("law", parameters_.joints.size());
   View<int*> number("number", n_faces);
-  View<laws::Augmentation*> augmentation("augmentation", n_faces);
+  View<Real*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
@@ -305,8 +312,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
       assembly::for_each_cell_point<shape>(
           *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
-    augmentation_h(f) =
-        laws::augmentation(law_h(joint_of(f)), parameters_.augmentation * modulus / mesh::norm(extents[face.fracture]));
+    augmentation_h(f) = parameters_.augmentation * modulus / mesh::norm(extents[face.fracture]);
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
   }
   Kokkos::deep_copy(frame, frame_h);
@@ -344,10 +350,10 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
   const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
+    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, state.augmentation * augmentation(f));
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
-    const Real size =
-        std::max(std::abs(point.R[0]) / augmentation(f).normal, std::sqrt(square) / augmentation(f).tangential);
+    const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential);
     if (!(size <= largest)) largest = size;
   });
   measures.push_back({"split of the jump", largest / scales.length});
@@ -356,8 +362,22 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 /// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
+  const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
+    const auto& gap = parameters_.joints[joint_of(f)].law.gap;
+    Real slip[dim - 1];
+    for (int k = 1; k < dim; ++k) slip[k - 1] = point.w[k];
+    const Real slipped = laws::norm(slip);
+    grips[f].augmentation += state.augmentation * augmentation(f);
+    grips[f].gap += point.w[0] - gap(slipped, Real(0));
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) {
+        grips[f].traction[i] += point.traction[k] * frame[k][i];
+        grips[f].jump[i] += point.w[k] * frame[k][i];
+        const Real widening = k == 0 ? 1 : slipped > 0 ? -gap.dilation(Real(1)) * slip[k - 1] / slipped : 0;
+        grips[f].away[i] += widening * frame[k][i];
+      }
     Real bound[dim - 1];  // the traction that the law answers with: along the slip where there is some
     for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
     const Real size = laws::norm(bound);

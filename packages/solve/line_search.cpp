@@ -52,7 +52,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   }
   step = found->a;
   if (step == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
-  accept(solution_of(group), found->merit);
+  accept(group, found->merit);
   return true;
 }
 
@@ -73,7 +73,16 @@ Real LineSearch::limit() const {
   return *std::max_element(merits_.end() - std::min(memory, merits_.size()), merits_.end());
 }
 
-void LineSearch::accept(const BlockVector& x, Real merit) {
+/// Iterates before the first full step leave the linear part out of balance.
+void LineSearch::accept(NOX::Abstract::Group& group, Real merit) {
+  const auto x = solution_of(group);
+  if (problem_.calibrate(x, merits_.empty())) {
+    group.setX(group.getX());
+    group.computeF();
+    merit = problem_.merit(x, residual_of(group));
+    merits_.clear();
+    visited_.clear();
+  }
   merits_.push_back(merit);
   compare(problem_.states(x), merit);
   problem_.damp(damping_, swinging_);

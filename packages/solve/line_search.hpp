@@ -42,7 +42,7 @@ class LineSearch : public NOX::LineSearch::Generic {
   std::optional<Trial> search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                               const NOX::Abstract::Vector& dx) const;
   Real limit() const;
-  void accept(const BlockVector& x, Real merit);
+  void accept(NOX::Abstract::Group& group, Real merit);
   void compare(const std::vector<char>& states, Real merit);
 
   BlockProblem& problem_;

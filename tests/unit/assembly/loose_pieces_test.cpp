@@ -373,6 +373,59 @@ TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
     }
 }
 
+/// Of the displacements that differ by a free motion, the smallest: none for a motion of the loose block, and where it
+/// must not come nearer than 0.1 to the block above, or below, a shift by as much.
+TEST(LoosePieces, ComesToLieNearest) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south", "north"});
+    column.find(open, open);
+    ASSERT_EQ(column.pieces.n_groups(), 1);
+    std::array<RigidRow, 3> moved{};
+    for (int mode : assembly::rigid_modes(column.mesh->dim())) moved[1][mode] = 0.3 + 0.1 * mode;
+    for (const Real side : {0, 1, -1}) {  // which neighbour is in the way
+      std::vector<LoosePieces::Obstacle> obstacles;
+      for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces && side != 0; ++f) {
+        const auto& face = column.mesh->fracture_faces[f];
+        const bool upper = column.mesh->fracture_names[face.fracture] == "upper";
+        if (upper != (side > 0)) continue;
+        const bool plus_above = face.frame[0][1] > 0;
+        const Real sign = plus_above ? 1 : -1;
+        const auto at = rigid_displacement(column.frame(1), moved[1], face.centre);
+        obstacles.push_back({f, {0, sign, 0}, 0.1 + side * at[1]});
+      }
+      auto u = column.rigid(moved);
+      const auto motion = column.pieces.nearest(u, obstacles, 0.1);
+      ASSERT_TRUE(motion);
+      column.pieces.add({1}, {*motion, {}}, u);
+      for (int mode : assembly::rigid_modes(column.mesh->dim()))
+        EXPECT_NEAR(column.coordinate(u, 1, mode), mode == 1 ? -0.1 * side : 0, 1e-10) << cell << side << mode;
+    }
+  }
+}
+
+/// Next to the softest block the proximal term is as small as in that one, and rigid motions leave nothing.
+TEST(LoosePieces, BlocksOfOtherStiffness) {
+  for (const auto& cell : all_cells) {
+    Column column(column_box(cell), {"south"});
+    const auto blocks = column.block_of_node();
+    const int dim = column.mesh->dim();
+    for (std::size_t k = 0; k < blocks.size(); ++k)
+      for (int i = 0; i < dim; ++i) column.diagonal->replaceLocalValue(k * dim + i, blocks[k] == 1 ? 1e6 : 1);
+    column.pieces.set_stiffness(*column.diagonal);
+    EXPECT_NEAR(column.pieces.contrast(), 1e6, 1e-6 * 1e6);
+    column.find(open, open);
+    EXPECT_LT(column.pieces.proximal().normInf(), 1e-4 * 2);
+    std::array<RigidRow, 3> moved{};
+    for (int block = 0; block < 3; ++block)
+      for (int mode : assembly::rigid_modes(dim)) moved[block][mode] = 1 + block - 0.2 * mode;
+    fields::Vector ghosted(column.layout.ghosted());
+    ghosted.doImport(column.rigid(moved), *column.layout.import(), Tpetra::REPLACE);
+    ASSERT_GT(ghosted.normInf(), 1);
+    column.pieces.remove_rigid(ghosted);
+    EXPECT_LT(ghosted.normInf(), 1e-12);
+  }
+}
+
 /// Forces of tractions lambda on the sides of all faces: -lambda on plus, lambda on minus, in equal shares at the
 /// nodes; the residual is their opposite. What of lambda is excess does no work.
 TEST(LoosePieces, WorkIsThatOfTheLaw) {
