@@ -16,18 +16,30 @@
 namespace sprekk::physics {
 
 /// The points of a cell where the stress is most accurate, or at least not worst: the centre at order 1; at order 2 two
-/// points per direction, the middles of a triangle's edges, dim + 1 points inside of a tetrahedron. Cells with a tip
-/// have 2 points per direction or dim + 1 inside of them.
+/// points per direction, in simplices the middles of edges. Cells with a tip have 2 points per direction or dim + 1
+/// inside of them.
 template <mesh::Shape shape>
 struct SamplePoints {
   static constexpr int dim = mesh::dimension(shape);
   static constexpr bool simplex = mesh::is_simplex(shape);
 
-  static int n(bool tip) { return mesh::order(shape) == 1 && !tip ? 1 : simplex ? dim + 1 : 1 << dim; }
+  static int n(bool tip) {
+    if (mesh::order(shape) == 1 && !tip) return 1;
+    return !simplex ? 1 << dim : tip ? dim + 1 : dim * (dim + 1) / 2;
+  }
   static void at(int p, bool tip, Real (&xi)[dim]) {
     if (n(tip) == 1) return assembly::ReferenceCell<shape>::centre(xi);
-    const Real near = dim == 3 ? 0.58541019662496845446 : tip ? 2.0 / 3.0 : 0, far = (1 - near) / dim;
-    for (int i = 0; i < dim; ++i) xi[i] = simplex ? (p == i + 1 ? near : far) : assembly::Gauss<2>::point((p >> i) & 1);
+    int from = 0, to = 1;  // corners of edge p
+    for (int edge = 0; edge < p; ++edge)
+      if (++to > dim) to = ++from + 1;
+    const Real near = dim == 2 ? 2.0 / 3.0 : 0.58541019662496845446, far = (1 - near) / dim;
+    for (int i = 0; i < dim; ++i)
+      if (!simplex)
+        xi[i] = assembly::Gauss<2>::point((p >> i) & 1);
+      else if (tip)
+        xi[i] = p == i + 1 ? near : far;
+      else
+        xi[i] = from == i + 1 || to == i + 1 ? 0.5 : 0;
   }
 };
 
@@ -226,7 +238,7 @@ class RecoveryPatches {
  private:
   struct Patch {
     std::array<Real, dim> centre;
-    Real size = 0;
+    std::array<Real, dim> size{};                  // largest distances of samples, per direction
     std::array<Real, n_terms * n_terms> factor{};  // Cholesky, of the normal equations
     int tip = -1;                                  // number among those around tips
   };
@@ -245,7 +257,7 @@ class RecoveryPatches {
   /// 1, the coordinates from the centre of the patch, their products; the latter are left to the modes at tips.
   static Terms terms(const Patch& patch, const std::array<Real, dim>& x) {
     Terms q{1};
-    for (int i = 0; i < dim; ++i) q[1 + i] = (x[i] - patch.centre[i]) / patch.size;
+    for (int i = 0; i < dim; ++i) q[1 + i] = (x[i] - patch.centre[i]) / patch.size[i];
     for (int k = n_linear; k < n_terms && patch.tip < 0; ++k)
       q[k] = q[1 + Tensor::row(k - n_linear)] * q[1 + Tensor::column(k - n_linear)];
     return q;
@@ -314,10 +326,12 @@ class RecoveryPatches {
   void factor() {
     for_each([&](LocalIndex, const Point& point, int p) {
       auto& patch = patches_[p];
-      Real square = 0;
-      for (int i = 0; i < dim; ++i) square += (point.x[i] - patch.centre[i]) * (point.x[i] - patch.centre[i]);
-      patch.size = std::max(patch.size, std::sqrt(square));
+      for (int i = 0; i < dim; ++i) patch.size[i] = std::max(patch.size[i], std::abs(point.x[i] - patch.centre[i]));
     });
+    for (auto& patch : patches_) {
+      const Real largest = *std::max_element(patch.size.begin(), patch.size.end());
+      for (Real& size : patch.size) size = std::max(size, 1e-3 * largest);
+    }
     for_each([&](LocalIndex, const Point& point, int p) {
       auto& patch = patches_[p];
       const Terms q = terms(patch, point.x);
