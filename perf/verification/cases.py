@@ -157,6 +157,12 @@ def penny():
 
 # Manufactured solutions
 
+# of coarse meshes, whose estimates are off by more than two
+COARSE = {2: (("mixed quadrilateral 1", "n=8", "jump"),),
+          3: (*((f"{regime} tetrahedron 1", "n=4", "jump") for regime in ("mixed", "stick", "slip", "uniform")),
+              ("slip hexahedron 1", "n=8", "jump"))}
+
+
 def manufactured(dimension, cells):
     """`cells`: {(shape, order): counts}; all regimes."""
     def jumps(run, known):
@@ -180,7 +186,7 @@ def manufactured(dimension, cells):
     bounds += [Order(one.name, "centre", 2) for one in series if one.name.endswith("2")]
     bounds.append(Bound(f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u", 1e-4 if dimension == 2 else 5e-4))
     return Case(f"mms{dimension}d", f"manufactured solution in {dimension}D: stick, slip, mixed", "", series, errors, on_box(0, 1),
-                (f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u"), jumps, ("u", "centre"), None, bounds)
+                (f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u"), jumps, ("u", "centre"), None, bounds, COARSE[dimension])
 
 
 def mms2d():
@@ -300,7 +306,8 @@ def free_sides():
              for order, counts in ((1, (8, 16, 32, 64) if shape[-1] != "n" else (8, 16, 32)), (2, (8, 16, 32)))]
     return Case("free_sides", "block with free sides and a compliant fracture", "", every, errors, prescribed,
                 ("quadrilateral 2", "n=32", "jump"), jumps, ("jump", "shear force"), None,
-                [Bound(one.name, one.meshes[-1][0], name, 1e-3) for one in every if one.name[-1] == "2" for name in ("shear force", "load")])
+                [Bound(one.name, one.meshes[-1][0], name, 1e-3) for one in every if one.name[-1] == "2" for name in ("shear force", "load")],
+                unsure=tuple(("tetrahedron 2", f"n={n}", "jump") for n in (8, 16, 32)))  # one layer: no node has cells all around
 
 
 CASES = (sneddon, sneddon_shear, inclined, penny, t_junction, wavy, free_sides, mms2d, mms3d)
