@@ -59,8 +59,8 @@ class Case:
     orders: tuple         # the errors whose orders the last line has, as u and as traction; "" where there is none
     exact: object = None
     bounds: list = field(default_factory=list)
-    unsure: tuple = ()    # (series, mesh, "jump" or "stress") whose estimate is off by more than the factor 2
     points: list = field(default_factory=list)  # given elsewhere: (label, unknowns, error)
+    unsure: tuple = ()    # (series, mesh, "jump" or "stress") whose estimate is off by more than the factor 2
 
 
 def on_box(low, high):
@@ -186,7 +186,7 @@ def manufactured(dimension, cells):
     bounds += [Order(one.name, "centre", 2) for one in series if one.name.endswith("2")]
     bounds.append(Bound(f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u", 1e-4 if dimension == 2 else 5e-4))
     return Case(f"mms{dimension}d", f"manufactured solution in {dimension}D: stick, slip, mixed", "", series, errors, on_box(0, 1),
-                (f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u"), jumps, ("u", "centre"), None, bounds, COARSE[dimension])
+                (f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u"), jumps, ("u", "centre"), None, bounds, unsure=COARSE[dimension])
 
 
 def mms2d():
