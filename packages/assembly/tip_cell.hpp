@@ -91,11 +91,19 @@ class TipCell {
   template <class Visit>
   void for_each_point(const Visit& visit) const {
     Values v;
+    for_each_reference_point([&](const Real(&xi)[dim], Real weight) {
+      const Real volume = weight * at(xi, v);
+      visit(xi, volume, place(v.N), v);
+    });
+  }
+
+  /// Calls visit(xi, weight) at the reference points of the same rule.
+  template <class Visit>
+  void for_each_reference_point(const Visit& visit) const {
     Real xi[dim];
     for (const auto& point : tip_rule(shape, tips_, n_points)) {
       std::copy_n(point.xi.begin(), dim, xi);
-      const Real volume = point.weight * at(xi, v);
-      visit(xi, volume, place(v.N), v);
+      visit(xi, point.weight);
     }
   }
 

@@ -36,43 +36,54 @@ nlohmann::json ErrorEstimate::summary() const {
 
 ErrorEstimator::ErrorEstimator(Model& model)
     : model_(model),
-      recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()),
-                                     model.system().layouts()[block("displacement")])) {
+      blocks_{block("displacement"), block("side bubble"), block("tip displacement")},
+      recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()), layouts())) {
   const auto extents = mesh::domain_extents(model.mesh());
   section_ = std::pow(*std::max_element(extents.begin(), extents.end()), model.mesh().dim() - 1);
 }
 
 int ErrorEstimator::block(const std::string& name) const {
   const auto& blocks = model_.system().blocks();
-  return static_cast<int>(std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.name == name; }) -
-                          blocks.begin());
+  const auto found = std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.name == name; });
+  return found == blocks.end() ? -1 : static_cast<int>(found - blocks.begin());
+}
+
+physics::ByField<const fields::Layout*> ErrorEstimator::layouts() const {
+  physics::ByField<const fields::Layout*> result{};
+  for (std::size_t k = 0; k < result.size(); ++k)
+    if (blocks_[k] >= 0) result[k] = &model_.system().layouts()[blocks_[k]];
+  return result;
 }
 
 ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs) {
   const auto scope = model_.timers().scope("error estimate");
-  auto error = (*recovery_)(*model_.state()[block("displacement")]);
+  physics::ByField<RCP<const fields::Vector>> displacement;
+  for (std::size_t k = 0; k < displacement.size(); ++k)
+    if (blocks_[k] >= 0) displacement[k] = model_.state()[blocks_[k]];
+  auto error = (*recovery_)(displacement);
   const auto& scales = model_.system().scales();
   ErrorEstimate estimate;
   estimate.stress = error.error;
   estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * scales.stress * scales.length));
   estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, std::move(error.density)});
-  if (!model_.mesh().fracture_names.empty()) estimate_jump(error.forces, outputs, estimate);
+  if (!model_.mesh().fracture_names.empty()) estimate_jump(error, outputs, estimate);
   return estimate;
 }
 
-void ErrorEstimator::estimate_jump(RCP<fields::Vector> forces, const std::vector<OutputField>& outputs,
+void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std::vector<OutputField>& outputs,
                                    ErrorEstimate& estimate) {
   auto& system = model_.system();
   const auto& mesh = model_.mesh();
-  const int u = block("displacement"), beta = block("side bubble"), lambda = block("traction"), dim = mesh.dim();
+  const int lambda = block("traction"), dim = mesh.dim();
   auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
-  right_side[u] = forces;
-  const auto& layouts = system.layouts();
-  physics::add_unresolved_traction(mesh, {layouts[u], layouts[beta], layouts[lambda]}, model_.scene().initial_stress(),
-                                   *model_.state()[lambda], *right_side[u], *right_side[beta]);
-  {
-    const auto prescribed = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(u));
-    const auto view = right_side[u]->getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
+  physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda], model_.scene().initial_stress(),
+                                   *model_.state()[lambda], stress.forces);
+  for (const int block : blocks_) {
+    if (block < 0) continue;
+    const auto prescribed = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(block));
+    const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < prescribed.extent(0); ++i)
       if (prescribed(i)) view(i, 0) = 0;
   }

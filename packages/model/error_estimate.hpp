@@ -35,11 +35,13 @@ class ErrorEstimator {
   ErrorEstimate operator()(const std::vector<assembly::OutputField>& outputs);
 
  private:
-  int block(const std::string& name) const;
-  void estimate_jump(RCP<fields::Vector> forces, const std::vector<assembly::OutputField>& outputs,
+  int block(const std::string& name) const;  ///< -1: there is none
+  physics::ByField<const fields::Layout*> layouts() const;
+  void estimate_jump(const physics::StressError& error, const std::vector<assembly::OutputField>& outputs,
                      ErrorEstimate& estimate);
 
   Model& model_;
+  physics::ByField<int> blocks_;  // of displacements, -1: there is none
   std::unique_ptr<physics::StressRecovery> recovery_;
   Real section_;  // of a body of the domain's largest extent, m^2 (2D: m)
 };

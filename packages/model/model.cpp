@@ -1,15 +1,13 @@
 #include "model/model.hpp"
 
+#include "assembly/geometry.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
 #include "model/uniqueness.hpp"
-#include "physics/bulk_momentum.hpp"
-#include "physics/elastic_plastic_jump.hpp"
-#include "physics/interface_traction_balance.hpp"
-#include "physics/tip_enrichment.hpp"
+#include "physics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -70,6 +68,20 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
       });
 }
 
+/// Mean over a fracture face whose cell on side minus is local.
+Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const Material::Value& value) {
+  Real sum = 0, total = 0;
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                           [&](const auto&, Real area, const auto& x) {
+                                             sum += area * value(x, 0);
+                                             total += area;
+                                           });
+  });
+  return sum / total;
+}
+
+/// The law of a face is that at its centre, with the mean of its gap: jumps are means, too.
 Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
   const auto material = [&](int fracture) -> const Material& {
     return scene.materials.at(scene.fractures.at(mesh.fracture_names[fracture]).material);
@@ -79,8 +91,13 @@ Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh
   return properties<physics::JointParameters>(
       static_cast<int>(mesh.fracture_names.size()), fracture_of,
       [&](int fracture) { return material(fracture).is_uniform(); },
-      [&](int fracture, int face) {
-        return material(fracture).joint(face < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[face].centre);
+      [&](int fracture, int f) {
+        if (f < 0) return material(fracture).joint({});
+        const auto& face = mesh.fracture_faces[f];
+        auto joint = material(fracture).joint(face.centre);
+        if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
+          joint.law.gap.initial = mean(mesh, face, gap);
+        return joint;
       });
 }
 
@@ -134,31 +151,21 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = elasticity(scene, mesh);
-  const auto force = body_force(scene, mesh);
-  const auto stress = scene.initial_stress();
-  physics::BulkMomentumParameters bulk{rock.values, force, {}, stress, rock.number};
+  physics::BulkMomentumParameters bulk{rock.values, body_force(scene, mesh), {}, scene.initial_stress(), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
                                 condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  std::vector<std::unique_ptr<assembly::Module>> modules;
-  modules.push_back(physics::make_bulk_momentum(mesh.shape, bulk));
-  if (mesh.fracture_names.empty()) return modules;
-  const auto fluid = scene.fluid_pressure(mesh.fracture_names);
-  modules.push_back(
-      physics::make_interface_traction_balance(mesh.shape, {rock.values, force, stress, rock.number, fluid}));
+  if (mesh.fracture_names.empty()) return physics::make_mechanics(mesh, {bulk});
   const auto joint = joints(scene, mesh);
-  modules.push_back(physics::make_elastic_plastic_jump(
-      mesh.shape, {joint.values, rock.values, stress, rock.number, joint.number, scene.augmentation, fluid,
-                   scene.time.start, mesh.n_global_enriched > 0}));
-  if (mesh.n_global_enriched > 0) modules.push_back(physics::make_tip_enrichment(mesh.shape, bulk, fluid));
-  return modules;
+  return physics::make_mechanics(mesh, {bulk, joint.values, joint.number, scene.fluid_pressure(mesh.fracture_names),
+                                        scene.time.start, scene.augmentation});
 }
 
 std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
-                                                              const fields::Layout& displacement) {
+                                                              const physics::ByField<const fields::Layout*>& layouts) {
   const auto rock = elasticity(scene, *mesh);
-  return physics::make_stress_recovery(mesh, displacement, rock.values, rock.number);
+  return physics::make_stress_recovery(mesh, layouts, rock.values, rock.number);
 }
 
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)

@@ -80,8 +80,8 @@ class Model {
 /// The equation system of a scene is a list of modules.
 std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Recovers the stress of the displacement in this rock; refers to the layout. Collective.
+/// Recovers the stress of the displacement in this rock; refers to the layouts. Collective.
 std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
-                                                              const fields::Layout& displacement);
+                                                              const physics::ByField<const fields::Layout*>& layouts);
 
 }  // namespace sprekk::model

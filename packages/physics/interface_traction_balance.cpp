@@ -1,8 +1,7 @@
 #include "physics/interface_traction_balance.hpp"
 
 #include "assembly/assembler.hpp"
-
-#include <Teuchos_LAPACK.hpp>
+#include "physics/bubble_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -224,8 +223,8 @@ class InterfaceTractionBalance final : public assembly::Module {
       const int side = sides[s][1], local_face = face.local_face[side];
       const LocalIndex cell = face.cell[side];
       const Real signed_area = side == mesh::plus ? face.area : -face.area;
-      stiffness(s) =
-          n_faces[cell] * integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
+      stiffness(s) = n_faces[cell] * bubble_stiffness<shape>(*mesh_, cell, local_face, law(cell));
+      integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
       bubble(s) = signed_area * assembly::bubble_mean<shape>(*mesh_, cell, local_face);
       const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
@@ -240,14 +239,15 @@ class InterfaceTractionBalance final : public assembly::Module {
     Kokkos::deep_copy(op_->push, push);
   }
 
-  /// Integrates the coupling of a face's bubble with the cell's nodes, coupling(i, a dim + j), and returns the largest
-  /// eigenvalue of the bubble's own stiffness B.
+  const laws::Elasticity& law(LocalIndex cell) const {
+    return parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
+                                                                         : parameters_.elasticity_of_cell[cell]];
+  }
+
+  /// Integrates the coupling of a face's bubble with the cell's nodes, coupling(i, a dim + j).
   template <class Coupling>
-  Real integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
-    const auto& law =
-        parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
-                                                                      : parameters_.elasticity_of_cell[cell]];
-    Real X[n][dim], dN[n][dim], db[dim], B[dim * dim] = {};
+  void integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
+    Real X[n][dim], dN[n][dim], db[dim];
     assembly::gather_host<shape>(*mesh_, cell, X);
     assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto&) {
       Op::Cell::gradients(xi, dN);
@@ -255,20 +255,12 @@ class InterfaceTractionBalance final : public assembly::Module {
       const assembly::CellPoint<shape> point(X, dN);
       Real gb[dim], ga[dim];
       point.gradient(db, gb);
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) B[i * dim + j] += volume * law.stiffness(gb, gb, i, j);
       for (int a = 0; a < n; ++a) {
         point.gradient(dN[a], ga);
         for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) coupling(i, a * dim + j) += volume * law.stiffness(gb, ga, i, j);
+          for (int j = 0; j < dim; ++j) coupling(i, a * dim + j) += volume * law(cell).stiffness(gb, ga, i, j);
       }
     });
-    Real eigenvalues[dim], work[16];
-    int info = 0;
-    Teuchos::LAPACK<int, Real>().SYEV('N', 'U', dim, B, dim, eigenvalues, work, 16, &info);
-    SPREKK_CHECK(info == 0, "fracture face of cell {}: the bubble's stiffness has no eigenvalues",
-                 mesh_->cell_id[cell]);
-    return eigenvalues[dim - 1];
   }
 
   InterfaceTractionBalanceParameters parameters_;

@@ -113,6 +113,7 @@ class TipEnrichment final : public assembly::Module {
                    {Loop::tip_sides, "tip displacement", {"side bubble", "traction"}},
                    {Loop::tip_sides, "side bubble", {"tip displacement"}}};
     d.linear = true;
+    d.outputs = {{"tip displacement", "m", fields::Entity::node, dim}};
     return d;
   }
 
@@ -145,6 +146,13 @@ class TipEnrichment final : public assembly::Module {
     sides_->add_jacobian(side_, state, J);
   }
 
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[q_]);
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
+      for (int i = 0; i < dim; ++i)
+        fields[0].values.push_back(mesh_->enriched[node] < 0 ? 0 : q(mesh_->enriched[node] * dim + i));
+  }
+
   bool constant_load() const override {
     bool all = parameters_.body_force.constant_in_time() && fluid_.constant_in_time();
     for (const auto& traction : parameters_.tractions)
@@ -159,10 +167,13 @@ class TipEnrichment final : public assembly::Module {
     for (LocalIndex cell : cell_of_) add_volume_loads(cell, t, load);
     for (const auto& face : mesh_->boundary_faces)
       if (assembly::has_tip(*mesh_, face.cell)) add_tractions(face, t, load);
-    for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
-      if (!assembly::has_tip(*mesh_, mesh_->fracture_faces[f].cell[side])) continue;
+    const auto selected = assembly::tip_sides(*mesh_);
+    const auto all = assembly::fracture_sides(*mesh_);
+    const auto push = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), side_.push);
+    for (std::size_t s = 0; s < selected.size(); ++s) {
+      const auto [f, side] = all[selected[s]];
       if (!parameters_.initial_stress.empty()) add_deviation(f, side, load);
-      if (!fluid_.empty()) add_pressure(f, side, t, load);
+      if (!fluid_.empty()) add_pressure(f, side, t, Kokkos::subview(push, s, Kokkos::ALL), load);
     }
     Kokkos::deep_copy(load_, load);
     loaded_ = true;
@@ -294,16 +305,12 @@ class TipEnrichment final : public assembly::Module {
   }
 
   /// The fluid pushes the sides apart with its mean pressure over the face.
-  template <class Host>
-  void add_pressure(LocalIndex f, int side, Real t, const Host& load) const {
+  template <class Push, class Host>
+  void add_pressure(LocalIndex f, int side, Real t, const Push& push, const Host& load) const {
     const auto& face = mesh_->fracture_faces[f];
-    const LocalIndex cell = face.cell[side];
     const Real p = mean_fluid_pressure<shape>(fluid_, *mesh_, face, side, t);
-    const auto means = Tip(*mesh_, cell).face_means(face.local_face[side]);
-    const Real force = (side == mesh::plus ? face.area : -face.area) * p;
-    for (int k = 0; k < Tip::n_face; ++k)
-      for (int i = 0; i < dim; ++i)
-        add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i, force * means[k] * face.frame[0][i]);
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) add(load, face.cell[side], a, i, p * push(a) * face.frame[0][i]);
   }
 
   BulkMomentumParameters parameters_;

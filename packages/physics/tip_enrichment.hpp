@@ -10,7 +10,7 @@ namespace sprekk::physics {
 /// and to the momentum rows of u, q and side bubbles what follows from it in
 ///   integral sigma(u) : grad v + sum_f |f| lambda_f . mean_f(R [[v]]) = loads(v).
 /// The rows of q hold all loads of the bulk and of the fluid. q is zero where displacements are prescribed on a face
-/// with a tip. Cells of order 1. Parameters are those of the bulk.
+/// with a tip. Outputs it (nodes, m; zero elsewhere). Cells of order 1. Parameters are those of the bulk.
 std::unique_ptr<assembly::Module> make_tip_enrichment(mesh::Shape shape, BulkMomentumParameters parameters,
                                                       FluidPressure fluid_pressure = {});
 

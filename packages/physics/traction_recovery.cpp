@@ -1,5 +1,8 @@
 #include "physics/traction_recovery.hpp"
 
+#include "assembly/loop.hpp"
+#include "assembly/tip_cell.hpp"
+
 #include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
@@ -43,25 +46,51 @@ class Unresolved {
 
   /// Adds the forces on the unknowns of one side of a face whose cell is owned.
   template <class Forces>
-  void add(LocalIndex f, int side, const Forces& displacement, const Forces& bubble) const {
+  void add(LocalIndex f, int side, const Forces& to) const {
     const auto& face = mesh_.fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
     const Matrix G = gradient(f, side);
     const Real sign = side == mesh::plus ? 1 : -1;
     const auto nodes = mesh::face_nodes(shape)[face.local_face[side]];
+    const auto node = [&](int k) { return mesh_.cells[cell * n_nodes + nodes[k]]; };
+    const Vector centre = mean_place(cell, face.local_face[side]);
+    const auto force = [&](int i, Real area, const auto& x) {
+      Real sum = 0;
+      for (int j = 0; j < dim; ++j) sum -= sign * area * G[i][j] * (x[j] - centre[j]);
+      return sum;
+    };
     assembly::for_each_face_point<shape>(
-        mesh_, face.cell[side], face.local_face[side], [&](const auto& N, Real area, const auto& x) {
+        mesh_, cell, face.local_face[side], [&](const auto& N, Real area, const auto& x) {
           for (int i = 0; i < dim; ++i) {
-            Real force = 0;
-            for (int j = 0; j < dim; ++j) force -= sign * area * G[i][j] * (x[j] - face.centre[j]);
-            bubble((f * 2 + side) * dim + i, 0) += assembly::face_bubble<shape>(N) * force;
+            to[bubble]((f * 2 + side) * dim + i, 0) += assembly::face_bubble<shape>(N) * force(i, area, x);
             for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-              displacement(mesh_.free_node(mesh_.cells[face.cell[side] * n_nodes + nodes[k]]) * dim + i, 0) +=
-                  N[k] * force;
+              to[nodal](mesh_.free_node(node(k)) * dim + i, 0) += N[k] * force(i, area, x);
           }
         });
+    if constexpr (mesh::order(shape) == 1)
+      if (assembly::has_tip(mesh_, cell))
+        assembly::TipCell<shape>(mesh_, cell)
+            .for_each_face_point(
+                face.local_face[side], [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+                  for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+                    for (int i = 0; i < dim && mesh_.enriched[node(k)] >= 0; ++i)
+                      to[tip](mesh_.enriched[node(k)] * dim + i, 0) += psi[k] * force(i, mesh::norm(area), x);
+                });
   }
 
  private:
+  /// <x>: nodes at quarter points move it off the face's centre.
+  Vector mean_place(LocalIndex cell, int local_face) const {
+    Vector sum{};
+    Real total = 0;
+    assembly::for_each_face_point<shape>(mesh_, cell, local_face, [&](const auto&, Real area, const auto& x) {
+      for (int i = 0; i < dim; ++i) sum[i] += area * x[i];
+      total += area;
+    });
+    for (Real& x : sum) x /= total;
+    return sum;
+  }
+
   /// G_ij = dt_i/dx_j by least squares over the faces of the same fracture that share a node of this side; as small as
   /// possible in directions in which there are none.
   Matrix gradient(LocalIndex f, int side) const {
@@ -101,26 +130,28 @@ class Unresolved {
 
 }  // namespace
 
-void add_unresolved_traction(const mesh::Mesh& mesh, const FractureLayouts& layouts, const InitialStress& initial,
-                             const fields::Vector& traction, fields::Vector& displacement, fields::Vector& bubble) {
-  fields::Vector lambda(layouts.traction.ghosted()), u(layouts.displacement.ghosted()), beta(layouts.bubble.ghosted());
-  lambda.doImport(traction, *layouts.traction.import(), Tpetra::REPLACE);
+void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
+                             const fields::Layout& traction_layout, const InitialStress& initial,
+                             const fields::Vector& traction, const ByField<RCP<fields::Vector>>& forces) {
+  fields::Vector lambda(traction_layout.ghosted());
+  lambda.doImport(traction, *traction_layout.import(), Tpetra::REPLACE);
+  std::vector<fields::Vector> local;
+  for (const auto* layout : layouts) local.emplace_back((layout ? layout : layouts[nodal])->ghosted());
   mesh::for_shape(mesh.shape, [&](auto shape) {
     const Unresolved<shape()> unresolved(mesh, initial, lambda.getLocalViewHost(Tpetra::Access::ReadOnly));
-    const auto u_view = u.getLocalViewHost(Tpetra::Access::ReadWrite);
-    const auto beta_view = beta.getLocalViewHost(Tpetra::Access::ReadWrite);
+    ByField<typename fields::Vector::dual_view_type::t_host> to;
+    for (std::size_t k = 0; k < to.size(); ++k) to[k] = local[k].getLocalViewHost(Tpetra::Access::ReadWrite);
     for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
       for (const int side : {mesh::minus, mesh::plus})
         if (const LocalIndex cell = mesh.fracture_faces[f].cell[side]; cell >= 0 && cell < mesh.n_owned_cells)
-          unresolved.add(f, side, u_view, beta_view);
+          unresolved.add(f, side, to);
   });
-  const auto add = [](const fields::Vector& local, const fields::Layout& layout, fields::Vector& to) {
-    fields::Vector owned(layout.owned());  // an export adds what comes from other ranks, and replaces the rest
-    owned.doExport(local, *layout.import(), Tpetra::ADD);
-    to.update(1, owned, 1);
-  };
-  add(u, layouts.displacement, displacement);
-  add(beta, layouts.bubble, bubble);
+  for (std::size_t k = 0; k < layouts.size(); ++k) {
+    if (!layouts[k]) continue;
+    fields::Vector owned(layouts[k]->owned());  // an export adds what comes from other ranks, and replaces the rest
+    owned.doExport(local[k], *layouts[k]->import(), Tpetra::ADD);
+    forces[k]->update(1, owned, 1);
+  }
 }
 
 }  // namespace sprekk::physics

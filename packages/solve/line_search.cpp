@@ -32,6 +32,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto dx = direction.clone();
   auto blocks = blocks_of(*dx);
   bool solved = model_.linear_history().last.converged;
+  report_.damped = damping_ > 0 || std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
   const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
   if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
@@ -42,6 +43,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   if (solved) found = search(group, from, *dx);
   while (!found && damping_ < most_damping) {
     problem_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
+    report_.damped = true;
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
     if (solved) found = search(group, from, *dx);
   }

@@ -16,6 +16,7 @@ struct SearchReport {
   std::string failure;           ///< why there was no step
   std::string loose;             ///< what nothing held in one of the iterates, the last such
   bool stagnant = false;         ///< none of the last five merits is below half the best before
+  bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
   int n_accepted = 0;            ///< iterates but for the start
   std::vector<int> last_change;  ///< [as states()] number of the iterate in which a state was last another one
 };

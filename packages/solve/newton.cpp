@@ -4,6 +4,7 @@
 #include <NOX_StatusTest_Generic.H>
 #include <NOX_Thyra.H>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
 
@@ -140,6 +141,12 @@ NewtonReport Newton::solve(BlockVector& x) {
   refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   const auto& linear = model_->linear_history();
+  if (linear.solves > 0) {
+    const int here = search.damped;
+    int anywhere = 0;
+    Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
+    damped_ = anywhere > 0;
+  }
   report.iterations = linear.solves;
   report.linear_iterations = linear.iterations;
   if (!search.failure.empty()) report.reason = search.failure;
@@ -151,10 +158,11 @@ NewtonReport Newton::solve(BlockVector& x) {
 }
 
 LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
-  if (linear_->n_setups() == 0) {
+  if (linear_->n_setups() == 0 || damped_) {
     problem_.damp(0, {});
     problem_.jacobian(x);
     linear_->update();
+    damped_ = false;
   }
   return linear_->solve(b, dx, tolerance);
 }

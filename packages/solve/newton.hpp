@@ -50,8 +50,8 @@ class Newton {
   /// rank.
   NewtonReport solve(BlockVector& x);
 
-  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with, or that at x if there was none: how x answers
-  /// to small forces b. Rows of constrained unknowns are dx_i = b_i. Collective.
+  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with, or that at x if there was none or it was
+  /// damped: how x answers to small forces b. Rows of constrained unknowns are dx_i = b_i. Collective.
   LinearReport answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   const CondensedSolve& linear() const { return *linear_; }
@@ -61,6 +61,7 @@ class Newton {
   NewtonOptions options_;
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ThyraModel> model_;
+  bool damped_ = false;  // the last Jacobian that was solved with
 };
 
 }  // namespace sprekk::solve

@@ -22,14 +22,14 @@ class Crack:
     def __init__(self, mode, drop, G, nu, angle=0, uniform=(0, 0, 0), traction=(0, 0)):
         """`uniform` is a stress XX, YY, XY whose displacement is added, `traction` the normal and tangential one on the crack."""
         self.mode, self.drop, self.G, self.nu, self.uniform = mode, drop, G, nu, uniform
+        self.lam = lame(G, nu)
         self.exact_traction = np.array(traction, dtype=float)
         a = math.radians(angle)
         self.tangent, self.normal = np.array([math.cos(a), math.sin(a)]), np.array([-math.sin(a), math.cos(a)])
 
     def strain(self):
         xx, yy, xy = self.uniform
-        lam = lame(self.G, self.nu)
-        mean = lam / (2 * (lam + self.G)) * (xx + yy)
+        mean = self.lam / (2 * (self.lam + self.G)) * (xx + yy)
         return np.array([[xx - mean, xy], [xy, yy - mean]]) / (2 * self.G)
 
     def displacement(self, points):
@@ -61,14 +61,15 @@ class Penny:
     l1, l2 = (sqrt((r + 1)^2 + z^2) -+ sqrt((r - 1)^2 + z^2))/2."""
 
     def __init__(self, p, G, nu):
-        self.p, self.G, self.nu = p, G, nu
+        self.p, self.G, self.nu, self.lam = p, G, nu, lame(G, nu)
 
     def displacement(self, points):
         x, y, z = points.T
         r, side, z = np.hypot(x, y), np.where(z < 0, -1, 1), np.abs(z)
         far, near = np.hypot(r + 1, z), np.hypot(r - 1, z)
         l1, l2 = (far - near) / 2, (far + near) / 2
-        s, q = np.sqrt(np.maximum(1 - l1**2, 0)), np.sqrt(np.maximum(l2**2 - 1, 0))
+        s, q = np.sqrt(np.maximum(1 - l1**2, 0)), np.sqrt(np.maximum(l2**2 - 1, 0))  # s q = z: the larger one gives the other
+        s, q = np.where(s < q, z / np.maximum(q, 1e-300), s), np.where(q < s, z / np.maximum(s, 1e-300), q)
         angle, product = np.arcsin(np.minimum(1 / l2, 1)), np.maximum(far * near, 1e-300)
         radial = -(1 - 2 * self.nu) / 2 * (angle - q / l2**2) + z * s / (l2**2 * product)
         axial = 2 * (1 - self.nu) * (s - z * angle) + z * (angle - q / product)

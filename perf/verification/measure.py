@@ -1,5 +1,6 @@
 """Runs a scene and measures its results against exact functions, from the files that the run wrote."""
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -26,6 +27,8 @@ class RunError(Exception):
 
 def cube_rule(dimension, points=GAUSS):
     """Points [q, dimension] and weights [q] of [0, 1]^dimension."""
+    if dimension == 0:
+        return np.zeros((1, 0)), np.ones(1)
     x, w = np.polynomial.legendre.leggauss(points)
     grid = np.meshgrid(*[(x + 1) / 2] * dimension, indexing="ij")
     weights = np.meshgrid(*[w / 2] * dimension, indexing="ij")
@@ -84,7 +87,7 @@ def start(binary, scene, sets, directory, ranks=1):
     """Runs xml/SCENE with entries replaced; its last step."""
     shutil.rmtree(directory, ignore_errors=True)
     command = [str(binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
-    command += [word for entry in sets for word in ("--set", entry)]
+    command += [word for entry in ("Output.error estimate=true", *sets) for word in ("--set", entry)]
     if ranks > 1:
         command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
     done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
@@ -123,6 +126,85 @@ def displacement_error(run, exact):
         away = np.einsum("a,cai->ci", shape, values[nodes]) - known
         error, size = error + (volume * (away**2).sum(1)).sum(), size + (volume * (known**2).sum(1)).sum()
     return float(np.sqrt(error / size))
+
+
+def tip_rule(dimension, tips, points=GAUSS):
+    """Points and weights on the reference simplex for functions of the root of the distance from some of its corners, which
+    `tips` counts: they are in front."""
+    corners = np.vstack([np.zeros(dimension), np.eye(dimension)])
+    s, w = cube_rule(1, points)
+    (a, wa), (b, wb) = simplex_rule(tips - 1, points), simplex_rule(dimension - tips, points)
+    first, second = (np.column_stack([1 - x.sum(axis=1), x]) for x in (a, b))
+    rho = s[:, 0]**2
+    placed = (1 - rho)[:, None, None, None] * (first @ corners[:tips])[None, :, None] + rho[:, None, None, None] * (second @ corners[tips:])[None, None]
+    weights = (2 * s[:, 0] * w * rho**(dimension - tips) * (1 - rho)**(tips - 1))[:, None, None] * wa[None, :, None] * wb[None, None]
+    return placed.reshape(-1, dimension), weights.ravel()
+
+
+def tips_of(run):
+    """Which nodes of the rock are tips with functions around them (order 1): those of fractures that both sides share and that
+    have no such function of their own."""
+    points, u, q = (vtk_to_numpy(run.rock.GetPoints().GetData() if name == "points" else run.rock.GetPointData().GetArray(name))
+                    for name in ("points", "displacement", "tip displacement"))
+    values, last = np.unique(np.hstack([points, u]), axis=0), run.faces.points[np.unique(np.concatenate(run.faces.polygons))]
+    places, copies = np.unique(values[:, :3], axis=0, return_counts=True)
+    whole = {place.tobytes() for place in places[copies == 1]} & {place.tobytes() for place in last}
+    return np.array([place.tobytes() in whole for place in points]) & ~q.any(axis=1)
+
+
+def gradient(exact, points, step=1e-9):
+    """Central differences of an exact displacement, [point, i, j]."""
+    d = points.shape[1]
+    return np.stack([(exact.displacement(points + step * e)[:, :d] - exact.displacement(points - step * e)[:, :d]) / (2 * step)
+                     for e in np.eye(d)], axis=2)
+
+
+def energy(error, exact):
+    """Of the stress that belongs to gradients of a displacement [..., i, j], per volume, twice."""
+    strain = (error + np.swapaxes(error, -1, -2)) / 2
+    return 2 * exact.G * (strain**2).sum((-1, -2)) + exact.lam * np.trace(strain, axis1=-2, axis2=-1)**2
+
+
+def stress_error(run, exact):
+    """Square of the error of the stress in the energy, [cell], by quadrature of what bulk.vtu holds, tip functions included."""
+    kind, d = run.rock.GetCellType(0), run.dimension
+    cell, n = CELLS[kind](), run.rock.GetCell(0).GetNumberOfPoints()
+    nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(-1, n)
+    points, u = (vtk_to_numpy(a)[:, :d] for a in (run.rock.GetPoints().GetData(), run.rock.GetPointData().GetArray("displacement")))
+    tip = np.zeros(nodes.shape, dtype=bool)
+    if run.rock.GetPointData().HasArray("tip displacement"):
+        q, tip = vtk_to_numpy(run.rock.GetPointData().GetArray("tip displacement"))[:, :d], tips_of(run)[nodes]
+        order = np.argsort(~tip, axis=1, kind="stable")  # tips first: simplices may be turned as one likes
+        nodes, tip = np.take_along_axis(nodes, order, 1), np.take_along_axis(tip, order, 1)
+    square = np.zeros(len(nodes))
+    for tips in np.unique(tip.sum(axis=1)):
+        here = tip.sum(axis=1) == tips
+        of = nodes[here]
+        rule, weights = tip_rule(d, tips) if tips else simplex_rule(d) if kind in SIMPLICES else cube_rule(d)
+        for x, w in zip(rule, weights):
+            shape, slopes = [0.0] * n, [0.0] * (n * d)
+            cell.InterpolateFunctions([*x, *[0.0] * (3 - d)], shape)
+            cell.InterpolateDerivs([*x, *[0.0] * (3 - d)], slopes)
+            jacobian = np.einsum("ka,cai->cki", np.reshape(slopes, (d, n)), points[of])
+            slope = np.einsum("cik,ka->cai", np.linalg.inv(jacobian), np.reshape(slopes, (d, n)))  # dN_a/dx_i
+            computed = np.einsum("cai,caj->cij", u[of], slope)
+            if tips:
+                rho, fall = sum(shape[tips:]), slope[:, tips:].sum(axis=1)
+                psi = slope[:, tips:] * (rho**-0.5 - 1) - 0.5 * rho**-1.5 * np.array(shape[tips:])[:, None] * fall[:, None, :]
+                computed += np.einsum("cai,caj->cij", q[of[:, tips:]], psi)
+            known = gradient(exact, np.einsum("a,cai->ci", shape, points[of]))
+            square[here] += w * np.abs(np.linalg.det(jacobian)) * energy(computed - known, exact)
+    return square
+
+
+def effectivity(run, means, exact):
+    """What the run says of its error over the error: of jumps, and of stress where it is known."""
+    estimate, size = run.results["steps"][-1]["error_estimate"], area(run.corners())
+    error = float(np.sqrt((size * ((run.data("jump")[:, :run.dimension] - means)**2).sum(axis=1)).sum()))
+    found = {"jump": estimate["jump"].get("norm", math.nan) / error}
+    if hasattr(exact, "displacement"):
+        found["stress"] = estimate["stress"]["energy_norm"] / float(np.sqrt(stress_error(run, exact).sum()))
+    return found
 
 
 def face_points(corners, points=GAUSS):

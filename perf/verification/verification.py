@@ -18,6 +18,8 @@ import measure  # noqa: E402
 import meshes  # noqa: E402
 import style  # noqa: E402
 
+ESTIMATES = ("jump", "stress")
+WITHIN = 2  # a factor by which an estimate may be off
 SLACK = 0.15  # by which an observed order may fall short of its bound: meshes are not yet fine
 
 
@@ -29,6 +31,7 @@ class Row:
     cells: int
     unknowns: int
     errors: dict
+    effectivity: dict  # what the run estimates over what is true
     newton: int
     krylov: int
     seconds: float
@@ -41,8 +44,9 @@ def run(options, case, series, label, source):
     directory = folder / re.sub(r"[^\w.+-]+", "_", f"{series.name} {label}")
     done = measure.start(options.binary, series.scene or case.scene, (*series.sets, *entries), directory, options.ranks)
     steps = done.results["steps"]
-    errors = case.errors(done, series.exact or case.exact)
-    return Row(series.name, label, done.results["mesh"]["cells"], done.unknowns(series.prescribed or case.prescribed), errors,
+    exact = series.exact or case.exact
+    errors, effectivity = case.errors(done, exact), measure.effectivity(done, case.jumps(done, exact), exact)
+    return Row(series.name, label, done.results["mesh"]["cells"], done.unknowns(series.prescribed or case.prescribed), errors, effectivity,
                sum(step["newton_iterations"] for step in steps), sum(step["linear_iterations"] for step in steps), done.seconds), done.dimension
 
 
@@ -52,7 +56,7 @@ def add_orders(row, before, dimension):
 
 
 def header(names):
-    return f"{'series, mesh':34}{'cells':>8}{'unknowns':>10}" + "".join(f"{name:>13}{'order':>7}" for name in names) + f"{'Newton':>8}{'Krylov':>8}{'seconds':>9}"
+    return f"{'series, mesh':34}{'cells':>8}{'unknowns':>10}" + "".join(f"{name:>13}{'order':>7}" for name in names) + "".join(f"{f'{name} est.':>12}" for name in ESTIMATES) + f"{'Newton':>8}{'Krylov':>8}{'seconds':>9}"
 
 
 def line(row, names):
@@ -60,6 +64,7 @@ def line(row, names):
     for name in names:
         order = row.orders.get(name)
         words += f"{row.errors[name]:>13.2e}{'' if order is None else format(order, '.2f'):>7}" if name in row.errors else f"{'':20}"
+    words += "".join(f"{row.effectivity[name]:>12.2f}" if name in row.effectivity else f"{'-':>12}" for name in ESTIMATES)
     return words + f"{row.newton:>8}{row.krylov:>8}{row.seconds:>9.2f}"
 
 
@@ -79,6 +84,11 @@ def missed(case, rows, quick):
             wrong += [f"{row.series}, {row.mesh}: order of {bound.error} {row.orders[bound.error]:.2f}, the bound is {bound.least:g}"
                       for row in of if not row.orders[bound.error] >= bound.least - SLACK * (2 if quick else 1)]
         judged += len(of)
+    for row in rows:
+        sure = [name for name in row.effectivity if (row.series, row.mesh, name) not in case.unsure]
+        wrong += [f"{row.series}, {row.mesh}: the estimate of the {name} is {row.effectivity[name]:.2f} of its error"
+                  for name in sure if not 1 / WITHIN <= row.effectivity[name] <= WITHIN]
+        judged += len(sure)
     return wrong, judged
 
 
@@ -91,6 +101,15 @@ def last_line(case, rows):
         return f"{case.name} order_u=- order_traction=- error=- unknowns=-"
     orders = [format(row.orders[name], ".2f") if name in row.orders else "-" for name in case.orders]
     return f"{case.name} order_u={orders[0]} order_traction={orders[1]} error={row.errors[error]:.2e} unknowns={row.unknowns}"
+
+
+def effectivities(case, rows):
+    """CASE jump_estimate=LEAST..MOST stress_estimate=..: over the true errors, of all runs."""
+    words = case.name
+    for name in ESTIMATES:
+        all_of = [row.effectivity[name] for row in rows if name in row.effectivity]
+        words += f" {name}_estimate=" + (f"{min(all_of):.2f}..{max(all_of):.2f}" if all_of else "-")
+    return words
 
 
 def looks(series):
@@ -148,9 +167,10 @@ def write(rows, file):
     names = list(dict.fromkeys(name for row in rows for name in row.errors))
     with open(file, "w", newline="") as opened:
         writer = csv.writer(opened)
-        writer.writerow(["series", "mesh", "cells", "unknowns", *names, *[f"order of {name}" for name in names], "newton", "krylov", "seconds"])
+        writer.writerow(["series", "mesh", "cells", "unknowns", *names, *[f"order of {name}" for name in names], *[f"{name} estimate" for name in ESTIMATES], "newton", "krylov", "seconds"])
         writer.writerows([row.series, row.mesh, row.cells, row.unknowns, *[row.errors.get(n) for n in names],
-                          *[row.orders.get(n) for n in names], row.newton, row.krylov, row.seconds] for row in rows)
+                          *[row.orders.get(n) for n in names],
+                          *[row.effectivity.get(n) for n in ESTIMATES], row.newton, row.krylov, row.seconds] for row in rows)
 
 
 def arguments(words):
@@ -184,6 +204,7 @@ def main(words):
             write(rows, options.output / f"{case.name}.csv")
             draw(case, rows, options.output / f"{case.name}.png")
         print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds looked at"]))
+        print(effectivities(case, rows))
         print(last_line(case, rows) + "\n", flush=True)
         above += wrong
     return 1 if above else 0

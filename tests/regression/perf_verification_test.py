@@ -120,6 +120,19 @@ class Scenes(ProgramTest):
         run.faces.cell_data["traction"][:, 0] = 1.2 * known.traction(corners.mean(axis=1))[:, 1]
         self.assertAlmostEqual(measure.traction_errors(run, known, [[1, 0]])[1], 0.2, places=12)
 
+    def test_stress_error_is_that_of_a_known_stretch(self):
+        run, case, series = self.run_case(cases.mms2d, "manufactured_stick_2d")
+
+        class Stretched:
+            """u = (0.1 x, 0): the stress (lam + 2 G, lam, 0) 0.1, its energy over the unit square (lam + 2 G) 0.01."""
+            G, lam = series.exact.G, series.exact.lam
+
+            def displacement(self, points):
+                return np.stack([0.1 * points[:, 0], 0 * points[:, 1]], axis=1)
+        values = measure.vtk_to_numpy(run.rock.GetPointData().GetArray("displacement"))
+        values[:] = 0
+        self.assertAlmostEqual(measure.stress_error(run, Stretched()).sum(), 0.03, places=8)
+
     def test_rules_integrate(self):
         for d in (1, 2, 3):
             x, w = measure.simplex_rule(d)
@@ -128,6 +141,11 @@ class Scenes(ProgramTest):
             factorial = lambda n: float(np.prod(np.arange(1, n + 1)))
             value = np.prod([factorial(k) for k in exponents]) / factorial(exponents.sum() + d)
             self.assertAlmostEqual((w * np.prod(x**exponents, axis=1)).sum(), value, places=15)
+        for tips in (1, 2, 3):  # of (1 - x - y - z)^2 and of the root of the distance from the first corner
+            x, w = measure.tip_rule(3, tips)
+            self.assertAlmostEqual((w * (1 - x.sum(axis=1))**2).sum(), 2 / 120, places=12)
+        x, w = measure.tip_rule(2, 1)
+        self.assertAlmostEqual((w / np.sqrt(x.sum(axis=1))).sum(), 2 / 3, places=12)
         squares = np.array([[[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]]])
         self.assertAlmostEqual(measure.area(squares)[0], 6)
         self.assertTrue(np.allclose(measure.face_means(lambda p: p[:, :1] * p[:, 1:2], squares), 1.5))
@@ -149,6 +167,7 @@ class Table(ProgramTest):
                                "--output", self.folder / "out", "--quick", "--only", "mms2d"], capture_output=True, text=True, timeout=100)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         number = r"-?\d\.\d+"
+        self.assertRegex(done.stdout.splitlines()[-3], rf"^mms2d jump_estimate={number}\.\.{number} stress_estimate={number}\.\.{number}$")
         self.assertRegex(done.stdout.splitlines()[-2], rf"^mms2d order_u={number} order_traction={number} error=\S+e-\d+ unknowns=\d+$")
         rows = (self.folder / "out/mms2d.csv").read_text().splitlines()
         self.assertGreater(len(rows), 6)
@@ -157,9 +176,10 @@ class Table(ProgramTest):
     def test_a_missed_bound_is_told(self):
         import verification
         case = cases.mms2d()
-        row = verification.Row("mixed triangle 2", "n=32", 1, 8064, {"u": 2e-4}, 1, 1, 0.0, {"u": 1.2})
+        row = verification.Row("mixed triangle 2", "n=32", 1, 8064, {"u": 2e-4}, {"jump": 0.4, "stress": 1.9}, 1, 1, 0.0, {"u": 1.2})
         wrong, judged = verification.missed(case, [row], False)
-        self.assertEqual((len(wrong), judged), (2, 2), wrong)
+        self.assertEqual((len(wrong), judged), (3, 4), wrong)
+        self.assertIn("the estimate of the jump is 0.40 of its error", wrong[-1])
 
 
 if __name__ == "__main__":

@@ -9,6 +9,8 @@ modulus 38.89 GPa, shear modulus 29.17 GPa: Phan et al. (2003), as in the exampl
 It checks itself: a crack under pressure and an inclined frictional crack against exact values, contact and friction element by
 element, and the values that can be read off the figures of Phan et al., to a few per cent."""
 import sys
+from pathlib import Path
+
 import numpy as np
 
 
@@ -148,6 +150,13 @@ def violation(r, mu):
     )
 
 
+def integrals(r, on, axis):
+    """coordinates along a fracture's elements, integrals of the normal and tangential jump up to them"""
+    L = r["L"][on]
+    ends = np.append(r["M"][on][:, axis] - L / 2, r["M"][on][-1, axis] + L[-1] / 2)
+    return np.stack([ends, *(np.append(0, np.cumsum(r[name][on] * L)) for name in ("jn", "jt"))], axis=1)
+
+
 def rot(a):
     return np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
 
@@ -203,6 +212,7 @@ def main():
             ap=np.interp([25, 50, 75], r["M"][V][:, 1] + 50, r["jn"][V]),
             sl=np.interp([-20, -12.5, -5.0], xh, r["jt"][H]),
             N=-np.interp([-20, -12.5, -5.0, -1.0], xh, r["ln"][H]),
+            jumps=[integrals(r, H, 0), integrals(r, V, 1)],
         )
         out.append(o)
         print(
@@ -225,6 +235,10 @@ def main():
         "  Richardson: opening volume %.5f m2, int|slip| %.5f m2, aperture at s=25,50,75 m: %s m; slip at x=-20,-12.5,-5 m: %s m; N at x=-20,-12.5,-5,-1 m: %s MPa"
         % (R["volume"], R["slip"], np.round(R["ap"], 5), np.round(R["sl"], 5), np.round(R["N"] / 1e6, 3))
     )
+    with open(Path(__file__).with_suffix(".csv"), "w") as file:
+        file.write("# fracture (0 horizontal, 1 vertical), x or y, integral of the normal and the tangential jump up to there\n")
+        for fracture, (coarse, fine) in enumerate(zip(out[1]["jumps"], out[2]["jumps"])):
+            file.writelines("%d,%.9f,%.9f,%.9f\n" % (fracture, *row) for row in np.column_stack([coarse[:, 0], (2 * fine[::2] - coarse)[:, 1:]]))
     print(
         "  digitised from Phan et al.: slip at x=-20: 3.2 mm, x=-12.5: 14.8 to 16 mm (unsure), x=-5: 39.0 mm, largest 67 mm; N at x=-20: 118.7, x=-5: 98.4, x=-1: about 40 MPa"
     )

@@ -9,9 +9,7 @@
 #include "assembly/system.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/facets.hpp"
-#include "physics/bulk_momentum.hpp"
-#include "physics/elastic_plastic_jump.hpp"
-#include "physics/interface_traction_balance.hpp"
+#include "physics/mechanics.hpp"
 #include "unit/assembly/dense.hpp"
 #include "unit/mesh/meshes.hpp"
 
@@ -73,15 +71,9 @@ inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}
                       const std::vector<assembly::DirichletCondition>& conditions = {}) {
   global.region_names = {"soft", "stiff"};
   Rock rock{global, mesh::make_distributed(global, comm), {soft, stiff}, joint, nullptr};
-  const BulkMomentumParameters bulk{rock.elasticity, BodyForce{loads.body_force}, loads.tractions};
-  std::vector<std::unique_ptr<assembly::Module>> modules;
-  modules.push_back(make_bulk_momentum(global.shape, bulk));
-  if (!global.fracture_names.empty()) {
-    modules.push_back(make_interface_traction_balance(global.shape, {bulk.elasticity, bulk.body_force}));
-    const std::vector<JointParameters> joints(global.fracture_names.size(), joint);
-    modules.push_back(make_elastic_plastic_jump(global.shape, {joints, bulk.elasticity}));
-  }
-  rock.system = std::make_unique<assembly::System>(rock.mesh, std::move(modules), conditions,
+  const MechanicsParameters mechanics{{rock.elasticity, BodyForce{loads.body_force}, loads.tractions},
+                                      std::vector<JointParameters>(global.fracture_names.size(), joint)};
+  rock.system = std::make_unique<assembly::System>(rock.mesh, make_mechanics(*rock.mesh, mechanics), conditions,
                                                    assembly::Reference{2.5, 1}, rcp(new base::Timers));
   rock.system->set_time(1, 1);
   return rock;

@@ -126,7 +126,8 @@ TEST(ErrorEstimate, ManufacturedSolutions) {
       }
 }
 
-/// Cracks whose tips decide the error. The jump is 2 (1 - nu) s/G sqrt(1 - x^2) along x (mode II) or y (mode I).
+/// Cracks whose tips decide the error. Plain tips have no modes: there the estimate may be a bit below half. The jump
+/// is 2 (1 - nu) s/G sqrt(1 - x^2) along x (mode II) or y (mode I).
 TEST(ErrorEstimate, Cracks) {
   for (const std::string name : {"sneddon", "sneddon_shear"})
     for (const auto& [order, tips] : {std::pair{1, "plain"}, {1, "enriched"}, {2, "plain"}, {2, "enriched"}}) {
@@ -150,9 +151,9 @@ TEST(ErrorEstimate, Cracks) {
         square += face.area * dot(error, error);
       }
       const auto e = estimate(model);
-      expect_between(e.jump / std::sqrt(sum(*mesh.comm, square)), 0.5, 2, "jump");
+      const Real least = tips == std::string("plain") ? 0.4 : 0.5;
+      expect_between(e.jump / std::sqrt(sum(*mesh.comm, square)), least, 2, "jump");
       if (mesh.comm->getRank() == 0) fmt::print("  {} of order {}, {} tips\n", name, order, tips);
-      if (std::string(tips) == "enriched") continue;
       // the error is largest in cells at the tips
       const auto& density = e.fields[0].values;
       const Real largest = *std::max_element(density.begin(), density.end());
@@ -184,18 +185,32 @@ TEST(ErrorEstimate, NoneWhereThereIsNone) {
     }
 }
 
-TEST(ErrorEstimate, SameOnAnyNumberOfRanks) {
+/// The same with all ranks together as with each alone. Collective.
+void expect_same_on_ranks(const model::Scene& scene, Real tolerance) {
   const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
+  model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone);
+  ASSERT_TRUE(together.step_to(1).converged);
+  ASSERT_TRUE(single.step_to(1).converged);
+  const auto a = estimate(together), b = estimate(single);
+  EXPECT_NEAR(a.relative_stress, b.relative_stress, tolerance * b.relative_stress);
+  EXPECT_NEAR(a.relative_jump, b.relative_jump, tolerance * b.relative_jump);
+}
+
+TEST(ErrorEstimate, SameOnAnyNumberOfRanks) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {
       SCOPED_TRACE(d.name());
-      const auto scene = read_scene(fmt::format("verification/manufactured_mixed_{}d.xml", dim), d.with());
-      model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone);
-      ASSERT_TRUE(together.step_to(1).converged);
-      ASSERT_TRUE(single.step_to(1).converged);
-      const auto a = estimate(together), b = estimate(single);
-      EXPECT_NEAR(a.relative_stress, b.relative_stress, 1e-10 * b.relative_stress);
-      EXPECT_NEAR(a.relative_jump, b.relative_jump, 1e-10 * b.relative_jump);
+      expect_same_on_ranks(read_scene(fmt::format("verification/manufactured_mixed_{}d.xml", dim), d.with()), 1e-10);
+    }
+}
+
+TEST(ErrorEstimate, OfCracksTheSameOnAnyNumberOfRanks) {
+  for (const std::string name : {"sneddon", "penny"})
+    for (const int order : {1, 2}) {
+      if (name == "penny" && order == 2) continue;
+      SCOPED_TRACE(fmt::format("{} of order {}", name, order));
+      expect_same_on_ranks(read_scene("verification/" + name + ".xml", {fmt::format("Mesh file.order={}", order)}),
+                           1e-8);
     }
 }
 

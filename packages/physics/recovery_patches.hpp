@@ -1,0 +1,402 @@
+// Patches of cells around nodes, and what recovers stress in them from samples.
+#pragma once
+
+#include "assembly/loop.hpp"
+#include "assembly/tip_cell.hpp"
+#include "physics/tip_modes.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// The points of a cell where the stress is most accurate, or at least not worst: the centre at order 1; at order 2 two
+/// points per direction, in simplices the middles of edges. Cells with a tip have 2 points per direction or dim + 1
+/// inside of them.
+template <mesh::Shape shape>
+struct SamplePoints {
+  static constexpr int dim = mesh::dimension(shape);
+  static constexpr bool simplex = mesh::is_simplex(shape);
+
+  static int n(bool tip) {
+    if (mesh::order(shape) == 1 && !tip) return 1;
+    return !simplex ? 1 << dim : tip ? dim + 1 : dim * (dim + 1) / 2;
+  }
+  static void at(int p, bool tip, Real (&xi)[dim]) {
+    if (n(tip) == 1) return assembly::ReferenceCell<shape>::centre(xi);
+    int from = 0, to = 1;  // corners of edge p
+    for (int edge = 0; edge < p; ++edge)
+      if (++to > dim) to = ++from + 1;
+    const Real near = dim == 2 ? 2.0 / 3.0 : 0.58541019662496845446, far = (1 - near) / dim;
+    for (int i = 0; i < dim; ++i)
+      if (!simplex)
+        xi[i] = assembly::Gauss<2>::point((p >> i) & 1);
+      else if (tip)
+        xi[i] = p == i + 1 ? near : far;
+      else
+        xi[i] = from == i + 1 || to == i + 1 ? 0.5 : 0;
+  }
+};
+
+/// Around every corner node of the cells of one region those that share it; around crack tips (mesh::Mesh::tip) these
+/// alone have the cells with a tip. Each has functions: polynomials of the displacement's order for all components;
+/// around tips linear ones and the modes of a crack (TipModes). Their coefficients fit samples by least squares.
+template <mesh::Shape shape>
+class RecoveryPatches {
+ public:
+  static constexpr int dim = mesh::dimension(shape), order = mesh::order(shape);
+  static constexpr int n_nodes = mesh::n_nodes(shape), n_corners = mesh::n_corners(shape);
+  static constexpr int n_linear = dim + 1, n_terms = order == 1 ? n_linear : n_linear + dim * (dim + 1) / 2;
+  static constexpr int n_modes = TipModes<dim, order>::n;
+  using Cell = assembly::ReferenceCell<shape>;
+  using Corners = assembly::ReferenceCell<mesh::linear(shape)>;
+  using Tip = assembly::TipCell<mesh::linear(shape)>;
+  using Tensor = Symmetric<dim>;
+  using Values = typename Tensor::Values;
+  using Terms = std::array<Real, n_terms>;
+  using Polynomial = std::array<Terms, Tensor::n>;
+  using Modes = std::array<Values, n_modes>;
+  /// Coefficients of the functions of a patch.
+  struct Fit {
+    Polynomial polynomial{};
+    std::array<Real, n_modes> modes{};
+  };
+  using Fits = std::vector<Fit>;  // [patch]
+
+  /// Geometry at a point of a cell.
+  struct Point {
+    Real xi[dim], g[n_nodes][dim], g_tip[n_nodes][dim] = {};
+    std::array<Real, dim> x{};
+    bool enriched = false;
+    assembly::CellPoint<shape> map;
+
+    Point(const mesh::Mesh& mesh, LocalIndex cell, const Real (&xi)[dim], const Tip* tip)
+        : Point(Nodes(mesh, cell, xi), xi, tip) {}
+    /// Of the face function of one of the cell's faces, in space.
+    void bubble(int local_face, Real (&gradient)[dim]) const {
+      Real db[dim];
+      Cell::bubble(local_face, xi, db);
+      map.gradient(db, gradient);
+    }
+
+   private:
+    struct Nodes {
+      Real X[n_nodes][dim], dN[n_nodes][dim];
+      Nodes(const mesh::Mesh& mesh, LocalIndex cell, const Real (&xi)[dim]) {
+        assembly::gather_host<shape>(mesh, cell, X);
+        Cell::gradients(xi, dN);
+      }
+    };
+    Point(const Nodes& nodes, const Real (&at)[dim], const Tip* tip) : enriched(tip), map(nodes.X, nodes.dN) {
+      Real N[n_nodes];
+      std::copy_n(at, dim, xi);
+      Cell::shape_functions(xi, N);
+      for (int a = 0; a < n_nodes; ++a) {
+        map.gradient(nodes.dN[a], g[a]);
+        for (int i = 0; i < dim; ++i) x[i] += N[a] * nodes.X[a][i];
+      }
+      if constexpr (order == 1) {
+        if (!tip) return;
+        typename Tip::Values values;
+        tip->at(xi, values);
+        std::copy(&values.grad_psi[0][0], &values.grad_psi[0][0] + n_nodes * dim, &g_tip[0][0]);
+      }
+    }
+  };
+
+  /// The functions of a patch at a point of one of its cells.
+  struct Functions {
+    Terms terms;
+    Modes modes{};
+    bool singular = false;
+
+    void add(const Values& s, Real factor, Fit& fit) const {
+      add(s, factor, fit.polynomial);
+      for (int m = 0; singular && m < n_modes; ++m) fit.modes[m] += factor * Tensor::product(modes[m], s);
+    }
+    void add(const Values& s, Real factor, Polynomial& polynomial) const {
+      for (int k = 0; k < Tensor::n; ++k)
+        for (int r = 0; r < n_terms; ++r) polynomial[k][r] += factor * s[k] * terms[r];
+    }
+    void evaluate(const Fit& fit, Real factor, Values& s) const {
+      evaluate(fit.polynomial, factor, s);
+      for (int m = 0; singular && m < n_modes; ++m)
+        for (int k = 0; k < Tensor::n; ++k) s[k] += factor * fit.modes[m] * modes[m][k];
+    }
+    void evaluate(const Polynomial& polynomial, Real factor, Values& s) const {
+      for (int k = 0; k < Tensor::n; ++k)
+        for (int r = 0; r < n_terms; ++r) s[k] += factor * polynomial[k][r] * terms[r];
+    }
+  };
+
+  /// Collective.
+  RecoveryPatches(RCP<const mesh::Mesh> mesh, std::vector<laws::Elasticity> elasticity,
+                  std::vector<int> elasticity_of_cell)
+      : mesh_(mesh),
+        elasticity_(std::move(elasticity)),
+        elasticity_of_cell_(std::move(elasticity_of_cell)),
+        tip_modes_(*mesh) {
+    if constexpr (order == 1)
+      for (const LocalIndex cell : assembly::tip_cells(*mesh)) tip_cells_.emplace(cell, Tip(*mesh, cell));
+    find_patches();
+    find_inside();
+    factor();
+    fit_modes();
+  }
+
+  std::size_t size() const { return patches_.size(); }
+  const Tip* tip_cell(LocalIndex cell) const {
+    const auto found = tip_cells_.find(cell);
+    return found == tip_cells_.end() ? nullptr : &found->second;
+  }
+  const laws::Elasticity& law(LocalIndex cell) const {
+    return elasticity_[elasticity_of_cell_.empty() ? mesh_->cell_region[cell] : elasticity_of_cell_[cell]];
+  }
+  LocalIndex node(LocalIndex cell, int a) const { return mesh_->cells[cell * n_nodes + a]; }
+  /// The patch around a corner of a local cell; -1 where no owned cell needs it, and at the other corners of a cell
+  /// with a tip.
+  int patch(LocalIndex cell, int corner) const { return patch_of_corner_[cell * n_corners + corner]; }
+
+  /// What the patches of an owned cell's corners count for at a reference point; they sum to 1: linear shape functions
+  /// of corners inside of their patches, or of all where there are none of these.
+  std::array<Real, n_corners> weights(LocalIndex cell, const Real (&xi)[dim]) const {
+    Real N[n_corners], sum = 0;
+    Corners::shape_functions(xi, N);
+    const auto first = is_inside_.begin() + cell * n_corners;
+    const bool any = std::any_of(first, first + n_corners, [](char inside) { return inside != 0; });
+    std::array<Real, n_corners> result{};
+    for (int k = 0; k < n_corners; ++k)
+      if (patch(cell, k) >= 0 && (first[k] || !any)) sum += result[k] = N[k];
+    for (Real& weight : result) weight /= sum;
+    return result;
+  }
+
+  /// Calls visit(patch) for the patches of a local cell.
+  template <class Visit>
+  void for_each_patch(LocalIndex cell, const Visit& visit) const {
+    for (int k = 0; k < n_corners; ++k)
+      if (const int p = patch(cell, k); p >= 0) visit(p);
+  }
+  /// Calls visit(point) for the sample points of a local cell.
+  template <class Visit>
+  void for_each_sample(LocalIndex cell, const Visit& visit) const {
+    const bool tip = assembly::has_tip(*mesh_, cell);
+    Real xi[dim];
+    for (int p = 0; p < SamplePoints<shape>::n(tip); ++p) {
+      SamplePoints<shape>::at(p, tip, xi);
+      visit(Point(*mesh_, cell, xi, tip_cell(cell)));
+    }
+  }
+
+  /// Of patch p at a point of one of its cells.
+  Functions functions(LocalIndex cell, int p, const Point& point) const {
+    Functions f{terms(patches_[p], point.x)};
+    if (patches_[p].tip < 0) return f;
+    const auto& tip = tips_[patches_[p].tip];
+    if (tip.factor[0] == 0) return f;
+    f.singular = true;
+    f.modes = *modes(cell, tip, point);
+    for (int m = 0; m < n_modes; ++m) {
+      f.evaluate(tip.fit[m], -1, f.modes[m]);
+      for (int k = 0; k < Tensor::n; ++k) {
+        for (int l = 0; l < m; ++l) f.modes[m][k] -= tip.factor[l * n_modes + m] * f.modes[l][k];
+        f.modes[m][k] /= tip.factor[m * n_modes + m];
+      }
+    }
+    return f;
+  }
+  /// From sums over the samples to coefficients.
+  void solve(Fits& fits) const {
+    for (std::size_t p = 0; p < fits.size(); ++p) solve(static_cast<int>(p), fits[p].polynomial);
+  }
+
+  /// Adds up what the ranks have for each patch.
+  void sum_over_ranks(Fits& fits) const {
+    constexpr int n = sizeof(Fit) / sizeof(Real);
+    static_assert(n == Tensor::n * n_terms + n_modes);
+    fields::MultiVector here(map_, n), unique(import_->getSourceMap(), n);
+    const auto copy = [&](const auto& one) {
+      const auto view = here.getLocalViewHost(Tpetra::Access::ReadWrite);
+      for (std::size_t p = 0; p < fits.size(); ++p)
+        for (int k = 0; k < n; ++k) {
+          auto& fit = fits[p];
+          constexpr int n_polynomial = Tensor::n * n_terms;
+          one(k < n_polynomial ? fit.polynomial[k / n_terms][k % n_terms] : fit.modes[k - n_polynomial], view(p, k));
+        }
+    };
+    copy([](Real& value, Real& entry) { entry = value; });
+    unique.doExport(here, *import_, Tpetra::ADD);
+    here.doImport(unique, *import_, Tpetra::REPLACE);
+    copy([](Real& value, Real& entry) { value = entry; });
+  }
+
+ private:
+  struct Patch {
+    std::array<Real, dim> centre;
+    std::array<Real, dim> size{};                  // largest distances of samples, per direction
+    std::array<Real, n_terms * n_terms> factor{};  // Cholesky, of the normal equations
+    int tip = -1;                                  // number among those around tips
+  };
+  /// Modes are taken less the polynomials that fit them, and combined so that they are orthonormal at the samples.
+  struct TipPatch {
+    LocalIndex node;
+    std::array<Polynomial, n_modes> fit{};
+    std::array<Real, n_modes * n_modes> factor{};  // Cholesky, of their products; zero: there are none
+  };
+
+  GlobalIndex patch_id(LocalIndex cell, int corner) const {
+    return mesh_->node_id[node(cell, corner)] * static_cast<GlobalIndex>(mesh_->region_names.size()) +
+           mesh_->cell_region[cell];
+  }
+  bool is_tip(LocalIndex cell, int corner) const { return !mesh_->tip.empty() && mesh_->tip[node(cell, corner)]; }
+  /// 1, the coordinates from the centre of the patch, their products; the latter are left to the modes at tips.
+  static Terms terms(const Patch& patch, const std::array<Real, dim>& x) {
+    Terms q{1};
+    for (int i = 0; i < dim; ++i) q[1 + i] = (x[i] - patch.centre[i]) / patch.size[i];
+    for (int k = n_linear; k < n_terms && patch.tip < 0; ++k)
+      q[k] = q[1 + Tensor::row(k - n_linear)] * q[1 + Tensor::column(k - n_linear)];
+    return q;
+  }
+
+  std::optional<Modes> modes(LocalIndex cell, const TipPatch& tip, const Point& point) const {
+    const auto& rock = law(cell);
+    return tip_modes_.at(cell, tip.node, point.x, rock.lambda / (2 * (rock.lambda + rock.G)));
+  }
+
+  /// Calls visit(cell, point, patch) for all samples of all patches.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+      for_each_sample(c, [&](const Point& point) { for_each_patch(c, [&](int p) { visit(c, point, p); }); });
+  }
+
+  void find_patches() {
+    std::vector<GlobalIndex> ids;
+    std::unordered_map<GlobalIndex, int> number;
+    const auto has_patch = [&](LocalIndex c, int k) { return is_tip(c, k) || !assembly::has_tip(*mesh_, c); };
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+      for (int k = 0; k < n_corners; ++k) {
+        if (!has_patch(c, k)) continue;
+        const auto [at, is_new] = number.emplace(patch_id(c, k), static_cast<int>(patches_.size()));
+        if (!is_new) continue;
+        ids.push_back(at->first);
+        auto& patch = patches_.emplace_back();
+        std::copy_n(&mesh_->coordinates[node(c, k) * dim], dim, patch.centre.begin());
+        if (!is_tip(c, k)) continue;
+        patch.tip = static_cast<int>(tips_.size());
+        tips_.push_back({node(c, k)});
+      }
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+      for (int k = 0; k < n_corners; ++k) {
+        const auto found = number.find(patch_id(c, k));
+        patch_of_corner_.push_back(found == number.end() || !has_patch(c, k) ? -1 : found->second);
+      }
+    const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+    map_ = rcp(
+        new const fields::Map(unknown, Teuchos::ArrayView<const GlobalIndex>(ids.data(), ids.size()), 0, mesh_->comm));
+    const auto unique = Tpetra::createOneToOne(map_);
+    import_ = rcp(new const fields::Import(unique, map_));
+  }
+
+  /// Which corners of owned cells are inside of their patch: neither on a fracture nor on the border of a region.
+  void find_inside() {
+    std::vector<int> region(mesh_->n_nodes(), -1);  // of the first cell; -2: on the border of one
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+      for (int k = 0; k < n_corners; ++k) {
+        int& first = region[node(c, k)];
+        first = first == -1 || first == mesh_->cell_region[c] ? mesh_->cell_region[c] : -2;
+      }
+    for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
+      const auto& face = mesh_->fracture_faces[f];
+      for (int k = 0; k < mesh::n_face_corners(shape); ++k)
+        region[node(face.cell[side], mesh::face_nodes(shape)[face.local_face[side]][k])] = -2;
+    }
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+      for (int k = 0; k < n_corners; ++k)
+        is_inside_.push_back(patch(c, k) >= 0 && !is_tip(c, k) && region[node(c, k)] >= 0);
+  }
+
+  /// Normal equations of the fit. A multiple of the square of the highest terms is minimised, too: it decides where
+  /// there are too few points, and leaves fields of lower order as they are.
+  void factor() {
+    for_each([&](LocalIndex, const Point& point, int p) {
+      auto& patch = patches_[p];
+      for (int i = 0; i < dim; ++i) patch.size[i] = std::max(patch.size[i], std::abs(point.x[i] - patch.centre[i]));
+    });
+    for (auto& patch : patches_) {
+      const Real largest = *std::max_element(patch.size.begin(), patch.size.end());
+      for (Real& size : patch.size) size = std::max(size, 1e-3 * largest);
+    }
+    for_each([&](LocalIndex, const Point& point, int p) {
+      auto& patch = patches_[p];
+      const Terms q = terms(patch, point.x);
+      for (int r = 0; r < n_terms; ++r)
+        for (int s = 0; s < n_terms; ++s) patch.factor[r * n_terms + s] += q[r] * q[s];
+      for (int r = order == 1 ? 1 : n_linear; r < n_terms; ++r) patch.factor[r * n_terms + r] += regularisation;
+    });
+    for (auto& patch : patches_)
+      SPREKK_CHECK(cholesky<n_terms>(patch.factor),
+                   "stress recovery: the fit around the node at ({}, {}, ...) is singular", patch.centre[0],
+                   patch.centre[1]);
+  }
+
+  template <int n>
+  static bool cholesky(std::array<Real, n * n>& matrix) {
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().POTRF('L', n, matrix.data(), n, &info);
+    return info == 0;
+  }
+  void solve(int p, Polynomial& right_sides) const {
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().POTRS('L', n_terms, Tensor::n, patches_[p].factor.data(), n_terms,
+                                       right_sides[0].data(), n_terms, &info);
+  }
+  /// Modes around tips: what polynomials have of them, and their products.
+  void fit_modes() {
+    const auto for_each_mode = [&](const auto& visit) {
+      if (!tips_.empty())
+        for_each([&](LocalIndex c, const Point& point, int p) {
+          if (patches_[p].tip < 0) return;
+          auto& tip = tips_[patches_[p].tip];
+          if (const auto raw = modes(c, tip, point)) visit(Functions{terms(patches_[p], point.x)}, *raw, tip);
+        });
+    };
+    for_each_mode([](const Functions& f, const Modes& raw, TipPatch& tip) {
+      for (int m = 0; m < n_modes; ++m) f.add(raw[m], 1, tip.fit[m]);
+    });
+    for (std::size_t p = 0; p < patches_.size(); ++p)
+      if (patches_[p].tip >= 0)
+        for (auto& polynomial : tips_[patches_[p].tip].fit) solve(static_cast<int>(p), polynomial);
+    for_each_mode([](const Functions& f, const Modes& raw, TipPatch& tip) {
+      for (int m = 0; m < n_modes; ++m) {
+        Values rest = raw[m];
+        f.evaluate(tip.fit[m], -1, rest);
+        for (int l = 0; l < n_modes; ++l) tip.factor[m * n_modes + l] += Tensor::product(rest, raw[l]);
+      }
+    });
+    for (auto& tip : tips_)
+      if (!cholesky<n_modes>(tip.factor)) tip.factor[0] = 0;
+  }
+
+  /// Per patch, with coordinates scaled by its size.
+  static constexpr Real regularisation = order == 1 ? 0.3 : 0.01;
+
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<laws::Elasticity> elasticity_;
+  std::vector<int> elasticity_of_cell_;
+  TipModes<dim, order> tip_modes_;
+  std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with functions around tips
+  std::vector<Patch> patches_;                     // around the corners of owned cells
+  std::vector<TipPatch> tips_;
+  std::vector<char> is_inside_;       // [owned cell, corner]
+  std::vector<int> patch_of_corner_;  // [local cell, corner], see patch()
+  RCP<const fields::Map> map_;        // of the patches; other ranks may have the same
+  RCP<const fields::Import> import_;
+};
+
+}  // namespace sprekk::physics

@@ -1,0 +1,110 @@
+// Stress around crack tips: the part that grows with the inverse root of the distance.
+#pragma once
+
+#include "mesh/facets.hpp"
+#include "physics/symmetric.hpp"
+
+#include <array>
+#include <complex>
+#include <optional>
+#include <unordered_map>
+
+namespace sprekk::physics {
+
+/// Frames of the local crack tips (mesh::Mesh::tip) and the singular stresses of a crack in plane strain (Williams
+/// 1957), by Westergaard's functions Z = z^(-1/2), z = x1 + i x2: x1 points ahead of the crack, x2 along its normal, x3
+/// along its front.
+///   opening: s11 = Re Z - x2 Im Z', s22 = Re Z + x2 Im Z', s12 = -x2 Re Z'
+///   sliding: s11 = 2 Im Z + x2 Re Z', s22 = -x2 Re Z', s12 = Re Z - x2 Im Z'     s33 = nu (s11 + s22)
+///   tearing, in 3D: s13 = Im Z, s23 = Re Z
+template <int dim, int order>
+class TipModes {
+ public:
+  static constexpr int n = order * dim;
+  using Values = typename Symmetric<dim>::Values;
+
+  explicit TipModes(const mesh::Mesh& mesh) : mesh_(mesh) {
+    if (mesh.tip.empty()) return;
+    for (const auto& face : mesh.fracture_faces)
+      for (std::size_t k = 0; k < face.nodes[0].size(); ++k)
+        if (const LocalIndex node = face.nodes[0][k]; node >= 0 && node == face.nodes[1][k] && mesh.tip[node])
+          add(face, node);
+  }
+
+  /// Around a tip, a corner of a local cell, seen from a point of the cell: the front goes from the tip to the other
+  /// tips of the cell, or, where there are none, as the normals and faces of the fracture around the tip say. Pa m^0.5.
+  /// Nothing where no fracture is known to end, as at a node that is tied to a tip.
+  std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x,
+                                          Real poisson) const {
+    using namespace mesh;
+    const auto found = frames_.find(tip);
+    if (found == frames_.end()) return {};
+    Vector along{}, normal = found->second.normal, ahead = Real(-1) * found->second.behind;
+    if constexpr (dim == 3) {
+      along = front(cell, tip);
+      if (!(dot(along, along) > 0)) along = cross(ahead, normal);
+      along = (1 / norm(along)) * along;
+      normal = normal - dot(normal, along) * along;
+      ahead = ahead - dot(ahead, along) * along;
+    }
+    normal = (1 / norm(normal)) * normal;
+    ahead = ahead - dot(ahead, normal) * normal;
+    ahead = (1 / norm(ahead)) * ahead;
+    Vector from{};
+    for (int i = 0; i < dim; ++i) from[i] = x[i] - mesh_.coordinates[tip * dim + i];
+    return turned({ahead, normal, along}, dot(from, ahead), dot(from, normal), poisson);
+  }
+
+ private:
+  struct Frame {
+    mesh::Vector normal{}, behind{};  // not of unit length
+  };
+
+  void add(const mesh::Mesh::FractureFace& face, LocalIndex node) {
+    using namespace mesh;
+    auto& frame = frames_[node];
+    Vector from{};
+    for (int i = 0; i < dim; ++i) from[i] = face.centre[i] - mesh_.coordinates[node * dim + i];
+    frame.normal = frame.normal + face.area * face.frame[0];
+    frame.behind = frame.behind + from;
+  }
+
+  /// From a tip to another one of the cell; zero if there is none.
+  mesh::Vector front(LocalIndex cell, LocalIndex tip) const {
+    const int n_nodes = mesh_.nodes_per_cell();
+    mesh::Vector along{};
+    for (int k = 0; k < n_nodes; ++k)
+      if (const LocalIndex other = mesh_.cells[cell * n_nodes + k]; other != tip && mesh_.tip[other]) {
+        for (int i = 0; i < dim; ++i) along[i] = mesh_.coordinates[other * dim + i] - mesh_.coordinates[tip * dim + i];
+        break;
+      }
+    return along;
+  }
+
+  /// The modes at (x1, x2) in global components; `axes` are rows.
+  static std::array<Values, n> turned(const std::array<mesh::Vector, 3>& axes, Real x1, Real x2, Real poisson) {
+    const std::complex<Real> z(x1, x2), root = std::sqrt(z);
+    std::array<std::array<std::array<Real, 3>, 3>, 3 * order> local{};
+    for (int k = 0; k < order; ++k) {
+      const std::complex<Real> Z = k == 0 ? Real(1) / root : root, slope = (k - Real(0.5)) * Z / z;
+      const auto plane = [&](int mode, Real s11, Real s22, Real s12) {
+        local[dim * k + mode] = {{{s11, s12, 0}, {s12, s22, 0}, {0, 0, poisson * (s11 + s22)}}};
+      };
+      plane(0, Z.real() - x2 * slope.imag(), Z.real() + x2 * slope.imag(), -x2 * slope.real());
+      plane(1, 2 * Z.imag() + x2 * slope.real(), -x2 * slope.real(), Z.real() - x2 * slope.imag());
+      if (dim == 3) local[dim * k + 2] = {{{0, 0, Z.imag()}, {0, 0, Z.real()}, {Z.imag(), Z.real(), 0}}};
+    }
+    std::array<Values, n> modes{};
+    for (int m = 0; m < n; ++m)
+      for (int c = 0; c < Symmetric<dim>::n; ++c)
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l)
+            modes[m][c] += axes[k][Symmetric<dim>::row(c)] * local[m][k][l] * axes[l][Symmetric<dim>::column(c)];
+    return modes;
+  }
+
+  const mesh::Mesh& mesh_;
+  std::unordered_map<LocalIndex, Frame> frames_;
+};
+
+}  // namespace sprekk::physics
