@@ -29,7 +29,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     problem_.set_time(end, end - report.time);
     const auto newton = newton_.solve(x);
     report.newton_iterations += newton.iterations;
-    report.linear_iterations += newton.linear_iterations;
+    report.linear_solves.insert(report.linear_solves.end(), newton.linear_solves.begin(), newton.linear_solves.end());
     report.measures = newton.measures;
     if (newton.converged) {
       problem_.commit(x);
