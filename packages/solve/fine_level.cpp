@@ -21,12 +21,13 @@ RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>&
   return product;
 }
 
-RCP<const Operator> smoother(const RCP<const CrsMatrix>& A) {
+RCP<const Operator> smoother(const RCP<const CrsMatrix>& A, int n_sweeps) {
   using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
   const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
   ParameterList list;
   list.set("relaxation: type", "Symmetric Gauss-Seidel");
   list.set("relaxation: use l1", true);  // converges on any number of ranks
+  list.set("relaxation: sweeps", n_sweeps);
   S->setParameters(list);
   S->initialize();
   S->compute();
@@ -59,7 +60,7 @@ class Cycle : public Operator {
       : A_(system.joined_operator()),
         rows_(smoothed.rows()),
         smoothed_map_(smoothed.matrix()->getRowMap()),
-        smoother_(solve::smoother(smoothed.matrix())),
+        smoother_(solve::smoother(smoothed.matrix(), system.joined->n_blocks() > 1 ? 2 : 1)),
         order_one_(order_one),
         P_(system.diagonal.front().block.interpolation),
         map_(system.joined->map(0)),
