@@ -46,7 +46,7 @@ class Search {
 
   Real s;  ///< where the function is to be evaluated next; at the end, the result
   bool done() const { return done_; }
-  bool lost() const { return s > reach_; }  ///< no zero within reach
+  bool lost() const { return !(s <= reach_) || !std::isfinite(s); }  ///< no zero within reach
 
   void next(Real value) {
     if (done_) return;

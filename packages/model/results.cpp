@@ -236,10 +236,12 @@ std::vector<json> Results::journal(int begin) const {
 std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
-               {"linear_iterations", report.linear_iterations},
+               {"linear_iterations", solve::iterations(report.linear_solves)},
                {"substeps", report.substeps},
                {"cuts", report.cuts},
                {"converged", report.converged}};
+  for (const auto& linear : report.linear_solves)
+    step["linear_solves"].push_back({{"iterations", linear.iterations}, {"residual", linear.residual}});
   if (report.converged && !report.loose.empty()) step["loose"] = report.loose;
   if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
@@ -306,6 +308,17 @@ void Results::write_json() {
   std::vector<Real> here = {static_cast<Real>(base::peak_memory_bytes())};
   json_["memory"] = {{"peak_bytes_largest_rank", reduce(comm, Teuchos::REDUCE_MAX, here)[0]},
                      {"peak_bytes_all_ranks", reduce(comm, Teuchos::REDUCE_SUM, here)[0]}};
+  auto& parts = json_["solver"]["parts"] = json::array();
+  for (const auto& cost : model_.newton().linear().solver().solver->costs()) {
+    const auto most = reduce<Real>(comm, Teuchos::REDUCE_MAX, {cost.setup_seconds, cost.application_seconds});
+    parts.push_back({{"name", cost.name},
+                     {"setups", cost.n_setups},
+                     {"applications", cost.n_applications},
+                     {"setup_seconds", most[0]},
+                     {"application_seconds", most[1]},
+                     {"operator_complexity", cost.operator_complexity},
+                     {"bytes", reduce<Real>(comm, Teuchos::REDUCE_SUM, {cost.bytes})[0]}});
+  }
   json_["timing"] = json::object();
   for (const auto& phase : model_.timers().phases())
     json_["timing"][with_underscores(phase.name)] = {{"seconds", phase.seconds}, {"count", phase.count}};

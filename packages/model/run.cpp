@@ -33,8 +33,8 @@ class Progress {
     ++done_;
     const Real elapsed = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
     log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8.1f}s {:>8.1f}s", report.time, dt,
-              report.newton_iterations, report.linear_iterations, report.cuts, faces[0], faces[1], faces[2], elapsed,
-              elapsed / done_ * static_cast<Real>(n_steps_ - done_));
+              report.newton_iterations, solve::iterations(report.linear_solves), report.cuts, faces[0], faces[1],
+              faces[2], elapsed, elapsed / done_ * static_cast<Real>(n_steps_ - done_));
   }
 
  private:
@@ -116,6 +116,17 @@ void describe(const Model& model, base::Log& log) {
   if (const auto doubt = dilation_doubt(model.scene(), mesh); !doubt.empty()) log.warning("{}", doubt);
 }
 
+/// A line for each part of the preconditioner: what it has cost on this rank.
+void tell_costs(const Model& model, base::Log& log) {
+  for (const auto& cost : model.newton().linear().solver().solver->costs()) {
+    const auto multigrid = cost.operator_complexity > 0 ? fmt::format("; operator complexity {:.2f}, {:.0f} MB",
+                                                                      cost.operator_complexity, 1e-6 * cost.bytes)
+                                                        : "";
+    log.info("{}: {} set-ups in {:.3g} s, {} applications in {:.3g} s{}", cost.name, cost.n_setups, cost.setup_seconds,
+             cost.n_applications, cost.application_seconds, multigrid);
+  }
+}
+
 /// Warns when what nothing holds has changed.
 void tell_loose(base::Log& log, Real t, const std::string& before, const std::string& now) {
   if (now == before) return;
@@ -176,6 +187,7 @@ Ending run(const RunOptions& options, RCP<const Comm> comm) {
   if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
   Results results(*model, directory, earlier);
   const auto ending = take_steps(*model, results, checkpoints, log, options.should_stop);
+  tell_costs(*model, log);
   if (ending == Ending::completed) log.info("results in {}", directory);
   return ending;
 }

@@ -19,9 +19,10 @@ constexpr int coarse_size = 1000;
 /// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
 /// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
 /// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
-/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew. The largest eigenvalue takes more
-/// than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at crack tips;
-/// with less than it, the smoother would not be positive.
+/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew: prolongators that are kept
+/// ("RP") were smoothed without contact, do not reach across it, and take twice the iterations. The largest eigenvalue
+/// takes more than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at
+/// crack tips; with less than it, the smoother would not be positive.
 ParameterList multigrid_defaults(int n_components, int n_ranks) {
   ParameterList list("MueLu");
   list.set("verbosity", "none");
@@ -49,33 +50,64 @@ ParameterList multigrid_defaults(int n_components, int n_ranks) {
   return list;
 }
 
-/// The matrix with its diagonal raised a little: parts that float, in the bulk alone or where contact is open, would
-/// make the coarse matrix singular, and its direct solver fail on the one rank that has it.
-RCP<CrsMatrix> raised(const CrsMatrix& matrix) {
-  const auto copy = rcp(new CrsMatrix(matrix, Teuchos::Copy));
-  const auto local = copy->getLocalMatrixHost();
-  const auto& columns = *copy->getColMap();
-  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
-    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-      if (columns.getGlobalElement(local.graph.entries(k)) == copy->getRowMap()->getGlobalElement(row))
-        local.values(k) *= 1 + 1e-8;
-  return copy;
-}
+/// Raises the diagonal of a matrix a little while it lives, and leaves its bits as they were: parts that float, in the
+/// bulk alone or where contact is open, would make the coarse matrix singular, and its direct solver fail on the one
+/// rank that has it.
+class RaisedDiagonal {
+ public:
+  explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(matrix.getNodeNumRows()) {
+    each([](Real& value, Real& kept) {
+      kept = value;
+      value *= 1 + 1e-8;
+    });
+  }
+  ~RaisedDiagonal() {
+    each([](Real& value, const Real& kept) { value = kept; });
+  }
+  RaisedDiagonal(const RaisedDiagonal&) = delete;
+  RaisedDiagonal& operator=(const RaisedDiagonal&) = delete;
+
+ private:
+  template <class Work>
+  void each(const Work& work) {
+    const auto local = matrix_.getLocalMatrixHost();
+    const auto rows = matrix_.getRowMap()->getLocalMap(), columns = matrix_.getColMap()->getLocalMap();
+    for (LocalIndex row = 0, n = local.numRows(); row < n; ++row) {
+      const LocalIndex diagonal = columns.getLocalElement(rows.getGlobalElement(row));
+      for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+        if (local.graph.entries(k) == diagonal) work(local.values(k), values_[row]);
+    }
+  }
+
+  CrsMatrix& matrix_;
+  std::vector<Real> values_;
+};
 
 class Multigrid : public BlockSolver {
  public:
-  explicit Multigrid(const ParameterList& parameters) : parameters_(parameters) {}
-
-  void setup(const DiagonalBlock& block) override {
-    const auto matrix = raised(*block.matrix);
-    if (hierarchy_.is_null()) create(block.block, block.bulk.is_null() ? matrix : raised(*block.bulk));
-    MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
-  }
-  RCP<const Operator> inverse() const override { return hierarchy_; }
+  Multigrid(const std::string& name, const ParameterList& parameters)
+      : BlockSolver(fmt::format("multigrid of '{}'", name)), parameters_(parameters) {}
 
  private:
+  using Hierarchy = MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>;
+
+  void prepare(const DiagonalBlock& block, SolverCost& cost) override {
+    // MueLu takes matrices that may change; only RaisedDiagonal changes this one
+    const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(block.matrix);
+    if (hierarchy_.is_null()) {
+      const auto bulk = block.bulk ? block.bulk() : matrix;
+      create(block.block, bulk);
+    }
+    const RaisedDiagonal raised(*matrix);
+    MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
+    cost.operator_complexity = hierarchy_->GetHierarchy()->GetOperatorComplexity();
+    cost.bytes = (cost.operator_complexity - 1) * matrix->getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex));
+  }
+  RCP<const Operator> prepared() const override { return hierarchy_; }
+
   /// Aggregates by the graph of the bulk, where no edge crosses an interface.
   void create(const Block& block, const RCP<CrsMatrix>& bulk) {
+    const RaisedDiagonal raised(*bulk);
     ParameterList list(parameters_);
     auto& user_data = list.sublist("user data");
     if (!block.near_null_space.is_null())
@@ -86,21 +118,29 @@ class Multigrid : public BlockSolver {
   }
 
   ParameterList parameters_;
-  RCP<MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>> hierarchy_;
+  RCP<Hierarchy> hierarchy_;
 };
 
 /// A fine level for one block among others.
 class TwoLevel : public BlockSolver {
  public:
-  TwoLevel(const ParameterList& muelu, const Block& block) : level_(muelu, {block}) {}
-  void setup(const DiagonalBlock& block) override {
-    auto alone = block;
-    alone.scale = 1;
-    level_.setup({block.matrix, true, {alone}});
+  TwoLevel(const ParameterList& muelu, const Block& block)
+      : BlockSolver(fmt::format("fine level of '{}'", block.name)),
+        joined_(std::make_shared<Joined>(std::vector{block.map})),
+        level_(muelu, {block}) {}
+  std::vector<SolverCost> costs() const override {
+    auto all = BlockSolver::costs();
+    all.push_back(level_.order_one_cost());
+    return all;
   }
-  RCP<const Operator> inverse() const override { return level_.inverse(); }
 
  private:
+  void prepare(const DiagonalBlock& block, SolverCost&) override {
+    level_.setup({joined_, {block.matrix}, true, {block}, {}});
+  }
+  RCP<const Operator> prepared() const override { return level_.inverse(); }
+
+  std::shared_ptr<const Joined> joined_;
   FineLevel level_;
 };
 
@@ -115,7 +155,10 @@ bool has_zero_on_diagonal(const CrsMatrix& matrix) {
 
 class Relaxation : public BlockSolver {
  public:
-  void setup(const DiagonalBlock& block) override {
+  explicit Relaxation(const std::string& name) : BlockSolver(fmt::format("Gauss-Seidel of '{}'", name)) {}
+
+ private:
+  void prepare(const DiagonalBlock& block, SolverCost&) override {
     SPREKK_CHECK(!block.matrix.is_null() && !has_zero_on_diagonal(*block.matrix),
                  "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
     if (relaxation_.is_null()) {
@@ -129,41 +172,39 @@ class Relaxation : public BlockSolver {
     }
     relaxation_->compute();
   }
-  RCP<const Operator> inverse() const override { return relaxation_; }
+  RCP<const Operator> prepared() const override { return relaxation_; }
 
- private:
   RCP<Ifpack2::Preconditioner<Real, LocalIndex, GlobalIndex>> relaxation_;
 };
 
 /// y = sum_r of the parts y_r = (s_r^2 A_rr)^-1 (x - A (y_1 + ... + y_(r-1)))_r.
 class BlockSweep : public Operator {
  public:
-  BlockSweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) : system_(system) {
+  BlockSweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers)
+      : joined_(system.joined), A_(system.joined_operator()) {
     for (const auto& solver : solvers) inverses_.push_back(solver->inverse());
   }
-  RCP<const Map> getDomainMap() const override { return system_.matrix->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return system_.matrix->getRangeMap(); }
+  RCP<const Map> getDomainMap() const override { return joined_->map(); }
+  RCP<const Map> getRangeMap() const override { return joined_->map(); }
 
   void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
     MultiVector sum(y.getMap(), y.getNumVectors()), rest(x, Teuchos::Copy);
-    std::size_t first = 0;
-    for (std::size_t r = 0; r < inverses_.size(); ++r) {
-      const auto& part = system_.diagonal[r];
+    for (int r = 0; r < joined_->n_blocks(); ++r) {
       if (r > 0) {
-        system_.matrix->apply(sum, rest);
+        A_->apply(sum, rest);
         rest.update(1, x, -1);
       }
-      const auto from = rest.offsetView(part.block.map, first);
-      const auto to = sum.offsetViewNonConst(part.block.map, first);
+      const auto from = rest.offsetView(joined_->map(r), joined_->first(r));
+      const auto to = sum.offsetViewNonConst(joined_->map(r), joined_->first(r));
       inverses_[r]->apply(*from, *to);
-      to->scale(1 / (part.scale * part.scale));
-      first += part.block.map->getNodeNumElements();
+      to->scale(1 / (joined_->scale(r) * joined_->scale(r)));
     }
     y.update(alpha, sum, beta);
   }
 
  private:
-  LinearSystem system_;
+  std::shared_ptr<const Joined> joined_;
+  RCP<const Operator> A_;
   std::vector<RCP<const Operator>> inverses_;
 };
 
@@ -177,13 +218,13 @@ ParameterList multigrid_parameters(const ParameterList& muelu, const Block& bloc
 }
 
 RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& block) {
-  if (block.coordinates.is_null()) return rcp(new Relaxation);
+  if (block.coordinates.is_null()) return rcp(new Relaxation(block.name));
   if (!block.interpolation.is_null()) return rcp(new TwoLevel(muelu, block));
   return make_multigrid(muelu, block);
 }
 
 RCP<BlockSolver> make_multigrid(const ParameterList& muelu, const Block& block) {
-  return rcp(new Multigrid(multigrid_parameters(muelu, block)));
+  return rcp(new Multigrid(block.name, multigrid_parameters(muelu, block)));
 }
 
 RCP<const Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) {

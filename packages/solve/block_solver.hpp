@@ -2,16 +2,31 @@
 #pragma once
 
 #include "solve/linear_solver.hpp"
+#include "solve/solver_cost.hpp"
 
 namespace sprekk::solve {
 
 class BlockSolver {
  public:
+  explicit BlockSolver(const std::string& name) : cost_(std::make_shared<SolverCost>()) { cost_->name = name; }
   virtual ~BlockSolver() = default;
+
   /// Makes ready for these values; the graph must stay as it was. Throws where a library does. Collective.
-  virtual void setup(const DiagonalBlock& block) = 0;
+  void setup(const DiagonalBlock& block) {
+    timed(cost_->setup_seconds, [&] { prepare(block, *cost_); });
+    ++cost_->n_setups;
+  }
   /// About the inverse of the block's matrix, without the system's scale. The object may change at every set-up.
-  virtual RCP<const fields::Operator> inverse() const = 0;
+  RCP<const fields::Operator> inverse() const { return rcp(new CountedOperator(prepared(), cost_)); }
+  /// Its own and those of what it uses.
+  virtual std::vector<SolverCost> costs() const { return {*cost_}; }
+
+ protected:
+  virtual void prepare(const DiagonalBlock& block, SolverCost& cost) = 0;
+  virtual RCP<const fields::Operator> prepared() const = 0;
+
+ private:
+  std::shared_ptr<SolverCost> cost_;
 };
 
 /// Multigrid for blocks with coordinates, below a fine level if they have one; Gauss-Seidel within a rank for others.

@@ -8,25 +8,22 @@ CondensedSolve::CondensedSolve(BlockProblem& problem, const LinearSolverOptions&
     : problem_(problem),
       timers_(timers),
       elimination_(problem),
-      merged_(merge()),
       chosen_(make_linear_solver(options, remaining())),
-      tolerance_(options.tolerance) {}
+      tolerance_(options.tolerance),
+      forcing_(options.forcing) {
+  std::vector<RCP<const Map>> maps;
+  const int n = static_cast<int>(elimination_.remaining().size());
+  for (int r = 0; r < n; ++r) {
+    maps.push_back(problem_.blocks()[elimination_.remaining()[r]].map);
+    for (int s = 0; s < n; ++s) blocks_.push_back(elimination_.condensed(r, s));
+  }
+  joined_ = std::make_shared<Joined>(maps);
+}
 
 std::vector<Block> CondensedSolve::remaining() const {
   std::vector<Block> blocks;
   for (int b : elimination_.remaining()) blocks.push_back(problem_.blocks()[b]);
   return blocks;
-}
-
-Merged CondensedSolve::merge() const {
-  std::vector<RCP<const Map>> maps;
-  std::vector<RCP<const CrsMatrix>> blocks;
-  const int n = static_cast<int>(elimination_.remaining().size());
-  for (int r = 0; r < n; ++r) {
-    maps.push_back(problem_.blocks()[elimination_.remaining()[r]].map);
-    for (int s = 0; s < n; ++s) blocks.push_back(elimination_.condensed(r, s));
-  }
-  return Merged(maps, blocks);
 }
 
 /// Powers of two that bring the entries of all blocks to about the same size and keep symmetry.
@@ -37,14 +34,21 @@ std::vector<Real> CondensedSolve::scales() const {
   return scales;
 }
 
-LinearSystem CondensedSolve::system() const {
-  const bool with_bulk = chosen_.solver->reads_bulk() && !problem_.local_groups().empty();
-  LinearSystem system{merged_.matrix(), symmetric_, {}};
+RCP<const CrsMatrix> CondensedSolve::joined_matrix() {
+  if (!matrix_) matrix_ = std::make_unique<JoinedMatrix>(joined_, blocks_);
+  matrix_->update();
+  return matrix_->matrix();
+}
+
+LinearSystem CondensedSolve::system() {
+  joined_->set_scales(scales());
+  LinearSystem system{joined_, blocks_, symmetric_, {}, {}};
+  if (chosen_.solver->reads_matrix()) system.matrix = joined_matrix();
+  const bool with_bulk = !problem_.local_groups().empty();
   const auto blocks = remaining();
   for (int r = 0; r < static_cast<int>(blocks.size()); ++r) {
-    const bool aggregates = with_bulk && !blocks[r].coordinates.is_null();
-    system.diagonal.push_back(
-        {blocks[r], elimination_.condensed(r, r), aggregates ? elimination_.bulk(r) : Teuchos::null, merged_.scale(r)});
+    system.diagonal.push_back({blocks[r], elimination_.condensed(r, r), {}});
+    if (with_bulk) system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };
   }
   return system;
 }
@@ -60,7 +64,6 @@ void CondensedSolve::update() {
   } else if (status.changed || symmetric != symmetric_ || !failure_.empty()) {
     const auto scope = timers_->scope("set-up of linear solver");
     symmetric_ = symmetric;
-    merged_.update(scales());
     failure_ = chosen_.solver->setup(system());
     ++n_setups_;
   }
@@ -73,10 +76,10 @@ LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real t
   const auto scope = timers_->scope("linear solve");
   const auto c = elimination_.reduce(b);
   auto y = fields::create_like(c);
-  const auto rhs = merged_.gather(c), solution = merged_.gather(y);
+  const auto rhs = joined_->gather(c), solution = joined_->gather(y);
   report = chosen_.solver->solve(*rhs, *solution, tolerance);
   if (!report.converged) return report;
-  merged_.scatter(*solution, y);
+  joined_->scatter(*solution, y);
   elimination_.expand(b, y, dx);
   return report;
 }

@@ -4,7 +4,6 @@
 #include "base/timer.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/local_elimination.hpp"
-#include "solve/merged.hpp"
 
 namespace sprekk::solve {
 
@@ -22,21 +21,25 @@ class CondensedSolve {
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
 
   Real tolerance() const { return tolerance_; }
+  bool forcing() const { return forcing_; }
   const ChosenSolver& solver() const { return chosen_; }
   int n_setups() const { return n_setups_; }  ///< factorisations or hierarchies made so far
 
  private:
   std::vector<Block> remaining() const;
-  Merged merge() const;
   std::vector<Real> scales() const;
-  LinearSystem system() const;
+  RCP<const CrsMatrix> joined_matrix();
+  LinearSystem system();
 
   BlockProblem& problem_;
   RCP<base::Timers> timers_;
   LocalElimination elimination_;
-  Merged merged_;
+  std::shared_ptr<Joined> joined_;
+  Blocks blocks_;  // [r * n + s] of those that remain
   ChosenSolver chosen_;
+  std::unique_ptr<JoinedMatrix> matrix_;  // of solvers that read it
   Real tolerance_;
+  bool forcing_;
   bool symmetric_ = false;
   int n_setups_ = 0;
   std::string failure_;

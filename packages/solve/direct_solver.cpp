@@ -47,6 +47,8 @@ class DirectSolver : public LinearSolver {
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
 
+  bool reads_matrix() const override { return true; }
+
   std::string setup(const LinearSystem& system) override {
     if (!ready_ || (symmetric_ && !system.symmetric)) {  // not back again: an analysis costs more than symmetry saves
       release();

@@ -7,13 +7,6 @@
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
-namespace {
-
-using GlobalIndices = std::vector<GlobalIndex>;
-using LocalIndices = std::vector<LocalIndex>;
-using IndexVector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;
-
-const GlobalIndex count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
 
 View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
   View<LocalIndex*> to(name, from.size());
@@ -23,10 +16,12 @@ View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
   return to;
 }
 
-LocalIndices to_host(const View<LocalIndex*>& from) {
-  const auto mirror = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), from);
-  return LocalIndices(mirror.data(), mirror.data() + mirror.extent(0));
-}
+namespace {
+
+using GlobalIndices = std::vector<GlobalIndex>;
+using IndexVector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;
+
+const GlobalIndex count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
 
 RCP<const Map> make_map(const GlobalIndices& indices, const RCP<const Comm>& comm) {
   return rcp(new Map(count_them, Teuchos::arrayView(indices.data(), indices.size()), 0, comm));
@@ -77,8 +72,7 @@ class Planner {
       if (group_of_[b] < 0) plan_.remaining.push_back(b);
     check_groups_do_not_couple();
     for (const auto& group : groups) plan_group(group);
-    for (int a : plan_.remaining)
-      for (int b : plan_.remaining) plan_condensed(a, b);
+    plan_condensed(problem_, plan_);
     return std::move(plan_);
   }
 
@@ -260,71 +254,6 @@ class Planner {
     coupling.row_start = to_device(slots.start, "coupling row start");
     coupling.slot = to_device(LocalIndices(slots.column.begin(), slots.column.end()), "coupling slot");
     coupling.coefficient = View<Real*>("coupling coefficient", slots.column.size() * m);
-  }
-
-  int index(int block) const {
-    return std::find(plan_.remaining.begin(), plan_.remaining.end(), block) - plan_.remaining.begin();
-  }
-
-  /// Graph of J_ab = graph of A_ab and of all products; then where everything lands in its values.
-  void plan_condensed(int a, int b) {
-    const int ra = index(a), rb = index(b);
-    std::vector<GlobalIndices> sets(blocks()[a].map->getNodeNumElements());
-    bool present = a == b || !matrix(a, b).is_null();
-    if (!matrix(a, b).is_null())
-      for_entries(*matrix(a, b), [&](LocalIndex row, LocalIndex, GlobalIndex column) { sets[row].push_back(column); });
-    if (a == b)
-      for (std::size_t row = 0; row < sets.size(); ++row) sets[row].push_back(blocks()[a].map->getGlobalElement(row));
-    for (const auto& group : plan_.groups) {
-      const Response& response = group.response[rb];
-      present = present || (!response.fill.empty() && !group.coupling[ra].fill.empty());
-      const auto start = to_host(response.column_start), row_start = to_host(group.coupling[ra].row_start),
-                 slots = to_host(group.coupling[ra].slot);
-      for (std::size_t row = 0; row < sets.size(); ++row)
-        for (LocalIndex pair = row_start[row]; pair < row_start[row + 1]; ++pair)
-          sets[row].insert(sets[row].end(), response.column.begin() + start[slots[pair]],
-                           response.column.begin() + start[slots[pair] + 1]);
-    }
-    plan_.condensed.emplace_back();
-    for (auto& group : plan_.groups) group.product.emplace_back();
-    if (present) fill_plan(a, b, ColumnSets(sets));
-  }
-
-  void fill_plan(int a, int b, const ColumnSets& columns) {
-    const std::size_t n_rows = columns.start.size() - 1;
-    Teuchos::Array<std::size_t> counts(n_rows);
-    for (std::size_t row = 0; row < n_rows; ++row) counts[row] = columns.start[row + 1] - columns.start[row];
-    const auto graph = rcp(new CrsGraph(blocks()[a].map, counts()));
-    for (std::size_t row = 0; row < n_rows; ++row)
-      graph->insertGlobalIndices(blocks()[a].map->getGlobalElement(row),
-                                 Teuchos::arrayView(columns.column.data() + columns.start[row], counts[row]));
-    graph->fillComplete(blocks()[b].map, blocks()[a].map);
-    CondensedBlock& block = plan_.condensed.back();
-    block.matrix = rcp(new CrsMatrix(graph));
-    block.matrix->fillComplete(blocks()[b].map, blocks()[a].map);
-    block.constrained = rcp(new Vector(graph->getColMap()));
-
-    LocalIndices value(columns.column.size());  // position in `columns` -> position of the value
-    for_entries(*block.matrix, [&](LocalIndex row, LocalIndex k, GlobalIndex column) {
-      value[position_in(columns.column, columns.start[row], columns.start[row + 1], column)] = k;
-    });
-    const auto find = [&](LocalIndex row, GlobalIndex column) {
-      return value[position_in(columns.column, columns.start[row], columns.start[row + 1], column)];
-    };
-    if (!matrix(a, b).is_null()) block.copy = make_scatter(matrix(a, b), find);
-    for (auto& group : plan_.groups) {
-      const Response& response = group.response[index(b)];
-      const auto start = to_host(response.column_start), row_start = to_host(group.coupling[index(a)].row_start),
-                 slots = to_host(group.coupling[index(a)].slot);
-      LocalIndices first, position;
-      for (std::size_t row = 0; row < n_rows; ++row)
-        for (LocalIndex pair = row_start[row]; pair < row_start[row + 1]; ++pair) {
-          first.push_back(position.size());
-          for (LocalIndex c = start[slots[pair]]; c < start[slots[pair] + 1]; ++c)
-            position.push_back(find(row, response.column[c]));
-        }
-      group.product.back() = {to_device(first, "product start"), to_device(position, "product position")};
-    }
   }
 
   const BlockProblem& problem_;

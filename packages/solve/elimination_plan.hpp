@@ -17,6 +17,10 @@ using fields::Import;
 using fields::Map;
 using fields::Vector;
 
+using LocalIndices = std::vector<LocalIndex>;
+
+View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name);
+
 /// out(target(k)) = value k of the matrix.
 struct Scatter {
   RCP<const CrsMatrix> matrix;
@@ -79,6 +83,9 @@ struct EliminationPlan {
   std::vector<GroupPlan> groups;
   std::vector<CondensedBlock> condensed;  ///< [r * n_r + r']
 };
+
+/// Adds the blocks that remain and where everything lands in them, for groups that are planned. Collective.
+void plan_condensed(const BlockProblem& problem, EliminationPlan& plan);
 
 /// Collective; throws on all ranks where the blocks do not have the shape that BlockProblem promises.
 EliminationPlan plan_elimination(const BlockProblem& problem);

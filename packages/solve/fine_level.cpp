@@ -14,45 +14,67 @@ using fields::Operator;
 using Teuchos::ParameterList;
 
 /// P^T A P, or A itself without P.
-RCP<const CrsMatrix> at_order_one(const RCP<const CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
-  if (A.is_null() || P.is_null()) return A;
+RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
+  if (P.is_null()) return A;
   const auto product = rcp(new CrsMatrix(P->getDomainMap(), 0));
   Tpetra::TripleMatrixMultiply::MultiplyRAP(*P, true, *A, false, *P, false, *product);
   return product;
 }
 
-RCP<const Operator> smoother(const RCP<const CrsMatrix>& A) {
+RCP<const Operator> smoother(const RCP<const CrsMatrix>& A, int n_sweeps) {
   using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
   const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
   ParameterList list;
   list.set("relaxation: type", "Symmetric Gauss-Seidel");
   list.set("relaxation: use l1", true);  // converges on any number of ranks
+  list.set("relaxation: sweeps", n_sweeps);
   S->setParameters(list);
   S->initialize();
   S->compute();
   return S;
 }
 
+/// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; empty, for all, of a
+/// block of order 2.
+std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
+  if (!system.diagonal.front().block.interpolation.is_null()) return {};
+  const int n = system.joined->n_blocks();
+  std::vector<RCP<Vector>> chosen;
+  for (int r = 0; r < n; ++r) {
+    chosen.push_back(rcp(new Vector(system.joined->map(r))));
+    chosen[r]->putScalar(r > 0 ? 1 : 0);
+  }
+  for (int s = 1; s < n; ++s) {
+    if (system.blocks[s].is_null()) continue;  // the first block's rows, the enriching one's columns
+    const auto rows = system.blocks[s]->getLocalMatrixHost().graph.row_map;
+    const auto flags = chosen[0]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < flags.extent(0); ++i)
+      if (rows(i + 1) > rows(i)) flags(i, 0) = 1;
+  }
+  return chosen;
+}
+
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, RCP<const Operator> smoother, RCP<const Operator> order_one)
-      : A_(system.matrix),
-        smoother_(smoother),
+  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> order_one)
+      : A_(system.joined_operator()),
+        rows_(smoothed.rows()),
+        smoothed_map_(smoothed.matrix()->getRowMap()),
+        smoother_(solve::smoother(smoothed.matrix(), system.joined->n_blocks() > 1 ? 2 : 1)),
         order_one_(order_one),
         P_(system.diagonal.front().block.interpolation),
-        map_(system.diagonal.front().block.map),
-        scale_(system.diagonal.front().scale) {}
+        map_(system.joined->map(0)),
+        scale_(system.joined->scale(0)) {}
   RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
-    MultiVector x(b.getMap(), b.getNumVectors()), r(b, Teuchos::Copy), dx(b.getMap(), b.getNumVectors());
-    smoother_->apply(b, x);
+    MultiVector x(b.getMap(), b.getNumVectors()), r(b.getMap(), b.getNumVectors());
+    smooth(b, x);
     residual(b, x, r);
     correct(r, x);
     residual(b, x, r);
-    smoother_->apply(r, dx);
-    x.update(1, dx, 1);
+    smooth(r, x);
     y.update(alpha, x, beta);
   }
 
@@ -60,6 +82,27 @@ class Cycle : public Operator {
   void residual(const MultiVector& b, const MultiVector& x, MultiVector& r) const {
     A_->apply(x, r);
     r.update(1, b, -1);
+  }
+
+  /// x += S r.
+  void smooth(const MultiVector& r, MultiVector& x) const {
+    using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
+    const auto n = static_cast<LocalIndex>(rows_.extent(0)), n_vectors = static_cast<LocalIndex>(r.getNumVectors());
+    MultiVector from(smoothed_map_, n_vectors), to(smoothed_map_, n_vectors);
+    const auto rows = rows_;
+    {
+      const auto all = r.getLocalViewDevice(Tpetra::Access::ReadOnly);
+      const auto some = from.getLocalViewDevice(Tpetra::Access::OverwriteAll);
+      Kokkos::parallel_for(
+          "restrict", Policy({0, 0}, {n, n_vectors}),
+          KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { some(i, v) = all(rows(i), v); });
+    }
+    smoother_->apply(from, to);
+    const auto some = to.getLocalViewDevice(Tpetra::Access::ReadOnly);
+    const auto all = x.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "add", Policy({0, 0}, {n, n_vectors}),
+        KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { all(rows(i), v) += some(i, v); });
   }
 
   /// x += P K P^T r in the first block; the system has scale^2 times the matrix that K is about the inverse of.
@@ -79,7 +122,9 @@ class Cycle : public Operator {
     P_->apply(z, *to, Teuchos::NO_TRANS, factor, 1);
   }
 
-  RCP<const CrsMatrix> A_;
+  RCP<const Operator> A_;
+  View<LocalIndex*> rows_;
+  RCP<const Map> smoothed_map_;
   RCP<const Operator> smoother_, order_one_;
   RCP<const CrsMatrix> P_;
   RCP<const Map> map_;
@@ -101,8 +146,12 @@ FineLevel::FineLevel(const ParameterList& muelu, const std::vector<Block>& block
 void FineLevel::setup(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
   const auto& P = first.block.interpolation;
-  order_one_->setup({first.block, at_order_one(first.matrix, P), at_order_one(first.bulk, P), first.scale});
-  cycle_ = rcp(new Cycle(system, smoother(system.matrix), order_one_->inverse()));
+  std::function<RCP<CrsMatrix>()> bulk;
+  if (first.bulk) bulk = [&] { return at_order_one(first.bulk(), P); };
+  order_one_->setup({first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk});
+  if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
+  smoothed_->update();
+  cycle_ = rcp(new Cycle(system, *smoothed_, order_one_->inverse()));
 }
 
 }  // namespace sprekk::solve

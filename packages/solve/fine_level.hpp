@@ -10,17 +10,20 @@ bool have_fine_level(const std::vector<Block>& blocks);
 
 /// The symmetric two-level cycle for a system of such blocks,
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
-/// with S a smoother of A, K multigrid on the part of order 1, and P its interpolation: that of the first block, zero
-/// in blocks that enrich it.
+/// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
+/// enrich it. S is a smoother of A on the unknowns that order 1 does not have, and on those that couple to them: of
+/// order 2 all; of blocks that enrich, those near crack tips.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);
   /// Makes ready for these values. Throws where a library does. Collective.
   void setup(const LinearSystem& system);
   RCP<const fields::Operator> inverse() const { return cycle_; }
+  SolverCost order_one_cost() const { return order_one_->costs().front(); }
 
  private:
   RCP<BlockSolver> order_one_;
+  std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   RCP<const fields::Operator> cycle_;
 };
 

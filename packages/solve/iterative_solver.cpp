@@ -76,25 +76,30 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  bool reads_bulk() const override { return !coarse_ && preconditioner_.is_null(); }
+  bool reads_matrix() const override { return coarse_ != nullptr; }
 
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
     symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
-    // Belos' interface takes operators that may change; nothing here changes the matrix.
-    matrix_ = Teuchos::rcp_const_cast<CrsMatrix>(system.matrix);
+    comm_ = system.joined->map()->getComm();
+    matrix_ = system.joined_operator();
     failure_.clear();
     for (std::size_t r = 0; r < solvers_.size() && failure_.empty(); ++r)
       prepare(system.diagonal[r].block.name, [&] { solvers_[r]->setup(system.diagonal[r]); });
-    if (fine_level_) prepare(system.diagonal.front().block.name, [&] { fine_level_->setup(system); });
+    if (fine_level_)
+      prepare(system.diagonal.front().block.name,
+              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system); }); });
     if (!failure_.empty()) {
       make_solvers(blocks_);  // what the libraries left may differ among ranks
       preconditioner_ = Teuchos::null;
       return failure_;
     }
-    preconditioner_ = fine_level_            ? fine_level_->inverse()
-                      : solvers_.size() == 1 ? solvers_.front()->inverse()
-                                             : make_block_sweep(system, solvers_);
+    if (fine_level_) {
+      ++fine_cost_->n_setups;
+      preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
+    } else {
+      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system, solvers_);
+    }
     return failure_;
   }
 
@@ -108,7 +113,7 @@ class IterativeSolver : public LinearSolver {
       return report;
     }
     try {
-      base::collectively(*matrix_->getComm(), [&] { report.iterations = iterate(b, x, tolerance); });
+      base::collectively(*comm_, [&] { report.iterations = iterate(b, x, tolerance); });
     } catch (const Error& error) {
       report.reason = fmt::format("iterative solve: {}", gist(error.what()));
       return report;
@@ -123,22 +128,34 @@ class IterativeSolver : public LinearSolver {
   }
 
   const ParameterList& parameters() const override { return parameters_; }
+  RCP<const Operator> preconditioner() const override { return preconditioner_; }
+
+  std::vector<SolverCost> costs() const override {
+    if (fine_level_) return {*fine_cost_, fine_level_->order_one_cost()};
+    std::vector<SolverCost> all;
+    for (const auto& solver : solvers_)
+      for (const auto& cost : solver->costs()) all.push_back(cost);
+    return all;
+  }
 
  private:
   void make_solvers(const std::vector<Block>& blocks) {
     blocks_ = blocks;
     solvers_.clear();
     fine_level_.reset();
-    if (have_fine_level(blocks))
+    if (have_fine_level(blocks)) {
       fine_level_ = std::make_unique<FineLevel>(muelu_, blocks);
-    else
+      fine_cost_ = std::make_shared<SolverCost>();
+      fine_cost_->name = fmt::format("fine level of '{}'", blocks.front().name);
+    } else {
       for (const auto& block : blocks) solvers_.push_back(make_block_solver(muelu_, block));
+    }
   }
 
   template <class Work>
   void prepare(const std::string& block, const Work& work) {
     try {
-      base::collectively(*matrix_->getComm(), work);
+      base::collectively(*comm_, work);
     } catch (const Error& error) {
       failure_ = fmt::format("preconditioner of block '{}': {}", block, gist(error.what()));
     }
@@ -167,7 +184,9 @@ class IterativeSolver : public LinearSolver {
   std::vector<Block> blocks_;
   std::vector<RCP<BlockSolver>> solvers_;  // [block], or
   std::unique_ptr<FineLevel> fine_level_;  // of all blocks
-  RCP<CrsMatrix> matrix_;
+  std::shared_ptr<SolverCost> fine_cost_;
+  RCP<const Comm> comm_;
+  RCP<const Operator> matrix_;
   RCP<const Operator> preconditioner_;
   bool symmetric_ = false;
   std::string failure_ = "the matrix was not set up";

@@ -31,7 +31,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto& from = solver.getPreviousSolutionGroup();
   const auto dx = direction.clone();
   auto blocks = blocks_of(*dx);
-  bool solved = model_.linear_history().last.converged;
+  bool solved = model_.linear_history().back().converged;
   report_.damped = damping_ > 0 || std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
   const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
   if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;

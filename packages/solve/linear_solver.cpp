@@ -1,5 +1,6 @@
 #include "solve/linear_solver.hpp"
 
+#include <numeric>
 #include <sstream>
 
 #include "base/check.hpp"
@@ -7,10 +8,18 @@
 
 namespace sprekk::solve {
 
+int iterations(const std::vector<LinearReport>& solves) {
+  return std::accumulate(solves.begin(), solves.end(), 0,
+                         [](int sum, const auto& solve) { return sum + solve.iterations; });
+}
+
 void LinearSolverOptions::describe(base::Section& section) {
   section.choice(type, "type", {"auto", "direct", "iterative"},
                  "direct: MUMPS; iterative: Belos with MueLu; auto: direct up to the limits below");
   section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
+  section.entry(forcing, "forcing", "-",
+                "iterative: end a solve early while faces change state, once two accuracies a hundred times apart lead "
+                "to the same states");
   section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
   section.entry(reproducible, "reproducible", "-",
@@ -47,7 +56,7 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
   return {direct ? make_direct_solver(options.mumps, on_one_rank) : make_iterative_solver(options, blocks), reason};
 }
 
-Real relative_residual(const CrsMatrix& matrix, const Vector& b, const Vector& x, Vector& r) {
+Real relative_residual(const fields::Operator& matrix, const Vector& b, const Vector& x, Vector& r) {
   matrix.apply(x, r);
   r.update(1, b, -1);
   const Real size = b.norm2(), residual = r.norm2();

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fields/block_problem.hpp"
+#include "solve/joined.hpp"
+#include "solve/solver_cost.hpp"
 
 namespace sprekk::base {
 class Section;
@@ -23,6 +25,7 @@ using fields::Vector;
 struct LinearSolverOptions {
   std::string type = "auto";           ///< auto | direct | iterative
   Real tolerance = 1e-12;              ///< relative residual that is asked for
+  bool forcing = true;                 ///< less is asked for while faces still change state
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
   long long direct_limit_3d = 20000;   ///< auto: the same in 3D
   std::optional<bool> reproducible;    ///< the direct solver factors on one rank; absent: no
@@ -40,22 +43,28 @@ struct LinearReport {
   std::string reason;  ///< of a failure
 };
 
+/// The iterations of all these solves.
+int iterations(const std::vector<LinearReport>& solves);
+
 inline constexpr Real acceptable_linear_residual = 1e-8;
 
 /// A block on the diagonal of a linear system.
 struct DiagonalBlock {
   Block block;
   RCP<const CrsMatrix> matrix;  ///< of the block alone; null if it has none
-  RCP<const CrsMatrix> bulk;    ///< it without what crosses interfaces, by whose graph multigrid aggregates, or null
-  Real scale = 1;               ///< the system has scale^2 times the matrix
+  /// Makes it without what crosses interfaces, on the same graph, by whose values multigrid aggregates; or empty.
+  std::function<RCP<CrsMatrix>()> bulk;
 };
 
-/// A linear system in one or more blocks. The unknowns must be numbered 0, 1, ... over all ranks in any distribution,
-/// those of the blocks one after another.
+/// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.
 struct LinearSystem {
-  RCP<const CrsMatrix> matrix;  ///< its graph must be the same at every set-up
+  std::shared_ptr<const Joined> joined;
+  Blocks blocks;  ///< [r * n + s], not scaled
   bool symmetric = false;
   std::vector<DiagonalBlock> diagonal;
+  RCP<const CrsMatrix> matrix;  ///< of all blocks, scaled; null unless the solver reads it
+
+  RCP<const fields::Operator> joined_operator() const { return solve::joined_operator(joined, blocks); }
 };
 
 /// All members are collective on the matrix' communicator, and answer the same on every rank.
@@ -63,14 +72,20 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Whether the next setup reads `bulk`.
-  virtual bool reads_bulk() const { return false; }
+  /// Whether set-ups read `matrix`.
+  virtual bool reads_matrix() const { return false; }
 
   /// Makes ready to solve with this system. Empty, or what failed.
   virtual std::string setup(const LinearSystem& system) = 0;
 
   /// x <- A^-1 b.
   virtual LinearReport solve(const Vector& b, Vector& x, Real tolerance) = 0;
+
+  /// About the inverse of the system of the last set-up, as Krylov's method uses it; null if there is none.
+  virtual RCP<const fields::Operator> preconditioner() const { return Teuchos::null; }
+
+  /// What the preconditioner's parts have cost. Stored data.
+  virtual std::vector<SolverCost> costs() const { return {}; }
 
   /// Everything that is handed to the library, defaults included.
   virtual const Teuchos::ParameterList& parameters() const = 0;
@@ -93,6 +108,6 @@ std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& o
                                                     const std::vector<Block>& blocks);
 
 /// |b - A x| / |b| with r <- b - A x; 0 for b = 0 = x.
-Real relative_residual(const CrsMatrix& matrix, const Vector& b, const Vector& x, Vector& r);
+Real relative_residual(const fields::Operator& matrix, const Vector& b, const Vector& x, Vector& r);
 
 }  // namespace sprekk::solve

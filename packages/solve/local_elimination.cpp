@@ -225,11 +225,15 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
 
 RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
 
-RCP<const CrsMatrix> LocalElimination::bulk(int r) const {
-  const auto copy = rcp(new CrsMatrix(*(*matrix_)(plan_.remaining[r], plan_.remaining[r]), Teuchos::Copy));
-  Vector columns(copy->getColMap());
-  spread(*constrained_[r], *copy, columns);
-  constrain(*copy, *constrained_[r], columns, true);
+RCP<CrsMatrix> LocalElimination::bulk(int r) const {
+  const auto& condensed = block(r, r);
+  const auto copy = rcp(new CrsMatrix(condensed.matrix->getCrsGraph()));
+  const auto complete = [&] { copy->fillComplete(condensed.matrix->getDomainMap(), condensed.matrix->getRangeMap()); };
+  complete();
+  copy->resumeFill();
+  if (!condensed.copy.matrix.is_null()) condensed.copy(values_of(*copy));
+  constrain(*copy, *constrained_[r], *condensed.constrained, true);
+  complete();
   return copy;
 }
 

@@ -31,8 +31,8 @@ class LocalElimination {
   /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for
   /// good.
   RCP<const CrsMatrix> condensed(int r, int s) const;
-  /// A_aa of the r-th remaining block, constrained like J, without what the local groups add.
-  RCP<const CrsMatrix> bulk(int r) const;
+  /// A_aa of the r-th remaining block, constrained like J, without what the local groups add, on the graph of J.
+  RCP<CrsMatrix> bulk(int r) const;
 
   /// c [r] for b [block].
   BlockVector reduce(const BlockVector& b) const;

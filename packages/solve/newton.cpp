@@ -140,17 +140,17 @@ NewtonReport Newton::solve(BlockVector& x) {
   report.converged = solver->solve() == NOX::StatusTest::Converged;
   refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
-  const auto& linear = model_->linear_history();
-  if (linear.solves > 0) {
+  report.linear_solves = model_->linear_history();
+  report.iterations = static_cast<int>(report.linear_solves.size());
+  if (report.iterations > 0) {
     const int here = search.damped;
     int anywhere = 0;
     Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
     damped_ = anywhere > 0;
   }
-  report.iterations = linear.solves;
-  report.linear_iterations = linear.iterations;
   if (!search.failure.empty()) report.reason = search.failure;
-  if (linear.solves > 0 && !linear.last.converged) report.reason = linear.last.reason;
+  if (report.iterations > 0 && !report.linear_solves.back().converged)
+    report.reason = report.linear_solves.back().reason;
   if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
   report.loose = search.loose;
   for (int change : search.last_change) report.unsettled.push_back(change > 0 && change + 5 > search.n_accepted);

@@ -30,7 +30,7 @@ struct NewtonOptions {
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;                         ///< linear solves: Newton steps, those that damping took anew included
-  int linear_iterations = 0;                  ///< over all linear solves
+  std::vector<LinearReport> linear_solves;    ///< one for each iteration
   std::string reason;                         ///< of a failure
   std::string loose;                          ///< what nothing held in an iterate, in words, the last such
   std::vector<char> unsettled;                ///< [as BlockProblem::states()] changed in the last five iterates

@@ -13,26 +13,11 @@ using MultiVectorBase = Thyra::MultiVectorBase<Real>;
 using ProductVector = Thyra::ProductVectorBase<Real>;
 using Extract = Thyra::TpetraOperatorVectorExtraction<Real, LocalIndex, GlobalIndex>;
 
-/// y = A x with A = problem.matrix() but for rows of constrained unknowns, which are identity.
-void apply_jacobian(const BlockProblem& problem, const BlockVector& x, BlockVector& y) {
-  problem.matrix().apply(x, y);
-  for (std::size_t b = 0; b < x.size(); ++b) {
-    const auto flags = problem.constrained(b);
-    const auto from = x[b]->getLocalViewDevice(Tpetra::Access::ReadOnly);
-    const auto to = y[b]->getLocalViewDevice(Tpetra::Access::ReadWrite);
-    Kokkos::parallel_for(
-        "constrained rows", Kokkos::RangePolicy<Execution>(0, flags.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-          if (flags(i)) to(i, 0) = from(i, 0);
-        });
-  }
-}
-
 /// The Jacobian that NOX has evaluated, to multiply and to solve with.
 class JacobianOperator : public Thyra::LinearOpWithSolveBase<Real> {
  public:
-  JacobianOperator(BlockProblem& problem, CondensedSolve& solve, RCP<const Space> space,
-                   RCP<ThyraModel::LinearHistory> history)
-      : problem_(problem), solve_(solve), space_(std::move(space)), history_(std::move(history)) {}
+  JacobianOperator(ForcedSolve& solve, RCP<const Space> space, RCP<ThyraModel::LinearHistory> history)
+      : solve_(solve), space_(std::move(space)), history_(std::move(history)) {}
 
   RCP<const Space> range() const override { return space_; }
   RCP<const Space> domain() const override { return space_; }
@@ -47,7 +32,7 @@ class JacobianOperator : public Thyra::LinearOpWithSolveBase<Real> {
     for (Thyra::Ordinal column = 0; column < x.domain()->dim(); ++column) {
       const auto from = blocks_of(*x.col(column)), to = blocks_of(*y->col(column));
       auto product = fields::create_like(from);
-      apply_jacobian(problem_, from, product);
+      solve_.apply(from, product);
       for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(alpha, *product[b], beta);
     }
   }
@@ -61,19 +46,16 @@ class JacobianOperator : public Thyra::LinearOpWithSolveBase<Real> {
     const Real tolerance = asked ? criteria->requestedTol : solve_.tolerance();
     for (Thyra::Ordinal column = 0; column < b.domain()->dim(); ++column) {
       auto dx = blocks_of(*x->col(column));
-      history_->last = solve_.solve(blocks_of(*b.col(column)), dx, tolerance);
-      ++history_->solves;
-      history_->iterations += history_->last.iterations;
-      status.achievedTol = history_->last.residual;
-      if (history_->last.converged) continue;
+      history_->push_back(solve_.solve(blocks_of(*b.col(column)), dx, tolerance));
+      status.achievedTol = history_->back().residual;
+      if (history_->back().converged) continue;
       Thyra::assign(x->col(column).ptr(), 0.0);
       status.solveStatus = Thyra::SOLVE_STATUS_UNCONVERGED;
     }
     return status;
   }
 
-  BlockProblem& problem_;
-  CondensedSolve& solve_;
+  ForcedSolve& solve_;
   RCP<const Space> space_;
   RCP<ThyraModel::LinearHistory> history_;
 };
@@ -114,7 +96,7 @@ BlockVector blocks_of(const Thyra::VectorBase<Real>& v) {
 }
 
 ThyraModel::ThyraModel(BlockProblem& problem, CondensedSolve& solve)
-    : problem_(problem), solve_(solve), history_(rcp(new LinearHistory)) {
+    : problem_(problem), solve_(problem, solve), history_(rcp(new LinearHistory)) {
   Teuchos::Array<RCP<const Space>> spaces;
   for (const auto& block : problem.blocks())
     spaces.push_back(Thyra::tpetraVectorSpace<Real, LocalIndex, GlobalIndex, Map::node_type>(block.map));
@@ -122,13 +104,11 @@ ThyraModel::ThyraModel(BlockProblem& problem, CondensedSolve& solve)
 }
 
 bool ThyraModel::direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const {
-  problem_.jacobian(x);
+  solve_.jacobian(x);
   solve_.update();
-  history_->last = solve_.solve(f, dx, solve_.tolerance());
-  ++history_->solves;
-  history_->iterations += history_->last.iterations;
+  history_->push_back(solve_.solve(f, dx, solve_.tolerance()));
   for (const auto& block : dx) block->scale(-1);
-  return history_->last.converged;
+  return history_->back().converged;
 }
 
 RCP<Thyra::VectorBase<Real>> ThyraModel::make_vector(const BlockVector& x) const {
@@ -154,7 +134,7 @@ ThyraModel::OutArgs ThyraModel::createOutArgsImpl() const {
 }
 
 RCP<Thyra::LinearOpBase<Real>> ThyraModel::create_W_op() const {
-  return rcp(new JacobianOperator(problem_, solve_, space_, history_));
+  return rcp(new JacobianOperator(solve_, space_, history_));
 }
 
 RCP<const Thyra::LinearOpWithSolveFactoryBase<Real>> ThyraModel::get_W_factory() const {
@@ -167,7 +147,7 @@ void ThyraModel::evalModelImpl(const InArgs& in, const OutArgs& out) const {
     auto f = blocks_of(*out.get_f());
     problem_.residual(x, f);
   }
-  if (!out.get_W_op().is_null()) problem_.jacobian(x);
+  if (!out.get_W_op().is_null()) solve_.jacobian(x);
 }
 
 }  // namespace sprekk::solve

@@ -3,7 +3,7 @@
 
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
 
-#include "solve/condensed_solve.hpp"
+#include "solve/forced_solve.hpp"
 
 namespace sprekk::solve {
 
@@ -20,13 +20,10 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
 
   ThyraModel(BlockProblem& problem, CondensedSolve& solve);
 
-  /// Counts and keeps what linear solves say since the last clear.
-  struct LinearHistory {
-    int solves = 0, iterations = 0;
-    LinearReport last;
-  };
+  /// What linear solves say since the last clear.
+  using LinearHistory = std::vector<LinearReport>;
   const LinearHistory& linear_history() const { return *history_; }
-  void clear_history() { *history_ = {}; }
+  void clear_history() { history_->clear(); }
 
   /// dx <- -W^-1 f with the Jacobian at x, evaluated anew. False if the solve failed; the history says why.
   bool direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const;
@@ -46,7 +43,7 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
   void evalModelImpl(const InArgs& in, const OutArgs& out) const override;
 
   BlockProblem& problem_;
-  CondensedSolve& solve_;
+  mutable ForcedSolve solve_;  // evaluations of the model are const
   RCP<const Space> space_;
   RCP<LinearHistory> history_;
 };

@@ -6,6 +6,13 @@
 #include "base/parameters.hpp"
 
 namespace sprekk::solve {
+namespace {
+
+void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
 
 void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(max_halvings, "maximum halvings", "-", base::between(0, 20),
@@ -29,11 +36,11 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     problem_.set_time(end, end - report.time);
     auto newton = newton_.solve(x);
     report.newton_iterations += newton.iterations;
-    report.linear_iterations += newton.linear_iterations;
+    append(newton.linear_solves, report.linear_solves);
     if (newton.converged && problem_.settle(x)) {
       newton = newton_.solve(x);  // to the tolerance again: mostly no iteration
       report.newton_iterations += newton.iterations;
-      report.linear_iterations += newton.linear_iterations;
+      append(newton.linear_solves, report.linear_solves);
     }
     report.measures = newton.measures;
     if (newton.converged) {

@@ -13,10 +13,10 @@ struct TimeSteppingOptions {
 
 struct StepReport {
   bool converged = false;
-  Real time = 0;              ///< that x now belongs to
-  int newton_iterations = 0;  ///< rejected substeps included
-  int linear_iterations = 0;  ///< likewise
-  int substeps = 0;           ///< committed
+  Real time = 0;                            ///< that x now belongs to
+  int newton_iterations = 0;                ///< rejected substeps included
+  std::vector<LinearReport> linear_solves;  ///< likewise, [Newton iteration]
+  int substeps = 0;                         ///< committed
   int cuts = 0;
   std::string reason;             ///< of the last failure, if there was one
   std::vector<char> unsettled;    ///< [as BlockProblem::states()] in the last failure, those that found no state

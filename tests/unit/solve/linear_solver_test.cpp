@@ -13,7 +13,8 @@ using solve::CondensedSolve;
 using solve::LinearSolverOptions;
 
 solve::LinearSystem system_of(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric) {
-  return {matrix, symmetric, {{block, matrix, Teuchos::null}}};
+  const auto joined = std::make_shared<solve::Joined>(std::vector{block.map});
+  return {joined, {matrix}, symmetric, {{block, matrix, {}}}, matrix};
 }
 
 /// Builds A x = b with a known x and solves it.

@@ -53,7 +53,7 @@ TEST(Newton, SolvesContact) {
     const auto again = newton.solve(x);
     EXPECT_TRUE(again.converged);
     EXPECT_EQ(again.iterations, 0);
-    EXPECT_EQ(again.linear_iterations, 0);
+    EXPECT_EQ(solve::iterations(again.linear_solves), 0);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
     const auto report = newton.solve(x);
     ASSERT_TRUE(report.converged) << report.reason;
     EXPECT_EQ(report.iterations, 1);
-    EXPECT_EQ(report.linear_iterations, 1);
+    EXPECT_EQ(solve::iterations(report.linear_solves), 1);
   }
   EXPECT_EQ(newton.linear().n_setups(), 1);
   EXPECT_EQ(problem.n_jacobians, 3);

@@ -1,0 +1,66 @@
+#include "solve/forced_solve.hpp"
+
+#include <algorithm>
+
+namespace sprekk::solve {
+namespace {
+
+constexpr Real first_accuracy = 1e-4, next_accuracy = 1e-2;
+
+void add(Real factor, const BlockVector& from, BlockVector& to) {
+  for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);
+}
+
+}  // namespace
+
+void ForcedSolve::jacobian(const BlockVector& x) {
+  problem_.jacobian(x);
+  if (!solve_.forcing()) return;
+  if (x_.empty()) x_ = fields::create_like(x);
+  fields::copy(x, x_);
+}
+
+void ForcedSolve::apply(const BlockVector& x, BlockVector& y) const {
+  problem_.matrix().apply(x, y);
+  for (std::size_t b = 0; b < x.size(); ++b) {
+    const auto flags = problem_.constrained(b);
+    const auto from = x[b]->getLocalViewDevice(Tpetra::Access::ReadOnly);
+    const auto to = y[b]->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "constrained rows", Kokkos::RangePolicy<Execution>(0, flags.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+          if (flags(i)) to(i, 0) = from(i, 0);
+        });
+  }
+}
+
+std::size_t ForcedSolve::states_after(const BlockVector& dx) const {
+  auto x = fields::create_like(x_);
+  fields::copy(x_, x);
+  add(-1, dx, x);
+  return problem_.state_hash(problem_.states(x));
+}
+
+LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
+  Real asked = solve_.forcing() ? std::max(first_accuracy, tolerance) : tolerance;
+  auto report = solve_.solve(b, dx, asked);
+  if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
+  const auto before = problem_.state_hash(problem_.states(x_));
+  auto r = fields::create_like(b), correction = fields::create_like(b);
+  for (auto states = states_after(dx); report.converged && report.residual > tolerance && asked > tolerance;) {
+    asked = states == before ? tolerance : std::max(next_accuracy * asked, tolerance);
+    apply(dx, r);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i]->update(1, *b[i], -1);
+    const auto more = solve_.solve(r, correction, asked / report.residual);
+    report.iterations += more.iterations;
+    report.residual *= more.residual;
+    report.converged = more.converged;
+    report.reason = more.reason;
+    if (more.converged) add(1, correction, dx);
+    const auto refined = states_after(dx);
+    if (refined == states && refined != before) break;
+    states = refined;
+  }
+  return report;
+}
+
+}  // namespace sprekk::solve
