@@ -103,7 +103,8 @@ def run(options, sets, directory, ranks=1, time_limit=3600):
     if done.returncode in (124, 137):
         found.failure = f"no end within {time_limit} s"
     elif done.returncode:
-        found.failure = found.results.get("reason") or (done.stderr.strip().splitlines() or ["no word"])[-1]
+        words = [line for line in done.stderr.splitlines() if line.strip("- ")]
+        found.failure = found.results.get("reason") or (words or ["no word"])[-1]
     elif (found.residual or 0) > ROUNDING * RESIDUAL:
         found.failure = f"true residual {found.residual:.1e} after a linear solve"
     return found
