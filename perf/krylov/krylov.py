@@ -74,7 +74,7 @@ def draw(rows, file):
     """Iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra."""
     import style
     figure, axes = style.plt.subplots(1, 3, figsize=(10.5, 3.4))
-    names, states = list(dict.fromkeys(row.series for row in rows)), list(STATES)
+    names, states = sorted({row.series for row in rows}), list(STATES)
     whats = (("Krylov iterations of a solve: mean, largest (-)", lambda row: row.run.mean), ("Newton iterations of a step (-)", lambda row: row.run.newton),
              ("set-up, assembly and solution (s)", lambda row: row.seconds))
     for ax, (label, what) in zip(axes, whats):
@@ -87,8 +87,8 @@ def draw(rows, file):
             if ax is axes[0]:
                 ax.vlines(x, [row.run.mean for row in of], [row.run.most for row in of], color=look["color"], linewidth=0.8)
         ax.set(xscale="log", xlabel="displacement unknowns (-)", title=label)
-    axes[0].set_ylim(bottom=0)
-    axes[1].set_ylim(bottom=0)
+    for ax in axes[:2]:
+        ax.set_ylim(0, 1.05 * ax.get_ylim()[1])
     axes[2].set_yscale("log")
     slowest = max(rows, key=lambda row: row.seconds)
     x = np.array(axes[2].get_xlim())

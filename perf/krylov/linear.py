@@ -100,7 +100,7 @@ def run(options, sets, directory, ranks=1, time_limit=3600):
                           stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
     file = directory / "results.json"
     found = Run(json.loads(file.read_text()) if file.is_file() else {})
-    if done.returncode in (124, 137):
+    if done.returncode in (124, 137, -9):  # timeout ends itself as it ended the program
         found.failure = f"no end within {time_limit} s"
     elif done.returncode:
         words = [line for line in done.stderr.splitlines() if line.strip("- ")]

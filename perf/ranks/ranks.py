@@ -74,7 +74,7 @@ def draw(rows, file):
         ax.set(xscale="log", xlabel="ranks (-)", title=label)
         ax.set_xticks(ticks, ticks)
         ax.minorticks_off()
-        ax.set_ylim(bottom=0)
+        ax.set_ylim(0, 1.05 * ax.get_ylim()[1])
     axes[0].legend(loc="lower left")
     figure.savefig(file, dpi=150)
 
