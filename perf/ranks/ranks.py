@@ -14,7 +14,7 @@ import linear  # noqa: E402
 from krylov import STATES  # noqa: E402
 
 STATE = "mixed"
-TIMED = [("timed", 42, ranks) for ranks in (1, 2)]  # cells along an edge of the box: 305 thousand unknowns
+TIMED = [("timed", 42, ranks) for ranks in (1, 2)]  # cells along an edge of the box: 280 thousand unknowns
 STRONG = [("strong", 18, ranks) for ranks in (1, 2, 4, 8, 16)]
 WEAK = [("weak", edge, ranks) for edge, ranks in ((12, 1), (18, 3), (24, 8), (30, 16))]  # about 8000 unknowns per rank
 QUICK = [("strong", 12, ranks) for ranks in (1, 2)]
