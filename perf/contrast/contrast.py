@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""Krylov iterations at extremes: stiffness of rock and joints, friction, Poisson's ratio, shape of cells.
+
+Every linear solve goes from zero to a relative residual of 1e-8."""
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "perf/krylov"))
+
+import linear  # noqa: E402
+
+EDGE = 12         # cells along an edge of the box
+TIME_LIMIT = 300  # seconds of a run
+BOUNDS = {"max_krylov": 40, "failures": 0}
+CELLS = {"hexahedra": "hexahedron", "tetrahedra": "tetrahedron"}
+COLUMNS = {"cells, case": "", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d", "mean": ".1f",
+           "max": ".4g", "residual": ".0e", "seconds": ".1f"}
+SOFT = linear.joint(stiffness=1) + ("Materials.crack.tangential stiffness=1",)
+STICK = linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.002)
+MIXED = linear.table(xx=-0.006, yy=-0.009, zz=-0.012, shear=0.03) + SOFT
+SLIP = linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.06)
+
+
+@dataclass
+class Case:
+    name: str
+    sets: tuple
+    beyond: bool = False  # of what is asked: counted in rows of its own
+    quick: bool = False
+
+
+def rocks(entry, value):
+    return tuple(f"Materials.{rock}.{entry}={value}" for rock in ("rock", "other rock"))
+
+
+def stretched(factor):
+    """The scene with all z multiplied: cells of aspect ratio `factor` or its inverse; strains are the same."""
+    entries = []
+
+    def visit(element, path):
+        for child in element:
+            here = (*path, child.get("name"))
+            if child.tag == "ParameterList":
+                visit(child, here)
+            elif child.get("name") in ("lower corner", "upper corner"):
+                x, y, z = (float(word) for word in child.get("value").strip("{}").split(","))
+                entries.append(f"{'.'.join(here)}={{{x:g}, {y:g}, {z * factor:.15g}}}")
+    visit(ElementTree.parse(ROOT / "xml" / linear.SCENE).getroot(), ())
+    return tuple(entries)
+
+
+def contrast(ratio):
+    return (f"Materials.other rock.Young's modulus={ratio}",)
+
+
+def stiff(ratio):
+    """Tangential stiffness of the joints, relative to E = 1 of the rock."""
+    return linear.joint(stiffness=ratio)
+
+
+def springs(ratio):
+    """Normal and tangential stiffness; the closure is so large that the law is about linear."""
+    return linear.joint(normal=ratio, stiffness=ratio, closure=1)
+
+
+def friction(ratio):
+    return tuple(f"Materials.{joint}.friction coefficient={ratio}" for joint in ("joint", "crack"))
+
+
+def cases():
+    yield Case("as it is", MIXED, quick=True)
+    for ratio in ("1e-6", "1e-3", "1e3", "1e6"):
+        yield Case(f"E ratio {ratio}", MIXED + contrast(ratio), quick=ratio == "1e6")
+    for ratio in ("1e-9", "1e-6", "1e-3", "1e3", "1e6", "1e9"):
+        yield Case(f"K_t/E {ratio}", MIXED + stiff(ratio), quick=ratio == "1e-9")
+        yield Case(f"K_n/E, K_t/E {ratio}", STICK + SOFT + springs(ratio), quick=ratio == "1e-6")
+    for mu in (0, 0.3, 1):
+        yield Case(f"friction {mu}", MIXED + friction(mu), quick=mu == 0)
+    for mu in (0.1, 0.6, 1):
+        yield Case(f"friction {mu}, all slips", SLIP + friction(mu))
+    for nu in (0, 0.4, 0.45):
+        yield Case(f"Poisson's ratio {nu}", MIXED + rocks("Poisson's ratio", nu), quick=nu == 0.45)
+    for factor, text in ((3, "3"), (10, "10"), (1 / 3, "1/3"), (0.1, "1/10")):
+        yield Case(f"aspect ratio {text}", STICK + SOFT + stretched(factor), quick=factor == 10)
+    yield Case("E 1e6, K_t 1e-9", MIXED + contrast("1e6") + stiff("1e-9"))
+    yield Case("E 1e-6, K_n and K_t 1e-9", STICK + SOFT + contrast("1e-6") + springs("1e-9"))
+    yield Case("E 1e6, K_n and K_t 1e9", MIXED + contrast("1e6") + springs("1e9"))
+    for nu in (0.49, 0.499, 0.4999):
+        yield Case(f"Poisson's ratio {nu}", MIXED + rocks("Poisson's ratio", nu), beyond=True)
+    for factor, text in ((30, "30"), (100, "100"), (1000, "1000"), (1 / 30, "1/30"), (0.01, "1/100"), (0.001, "1/1000")):
+        yield Case(f"aspect ratio {text}", STICK + SOFT + stretched(factor), beyond=True)
+    yield Case("friction 2, all slips", linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.2) + friction(2), beyond=True)
+
+
+def draw(rows, file):
+    """Mean to largest count of each case, a mark for each kind of cells."""
+    import style
+    names = list(dict.fromkeys((case.beyond, case.name) for case, *_ in rows))
+    figure, ax = style.plt.subplots(figsize=(7, 0.8 + 0.165 * len(names)))
+    for k, cell in enumerate(CELLS):
+        of = [(names.index((case.beyond, case.name)), run) for case, kind, run in rows if kind == cell and run.krylov]
+        height = [len(names) - at + 0.18 * (1 - 2 * k) for at, _ in of]
+        ax.hlines(height, [run.mean for _, run in of], [run.most for _, run in of], color=style.LINES[k], linewidth=1)
+        ax.plot([run.mean for _, run in of], height, "o", color=style.LINES[k], markersize=3.5, label=f"{cell}: mean, line to the largest")
+        failed = [(run.most, h) for (_, run), h in zip(of, height) if run.failure]
+        if failed:
+            ax.plot(*zip(*failed), "x", color=style.INK, markersize=6, label=f"{cell}: failed")
+    ax.axvline(BOUNDS["max_krylov"], color=style.FAINT, linestyle=":", label="asked, of those above the line")
+    n_asked = sum(not beyond for beyond, _ in names)
+    if 0 < n_asked < len(names):
+        ax.axhline(len(names) - n_asked + 0.5, color=style.INK, linewidth=0.8)
+    ax.set_yticks(range(len(names), 0, -1), [name for _, name in names], fontsize=7)
+    ax.set(xscale="log", xlabel="Krylov iterations of a linear solve (-)", ylim=(0.3, len(names) + 0.7))
+    ax.set_xticks([10, 20, 40, 100, 200, 500], ["10", "20", "40", "100", "200", "500"])
+    ax.minorticks_off()
+    ax.legend(loc="upper center", bbox_to_anchor=(0.4, -0.5 / (0.165 * len(names) + 0.8)), ncols=2)
+    figure.savefig(file, dpi=150)
+
+
+def main(words):
+    options = linear.parser("contrast", __doc__).parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    chosen = [(case, cell) for case in cases() for cell in (["tetrahedra"] if options.quick else CELLS)
+              if (case.quick or not options.quick) and re.search(options.only, f"{cell}, {case.name}")]
+    if not chosen:
+        sys.exit(f'contrast: no case matches "{options.only}"')
+    table, rows = linear.Table(COLUMNS, 44), []
+    for case, cell in chosen:
+        sets = (*linear.cells(EDGE), f"Mesh.cell={CELLS[cell]}", *case.sets)
+        run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{cell} {case.name}"), time_limit=TIME_LIMIT)
+        rows.append((case, cell, run))
+        name = f"{'beyond: ' if case.beyond else ''}{cell}, {case.name}"
+        table.add([name, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean, run.most,
+                   run.residual, sum(run.seconds(what) for what in linear.TIMERS)], [f"failed: {run.failure}"] if run.failure else ())
+    table.write(options.output / "contrast.csv")
+    draw(rows, options.output / "contrast.png")
+    total = {"max_krylov": max((run.most for case, _, run in rows if not case.beyond), default=0), "failures": sum(bool(run.failure) for *_, run in rows)}
+    wrong = linear.missed(total, BOUNDS)
+    print("\n".join(["", *wrong, f"contrast.csv and contrast.png in {options.output}"]))
+    print("max_krylov={max_krylov:.4g} failures={failures}".format(**total))
+    return 1 if total["failures"] or (options.quick and wrong) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Krylov and Newton iterations from ten thousand to a million unknowns: a network of fractures in all states, of hexahedra and of tetrahedra.
+
+Every linear solve goes from zero to a relative residual of 1e-8."""
+import math
+import re
+import sys
+from dataclasses import dataclass
+
+import linear
+import numpy as np
+
+EDGES = (12, 18, 30, 42, 66)  # cells along an edge of the box: 11, 29, 111, 280 and 1001 thousand unknowns
+QUICK = {12: r"tetrahedra|stick", 18: r"stick"}  # and the series
+REFERENCE = 30                # growth is counted, and the exponent fitted, from here
+BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3, "exponent": 1.1}
+QUICK_BOUNDS = {"max_krylov": 40, "growth": 0.3, "newton_growth": 0.3}  # of all meshes
+STATES = {  # which sides move how far, and the joint
+    "stick": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.002),
+    "slip": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.06),
+    "mixed": linear.table(xx=0.007, yy=-0.006, zz=-0.012, shear=0.012) + linear.joint(stiffness=1, dilation=2),
+    "open": linear.table(xx=0.01, yy=0.012, zz=-0.01, shear=0.002) + linear.joint(stiffness=1),
+}
+COLUMNS = {"cells, state": "", "edge": "d", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d",
+           "mean": ".1f", "max": ".4g", "residual": ".0e", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f", "kB/unknown": ".1f"}
+
+
+@dataclass
+class Row:
+    """A state on a mesh."""
+    series: str
+    edge: int
+    run: linear.Run
+
+    @property
+    def seconds(self):
+        return sum(self.run.seconds(what) for what in linear.TIMERS)
+
+    def values(self):
+        run = self.run
+        return [self.series, self.edge, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean,
+                run.most, run.residual, *(run.seconds(what) for what in linear.TIMERS), run.bytes[0] / 1e3 / max(1, run.unknowns)]
+
+
+def growth(rows, first, last, what):
+    """Of the mean over the series that ran on both meshes, from the first mesh to the last, less 1."""
+    at = {edge: {row.series: what(row.run) for row in rows if row.edge == edge} for edge in (first, last)}
+    both = at[first].keys() & at[last].keys()
+    return sum(at[last][s] for s in both) / sum(at[first][s] for s in both) - 1 if both else math.nan
+
+
+def exponent(rows, first):
+    """p of seconds ~ unknowns^p, fitted to all series at once, each with a factor of its own."""
+    points = {}
+    for row in rows:
+        if row.edge >= first and row.seconds > 0:
+            points.setdefault(row.series, []).append((math.log(row.run.unknowns), math.log(row.seconds)))
+    centred = [np.array(of) - np.mean(of, axis=0) for of in points.values() if len(of) > 1]
+    if not centred:
+        return math.nan
+    x, y = np.concatenate(centred).T
+    return float(x @ y / (x @ x))
+
+
+def summary(rows, quick):
+    edges = sorted({row.edge for row in rows})
+    first = edges[0] if quick else max((e for e in edges if e <= REFERENCE), default=edges[0])
+    last = edges[-1]
+    return {"max_krylov": max(row.run.most for row in rows if quick or row.edge == last), "growth": growth(rows, first, last, lambda run: run.mean),
+            "newton_growth": growth(rows, first, last, lambda run: run.newton), "exponent": exponent(rows, first)}
+
+
+def draw(rows, file):
+    """Iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra."""
+    import style
+    figure, axes = style.plt.subplots(1, 3, figsize=(10.5, 3.4))
+    names, states = sorted({row.series for row in rows}), list(STATES)
+    whats = (("Krylov iterations of a solve: mean, largest (-)", lambda row: row.run.mean), ("Newton iterations of a step (-)", lambda row: row.run.newton),
+             ("set-up, assembly and solution (s)", lambda row: row.seconds))
+    for ax, (label, what) in zip(axes, whats):
+        for name in names:
+            of = [row for row in rows if row.series == name]
+            cell, state = name.split(", ")
+            look = dict(color=style.LINES[states.index(state)], linestyle="-" if cell == "hexahedra" else "--")
+            x = [row.run.unknowns for row in of]
+            ax.plot(x, [what(row) for row in of], label=name, marker="o", markersize=3.5, **look)
+            if ax is axes[0]:
+                ax.vlines(x, [row.run.mean for row in of], [row.run.most for row in of], color=look["color"], linewidth=0.8)
+        ax.set(xscale="log", xlabel="displacement unknowns (-)", title=label)
+    for ax in axes[:2]:
+        ax.set_ylim(0, 1.05 * ax.get_ylim()[1])
+    axes[2].set_yscale("log")
+    slowest = max(rows, key=lambda row: row.seconds)
+    x = np.array(axes[2].get_xlim())
+    axes[2].plot(x, slowest.seconds * x / slowest.run.unknowns, ":", color=style.FAINT, label="proportional to unknowns", scalex=False, scaley=False)
+    axes[2].legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+    figure.savefig(file, dpi=150)
+
+
+def main(words):
+    parser = linear.parser("krylov", __doc__)
+    parser.add_argument("--largest", type=float, default=1.2e6, metavar="N", help="no mesh with more unknowns than this (1.2e6)")
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    series = [(f"{cell}, {state}", (f"Mesh.cell={shape}", *sets)) for cell, shape in (("hexahedra", "hexahedron"), ("tetrahedra", "tetrahedron"))
+              for state, sets in STATES.items() if re.search(options.only, f"{cell}, {state}")]
+    if not series:
+        sys.exit(f'krylov: no series matches "{options.only}"')
+    print_table, rows, failed = linear.Table(COLUMNS, 20), [], []
+    for edge in QUICK if options.quick else [edge for edge in EDGES if 3 * (edge + 1)**3 <= options.largest]:
+        for name, sets in series:
+            if options.quick and not re.search(QUICK[edge], name):
+                continue
+            run = linear.run(options, (*linear.cells(edge), *sets), f"{name.replace(', ', '_')}_{edge}")
+            if run.failure:
+                failed.append(f"failed: {name}, {edge}: {run.failure}")
+            if run.steps:
+                rows.append(Row(name, edge, run))
+                print_table.add(rows[-1].values(), failed[-1:] if run.failure else ())
+    if not rows:
+        sys.exit("\n".join(failed))
+    print_table.write(options.output / "krylov.csv")
+    draw(rows, options.output / "krylov.png")
+    total = summary(rows, options.quick)
+    wrong = failed + (linear.missed(total, QUICK_BOUNDS) if options.quick else [])
+    print("\n".join(["", *wrong, f"krylov.csv and krylov.png in {options.output}"]))
+    if not options.quick:
+        print("\n".join(linear.missed(total, BOUNDS)))
+    print("max_krylov={max_krylov:.4g} growth={growth:.2f} newton_growth={newton_growth:.2f} exponent={exponent:.2f}".format(**total))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,164 @@
+"""Runs a scene with the iterative solver, and reads from results.json what the linear solves took."""
+import argparse
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "apps/plot"))
+
+SCENE = "performance/blocks_3d.xml"
+SOLVER = "Solver.Linear solver"
+RESIDUAL = 1e-8  # relative, of every linear solve
+ROUNDING = 10    # the true residual may exceed the one that the Krylov method updates by this factor
+ALWAYS = (f"{SOLVER}.type=iterative", f"{SOLVER}.tolerance={RESIDUAL:g}")
+STATES = ("stick", "slip", "open")
+TIMERS = {"set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
+          "assembly": ("assembly_of_the_linear_part", "loads", "residual", "Jacobian", "local_elimination"),
+          "solve": ("linear_solve",)}
+
+
+@dataclass
+class Run:
+    """A run that ended, or failed for a reason."""
+    results: dict
+    failure: str = ""
+
+    @property
+    def steps(self):
+        return self.results.get("steps", [])
+
+    @property
+    def unknowns(self):
+        """Of the displacement."""
+        fields = self.results.get("blocks", {}).get("fields", [])
+        return next((f["unknowns"] for f in fields if f["name"] == "displacement"), 0)
+
+    @property
+    def newton(self):
+        """Iterations per step that was not cut; of all steps, if all were."""
+        uncut = [step for step in self.steps if step["cuts"] == 0] or self.steps
+        return sum(step["newton_iterations"] for step in uncut) / max(1, len(uncut))
+
+    @property
+    def cuts(self):
+        return sum(step["cuts"] for step in self.steps)
+
+    @property
+    def krylov(self):
+        """Iterations of each linear solve; the mean of a step for each, where the step does not list them."""
+        counts = []
+        for step in self.steps:
+            solves = step["newton_iterations"]
+            counts += [solve["iterations"] for solve in step["linear_solves"]] if "linear_solves" in step \
+                else [step["linear_iterations"] / solves] * solves
+        return counts
+
+    @property
+    def mean(self):
+        return sum(self.krylov) / max(1, len(self.krylov))
+
+    @property
+    def most(self):
+        return max(self.krylov, default=0)
+
+    @property
+    def residual(self):
+        """The largest true relative residual of a linear solve, or None where it is not told."""
+        return max((solve["residual"] for step in self.steps for solve in step.get("linear_solves", [])), default=None)
+
+    def fraction(self, state):
+        """Of the area of all fractures, at the end."""
+        fractures = self.steps[-1].get("fractures", {}).values() if self.steps else []
+        return sum(f["area"] * f[f"fraction_{state}"] for f in fractures) / max(1e-300, sum(f["area"] for f in fractures))
+
+    def seconds(self, what):
+        timing = self.results.get("timing", {})
+        return sum(timing[name]["seconds"] for name in TIMERS[what] if name in timing)
+
+    @property
+    def bytes(self):
+        """(of all ranks, of the rank that has most): the largest resident memory."""
+        memory = self.results.get("memory", {})
+        return memory.get("peak_bytes_all_ranks", 0), memory.get("peak_bytes_largest_rank", 0)
+
+
+def run(options, sets, directory, ranks=1, time_limit=3600):
+    """Runs SCENE with these entries, then those of the command line. Never throws for what the program does."""
+    directory = options.output / directory
+    shutil.rmtree(directory, ignore_errors=True)
+    command = [str(options.binary), "run", str(ROOT / "xml" / SCENE), "--output", str(directory)]
+    command += [word for entry in (*ALWAYS, *sets, *options.set) for word in ("--set", entry)]
+    if ranks > 1:
+        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
+    done = subprocess.run(["timeout", "--kill-after=5", str(time_limit), *command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    file = directory / "results.json"
+    found = Run(json.loads(file.read_text()) if file.is_file() else {})
+    if done.returncode in (124, 137, -9):  # timeout ends itself as it ended the program
+        found.failure = f"no end within {time_limit} s"
+    elif done.returncode:
+        words = [line for line in done.stderr.splitlines() if line.strip("- ")]
+        found.failure = found.results.get("reason") or (words or ["no word"])[-1]
+    elif (found.residual or 0) > ROUNDING * RESIDUAL:
+        found.failure = f"true residual {found.residual:.1e} after a linear solve"
+    return found
+
+
+def table(**values):
+    """Entries that let the sides move so far; xy, xz, yz as one number `shear`."""
+    shear = values.pop("shear")
+    return tuple(f"Tables.{name}.values={{0, {value}}}" for name, value in {**values, "xy": shear, "xz": shear, "yz": shear}.items())
+
+
+def cells(x, y=None, z=None):
+    return (f"Mesh.cells={{{x}, {y or x}, {z or x}}}",)
+
+
+def joint(**entries):
+    names = dict(stiffness="tangential stiffness", friction="friction coefficient", dilation="dilation angle",
+                 closure="maximum closure", normal="normal stiffness")
+    return tuple(f"Materials.joint.{names[key]}={value}" for key, value in entries.items())
+
+
+def parser(name, text):
+    """The options that all programs have."""
+    made = argparse.ArgumentParser(prog=f"sprekk perf {name}", description=text)
+    made.add_argument("--quick", action="store_true", help="a small version, for a test; the status is 1 if a bound on counts is missed")
+    made.add_argument("--only", metavar="PATTERN", default="", help="rows whose name matches this regular expression")
+    made.add_argument("--set", metavar="PATH=VALUE", action="append", default=[], help="an entry of every scene, as for `sprekk run`; may be repeated")
+    made.add_argument("--output", type=Path, default=Path(f"output/perf/{name}"), metavar="DIR")
+    made.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    return made
+
+
+class Table:
+    """Rows as they come, for the screen and for a CSV."""
+
+    def __init__(self, columns, width=34):
+        self.columns, self.width, self.rows = columns, width, []  # columns: {name: format}
+        print(self.line(["", *list(columns)[1:]], {name: "" for name in columns}), flush=True)
+
+    def line(self, values, formats):
+        words = ["-" if value is None else format(value, how) for value, how in zip(values, formats.values())]
+        return f"{words[0]:{self.width}}" + "".join(f"{word:>{max(7, len(name) + 2)}}" for name, word in zip(list(formats)[1:], words[1:]))
+
+    def add(self, values, notes=()):
+        self.rows.append(list(values))
+        print("\n".join([self.line(values, self.columns), *(f"  {note}" for note in notes)]), flush=True)
+
+    def write(self, file):
+        with open(file, "w", newline="") as opened:
+            writer = csv.writer(opened)
+            writer.writerow(self.columns)
+            writer.writerows(self.rows)
+
+
+def missed(values, bounds):
+    """In words, which values are above their bounds."""
+    return [f"missed: {name} = {values[name]:.3g}, the bound is {bound:g}" for name, bound in bounds.items() if not values[name] <= bound]
