@@ -23,21 +23,24 @@ constexpr int coarse_size = 1000;
 /// ("RP") were smoothed without contact, do not reach across it, and take twice the iterations. The largest eigenvalue
 /// takes more than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at
 /// crack tips; with less than it, the smoother would not be positive.
+/// A block of rock that is a single node on a coarse level has no neighbour in the graph of the bulk there; it must not
+/// be taken for a node without unknowns, which only the finest level has.
 ParameterList multigrid_defaults(int n_components, int n_ranks) {
   ParameterList list("MueLu");
   list.set("verbosity", "none");
   list.set("number of equations", n_components);
   list.set("multigrid algorithm", "sa");
   list.set("coarse: max size", coarse_size);
-  list.set("transpose: use implicit", true);
   list.set("reuse: type", "tP");
   list.set("aggregation: drop tol", 1e-12);
   list.set("sa: use filtered matrix", true);
+  list.set("aggregation: preserve Dirichlet points", true);
+  list.sublist("level 1").set("aggregation: preserve Dirichlet points", false);  // made from the finest
   list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
   list.set("smoother: type", "CHEBYSHEV");
   list.sublist("smoother: params")
-      .set("chebyshev: degree", 2)
-      .set("chebyshev: ratio eigenvalue", 7.0)
+      .set("chebyshev: degree", 4)
+      .set("chebyshev: ratio eigenvalue", 15.0)
       .set("chebyshev: eigenvalue max iterations", 20);
   if (n_ranks > 1) {
     list.set("repartition: enable", true);
@@ -94,9 +97,9 @@ class Multigrid : public BlockSolver {
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     // MueLu takes matrices that may change; only RaisedDiagonal changes this one
     const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(block.matrix);
-    if (hierarchy_.is_null()) {
-      const auto bulk = block.bulk ? block.bulk() : matrix;
-      create(block.block, bulk);
+    if (hierarchy_.is_null() || (symmetric_ && !block.symmetric)) {
+      symmetric_ = block.symmetric;
+      create(block.block, block.bulk ? block.bulk() : matrix);
     }
     const RaisedDiagonal raised(*matrix);
     MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
@@ -105,10 +108,13 @@ class Multigrid : public BlockSolver {
   }
   RCP<const Operator> prepared() const override { return hierarchy_; }
 
-  /// Aggregates by the graph of the bulk, where no edge crosses an interface.
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface. Where the matrix is not symmetric the
+  /// restriction is smoothed with its transpose.
   void create(const Block& block, const RCP<CrsMatrix>& bulk) {
     const RaisedDiagonal raised(*bulk);
     ParameterList list(parameters_);
+    list.get("problem: symmetric", symmetric_);
+    list.get("transpose: use implicit", symmetric_);
     auto& user_data = list.sublist("user data");
     if (!block.near_null_space.is_null())
       user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
@@ -119,6 +125,7 @@ class Multigrid : public BlockSolver {
 
   ParameterList parameters_;
   RCP<Hierarchy> hierarchy_;
+  bool symmetric_ = true;
 };
 
 /// A fine level for one block among others.
@@ -136,7 +143,7 @@ class TwoLevel : public BlockSolver {
 
  private:
   void prepare(const DiagonalBlock& block, SolverCost&) override {
-    level_.setup({joined_, {block.matrix}, true, {block}, {}});
+    level_.setup({joined_, {block.matrix}, block.symmetric, {block}, {}});
   }
   RCP<const Operator> prepared() const override { return level_.inverse(); }
 

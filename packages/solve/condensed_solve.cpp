@@ -10,7 +10,7 @@ CondensedSolve::CondensedSolve(BlockProblem& problem, const LinearSolverOptions&
       elimination_(problem),
       chosen_(make_linear_solver(options, remaining())),
       tolerance_(options.tolerance),
-      forcing_(options.forcing) {
+      forcing_(options.forcing && !chosen_.solver->reads_matrix()) {
   std::vector<RCP<const Map>> maps;
   const int n = static_cast<int>(elimination_.remaining().size());
   for (int r = 0; r < n; ++r) {
@@ -47,7 +47,7 @@ LinearSystem CondensedSolve::system() {
   const bool with_bulk = !problem_.local_groups().empty();
   const auto blocks = remaining();
   for (int r = 0; r < static_cast<int>(blocks.size()); ++r) {
-    system.diagonal.push_back({blocks[r], elimination_.condensed(r, r), {}});
+    system.diagonal.push_back({blocks[r], elimination_.condensed(r, r), {}, symmetric_});
     if (with_bulk) system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };
   }
   return system;

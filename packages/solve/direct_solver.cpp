@@ -68,7 +68,7 @@ class DirectSolver : public LinearSolver {
     return failure_ = info < 0 ? message(mumps_) : "";
   }
 
-  LinearReport solve(const Vector& b, Vector& x, Real) override {
+  LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
     LinearReport report;
     x.putScalar(0);
     if (!failure_.empty()) {
@@ -77,7 +77,7 @@ class DirectSolver : public LinearSolver {
     }
     Vector r(b, Teuchos::Copy), dx(x.getMap()), best(x, Teuchos::Copy);
     report.residual = 1;
-    for (int refinement = 0; refinement <= 3 && report.residual > 1e-14; ++refinement) {
+    for (int refinement = 0; refinement <= 3 && report.residual > 1e-2 * tolerance; ++refinement) {
       if (!substitute_rhs(r, dx)) {
         report.reason = message(mumps_);
         return report;

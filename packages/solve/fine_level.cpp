@@ -1,9 +1,13 @@
 #include "solve/fine_level.hpp"
 
 #include <Ifpack2_Factory.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <TpetraExt_TripleMatrixMultiply.hpp>
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/check.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -21,18 +25,65 @@ RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>&
   return product;
 }
 
-RCP<const Operator> smoother(const RCP<const CrsMatrix>& A, int n_sweeps) {
+RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
   const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
   ParameterList list;
   list.set("relaxation: type", "Symmetric Gauss-Seidel");
   list.set("relaxation: use l1", true);  // converges on any number of ranks
-  list.set("relaxation: sweeps", n_sweeps);
   S->setParameters(list);
   S->initialize();
   S->compute();
   return S;
 }
+
+/// The inverse of the part of A between unknowns of this rank, its diagonal raised by the sizes of the entries that it
+/// leaves out, so that a step with it converges on any number of ranks.
+class LocalInverse : public Operator {
+ public:
+  LocalInverse(const RCP<const CrsMatrix>& A, bool symmetric) : map_(A->getRowMap()), solver_(make_direct_solver({})) {
+    const RCP<const Comm> alone = rcp(new Teuchos::SerialComm<int>);
+    const LocalIndex n = map_->getNodeNumElements();
+    local_ = rcp(new Map(n, 0, alone));
+    if (n == 0) return;
+    const auto part = rcp(new CrsMatrix(local_, A->getNodeMaxNumRowEntries() + 1));
+    const auto from = A->getLocalMatrixHost();
+    const auto& columns = *A->getColMap();
+    std::vector<GlobalIndex> kept;
+    std::vector<Real> values;
+    for (LocalIndex row = 0; row < n; ++row) {
+      kept.assign(1, row);
+      values.assign(1, 0);
+      for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1); ++k) {
+        const LocalIndex column = map_->getLocalElement(columns.getGlobalElement(from.graph.entries(k)));
+        kept.push_back(column < 0 ? row : column);
+        values.push_back(column < 0 ? std::abs(from.values(k)) : from.values(k));
+      }
+      part->insertGlobalValues(row, static_cast<LocalIndex>(kept.size()), values.data(), kept.data());
+    }
+    part->fillComplete(local_, local_);
+    const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{local_});
+    const auto failure = solver_->setup({joined, {part}, symmetric, {}, part});
+    SPREKK_CHECK(failure.empty(), "around crack tips: {}", failure);
+  }
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+
+  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real, Real) const override {
+    for (std::size_t v = 0; v < b.getNumVectors() && local_->getNodeNumElements() > 0; ++v) {
+      Vector from(local_), to(local_);
+      Kokkos::deep_copy(from.getLocalViewDevice(Tpetra::Access::OverwriteAll),
+                        b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
+      solver_->solve(from, to, 1);
+      Kokkos::deep_copy(y.getVectorNonConst(v)->getLocalViewDevice(Tpetra::Access::OverwriteAll),
+                        to.getLocalViewDevice(Tpetra::Access::ReadOnly));
+    }
+  }
+
+ private:
+  RCP<const Map> map_, local_;
+  std::unique_ptr<LinearSolver> solver_;
+};
 
 /// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; empty, for all, of a
 /// block of order 2.
@@ -56,11 +107,12 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
 
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> order_one)
+  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> smoother,
+        RCP<const Operator> order_one)
       : A_(system.joined_operator()),
         rows_(smoothed.rows()),
         smoothed_map_(smoothed.matrix()->getRowMap()),
-        smoother_(solve::smoother(smoothed.matrix(), system.joined->n_blocks() > 1 ? 2 : 1)),
+        smoother_(smoother),
         order_one_(order_one),
         P_(system.diagonal.front().block.interpolation),
         map_(system.joined->map(0)),
@@ -148,10 +200,15 @@ void FineLevel::setup(const LinearSystem& system) {
   const auto& P = first.block.interpolation;
   std::function<RCP<CrsMatrix>()> bulk;
   if (first.bulk) bulk = [&] { return at_order_one(first.bulk(), P); };
-  order_one_->setup({first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk});
+  order_one_->setup({first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk, system.symmetric});
   if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
   smoothed_->update();
-  cycle_ = rcp(new Cycle(system, *smoothed_, order_one_->inverse()));
+  RCP<const Operator> smoother;
+  if (P.is_null())
+    smoother = rcp(new LocalInverse(smoothed_->matrix(), system.symmetric));
+  else
+    smoother = gauss_seidel(smoothed_->matrix());
+  cycle_ = rcp(new Cycle(system, *smoothed_, smoother, order_one_->inverse()));
 }
 
 }  // namespace sprekk::solve

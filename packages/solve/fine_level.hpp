@@ -11,8 +11,9 @@ bool have_fine_level(const std::vector<Block>& blocks);
 /// The symmetric two-level cycle for a system of such blocks,
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
 /// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
-/// enrich it. S is a smoother of A on the unknowns that order 1 does not have, and on those that couple to them: of
-/// order 2 all; of blocks that enrich, those near crack tips.
+/// enrich it. S works on the unknowns that order 1 does not have, and on those that couple to them: of order 2 on all,
+/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve within each
+/// rank.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);

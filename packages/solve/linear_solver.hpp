@@ -54,6 +54,7 @@ struct DiagonalBlock {
   RCP<const CrsMatrix> matrix;  ///< of the block alone; null if it has none
   /// Makes it without what crosses interfaces, on the same graph, by whose values multigrid aggregates; or empty.
   std::function<RCP<CrsMatrix>()> bulk;
+  bool symmetric = true;
 };
 
 /// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.

@@ -16,7 +16,7 @@ SCENE = "performance/blocks_3d.xml"
 SOLVER = "Solver.Linear solver"
 RESIDUAL = 1e-8  # relative, of every linear solve
 ROUNDING = 10    # the true residual may exceed the one that the Krylov method updates by this factor
-ALWAYS = (f"{SOLVER}.type=iterative", f"{SOLVER}.tolerance={RESIDUAL:g}")
+ALWAYS = (f"{SOLVER}.type=iterative", f"{SOLVER}.tolerance={RESIDUAL:g}", f"{SOLVER}.forcing=false")
 STATES = ("stick", "slip", "open")
 TIMERS = {"set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
           "assembly": ("assembly_of_the_linear_part", "loads", "residual", "Jacobian", "local_elimination"),
