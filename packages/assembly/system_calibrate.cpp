@@ -23,9 +23,10 @@ bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>
 /// The rock answers a change of traction by a change of jump. From one balanced iterate to the next its stiffness is
 ///   - sum |f| dlambda . dw / sum |f| |dw|^2
 /// over faces that stay closed, weighted by how far each deformation has moved. Measured once: stiffness does not
-/// change, but between later iterates pieces that part move far, which says nothing of it.
+/// change, but between later iterates pieces that part move far, which says nothing of it. One factor for all faces
+/// means nothing where rocks differ: there the constant stays.
 bool System::calibrate(const BlockVector& x, bool first) {
-  if (calibrated_ || mesh_->n_global_fracture_faces == 0) return false;
+  if (calibrated_ || mesh_->n_global_fracture_faces == 0 || loose_->contrast() > near) return false;
   refresh_ghosts(x, false);
   const auto before = std::exchange(grips_, grips());
   if (first) return false;
