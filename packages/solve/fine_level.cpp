@@ -5,7 +5,6 @@
 #include <TpetraExt_TripleMatrixMultiply.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/check.hpp"
 
@@ -25,20 +24,20 @@ RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>&
   return product;
 }
 
-RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
+RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A, int n_sweeps) {
   using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
   const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
   ParameterList list;
   list.set("relaxation: type", "Symmetric Gauss-Seidel");
   list.set("relaxation: use l1", true);  // converges on any number of ranks
+  list.set("relaxation: sweeps", n_sweeps);
   S->setParameters(list);
   S->initialize();
   S->compute();
   return S;
 }
 
-/// The inverse of the part of A between unknowns of this rank, its diagonal raised by the sizes of the entries that it
-/// leaves out, so that a step with it converges on any number of ranks.
+/// The inverse, by factors, of a matrix on one rank.
 class LocalInverse : public Operator {
  public:
   LocalInverse(const RCP<const CrsMatrix>& A, bool symmetric) : map_(A->getRowMap()), solver_(make_direct_solver({})) {
@@ -46,18 +45,17 @@ class LocalInverse : public Operator {
     const LocalIndex n = map_->getNodeNumElements();
     local_ = rcp(new Map(n, 0, alone));
     if (n == 0) return;
-    const auto part = rcp(new CrsMatrix(local_, A->getNodeMaxNumRowEntries() + 1));
+    const auto part = rcp(new CrsMatrix(local_, A->getNodeMaxNumRowEntries()));
     const auto from = A->getLocalMatrixHost();
     const auto& columns = *A->getColMap();
     std::vector<GlobalIndex> kept;
     std::vector<Real> values;
     for (LocalIndex row = 0; row < n; ++row) {
-      kept.assign(1, row);
-      values.assign(1, 0);
+      kept.clear();
+      values.clear();
       for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1); ++k) {
-        const LocalIndex column = map_->getLocalElement(columns.getGlobalElement(from.graph.entries(k)));
-        kept.push_back(column < 0 ? row : column);
-        values.push_back(column < 0 ? std::abs(from.values(k)) : from.values(k));
+        kept.push_back(map_->getLocalElement(columns.getGlobalElement(from.graph.entries(k))));
+        values.push_back(from.values(k));
       }
       part->insertGlobalValues(row, static_cast<LocalIndex>(kept.size()), values.data(), kept.data());
     }
@@ -200,14 +198,16 @@ void FineLevel::setup(const LinearSystem& system) {
   const auto& P = first.block.interpolation;
   std::function<RCP<CrsMatrix>()> bulk;
   if (first.bulk) bulk = [&] { return at_order_one(first.bulk(), P); };
-  order_one_->setup({first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk, system.symmetric});
+  order_one_->setup(
+      {first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk, system.symmetric});
   if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
   smoothed_->update();
+  const bool alone = system.joined->map()->getComm()->getSize() == 1;
   RCP<const Operator> smoother;
-  if (P.is_null())
+  if (P.is_null() && alone)
     smoother = rcp(new LocalInverse(smoothed_->matrix(), system.symmetric));
   else
-    smoother = gauss_seidel(smoothed_->matrix());
+    smoother = gauss_seidel(smoothed_->matrix(), P.is_null() ? 2 : 1);
   cycle_ = rcp(new Cycle(system, *smoothed_, smoother, order_one_->inverse()));
 }
 
