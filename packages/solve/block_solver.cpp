@@ -20,7 +20,7 @@ constexpr int coarse_size = 1000;
 /// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
 /// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
 /// contact closes; reuse "tP" keeps the aggregates and makes everything else anew: prolongators that are kept
-/// ("RP") were smoothed without contact, do not reach across it, and take twice the iterations. The largest eigenvalue
+/// ("RP") were smoothed without contact and do not reach across it. The largest eigenvalue
 /// takes more than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at
 /// crack tips; with less than it, the smoother would not be positive.
 /// A block of rock that is a single node on a coarse level has no neighbour in the graph of the bulk there; it must not

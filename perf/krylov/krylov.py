@@ -14,7 +14,7 @@ EDGES = (12, 18, 30, 42, 66)  # cells along an edge of the box: 11, 29, 111, 280
 QUICK = {12: r"tetrahedra|stick", 18: r"stick"}  # and the series
 REFERENCE = 30                # growth is counted, and the exponent fitted, from here
 BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3, "exponent": 1.1}
-QUICK_BOUNDS = {"max_krylov": 40, "growth": 0.3, "newton_growth": 0.3}  # of all meshes
+QUICK_BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3}  # of all meshes
 STATES = {  # which sides move how far, and the joint
     "stick": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.002),
     "slip": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.06),
