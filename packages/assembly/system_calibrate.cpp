@@ -26,7 +26,7 @@ bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>
 /// change, but between later iterates pieces that part move far, which says nothing of it. One factor for all faces
 /// means nothing where rocks differ: there the constant stays.
 bool System::calibrate(const BlockVector& x, bool first) {
-  if (calibrated_ || mesh_->n_global_fracture_faces == 0 || loose_->contrast() > near) return false;
+  if (calibrated_ || mesh_->n_global_fracture_faces == 0 || (loose_ && loose_->contrast() > near)) return false;
   refresh_ghosts(x, false);
   const auto before = std::exchange(grips_, grips());
   if (first) return false;
