@@ -249,6 +249,7 @@ void System::watch_pieces() {
   loose_ = std::make_unique<LoosePieces>(mesh_, layouts_[displacement_], constraints_[displacement_]);
   if (!loose_->possible()) return;
   loose_->set_stiffness(*diagonals_[displacement_]);
+  remember(initial());
   if (loose_->contrast() > 10 && linear_part_is_invariant())
     deformation_ = rcp(new Vector(layouts_[displacement_].ghosted()));
 }
@@ -289,9 +290,15 @@ std::string System::history_name(std::size_t module, const History& history) con
   return modules_[module]->name() + ": " + history.name;
 }
 
-void System::resume(Real t, Real dt, const Scales& scales) {
-  scales_ = scales;
-  set_time(t, dt);
+void System::resume(const BlockVector& x, const Memory& memory) {
+  scales_ = memory.scales;
+  set_time(memory.t, memory.dt);
+  remember(x);
+  calibration_ = memory.calibration;
+  augmentation_ = {};
+  if (calibration_.empty()) return;
+  refresh_ghosts(x, false);
+  correct_augmentation(grips());
 }
 
 }  // namespace sprekk::assembly

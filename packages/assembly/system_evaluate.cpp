@@ -177,10 +177,15 @@ void System::jacobian(const BlockVector& x) {
   find_loose();
 }
 
+/// Of an accepted state, what modules do not keep as histories.
+void System::remember(const BlockVector& x) {
+  if (watches_pieces()) committed_ = rcp(new fields::Vector(*x[displacement_], Teuchos::Copy));
+}
+
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
   find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
-  if (watches_pieces()) committed_ = rcp(new fields::Vector(*x[displacement_], Teuchos::Copy));
+  remember(x);
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);

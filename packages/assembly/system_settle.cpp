@@ -69,7 +69,7 @@ std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x, Real
 }
 
 bool System::settle(BlockVector& x) {
-  if (!watches_pieces() || committed_.is_null()) return false;
+  if (!watches_pieces()) return false;
   refresh_ghosts(x, false);
   auto released = grips();
   keep_loaded(released, loaded * scales_.stress);

@@ -2,6 +2,19 @@
 
 namespace sprekk::fields {
 
+std::string name_of(Entity entity) {
+  switch (entity) {
+    case Entity::node:
+      return "node";
+    case Entity::cell:
+      return "cell";
+    case Entity::enriched_node:
+      return "enriched node";
+    default:
+      return "fracture face";
+  }
+}
+
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
   switch (entity) {
     case Entity::node:

@@ -15,6 +15,8 @@ enum class Entity {
   enriched_node  ///< nodes around crack tips, see mesh::Mesh::enriched
 };
 
+std::string name_of(Entity entity);
+
 struct Field {
   std::string name;
   Entity entity;

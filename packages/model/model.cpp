@@ -238,10 +238,11 @@ io::Checkpoint Model::save() {
     Kokkos::deep_copy(entries(*vector, field.n_components), values);
     checkpoint.vectors[field.name] = vector;
   }
-  const auto& scales = system_->scales();
+  const auto memory = system_->memory();
   checkpoint.content = {{"time", time_},
-                        {"dt", system_->dt()},
-                        {"scales", {{"stress", scales.stress}, {"length", scales.length}}},
+                        {"dt", memory.dt},
+                        {"scales", {{"stress", memory.scales.stress}, {"length", memory.scales.length}}},
+                        {"calibration", memory.calibration},
                         {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
@@ -258,7 +259,8 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     Kokkos::deep_copy(values, entries(vector, field.n_components));
   }
   time_ = content.at("time");
-  system_->resume(time_, content.at("dt"), {content.at("scales").at("stress"), content.at("scales").at("length")});
+  const auto& scales = content.at("scales");
+  system_->resume(x_, {time_, content.at("dt"), {scales.at("stress"), scales.at("length")}, content.at("calibration")});
   start_solver();
 }
 

@@ -141,12 +141,11 @@ json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& ou
 json block_summary(const assembly::System& system) {
   json summary;
   const auto& comm = *system.comm();
-  const char* entities[] = {"node", "cell", "fracture face"};
   for (std::size_t b = 0; b < system.blocks().size(); ++b) {
     const auto& layout = system.layouts()[b];
     const long long halo = system.exchanged(static_cast<int>(b)) ? layout.halo_bytes() : 0;
     summary["fields"].push_back({{"name", layout.field().name},
-                                 {"entity", entities[static_cast<int>(layout.field().entity)]},
+                                 {"entity", fields::name_of(layout.field().entity)},
                                  {"components", layout.field().n_components},
                                  {"unit", layout.field().unit},
                                  {"unknowns", layout.owned()->getGlobalNumElements()},

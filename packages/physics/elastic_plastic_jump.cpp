@@ -31,7 +31,7 @@ namespace {
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c, but for the factor        |
-/// | factor       | scalar                                                   | -    | of c                         |
+/// | factor       | [face]; empty: 1                                         | -    | of c                         |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 template <Shape shape, bool tips>
@@ -55,10 +55,13 @@ struct JointFace {
   ConstView<Real*> augmentation;
   View<Real**> p_old;
   ConstView<Real*> damping = {};
-  Real factor = 1;
+  ConstView<Real*> factor = {};
 
+  KOKKOS_INLINE_FUNCTION Real constant(int f) const {
+    return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
+  }
   KOKKOS_INLINE_FUNCTION laws::Augmentation constants(int f) const {
-    return laws::augmentation(law(number(f)), factor * augmentation(f));
+    return laws::augmentation(law(number(f)), constant(f));
   }
 
   /// w = mean of R (u+ - u-) over the face.
@@ -204,6 +207,15 @@ class ElasticPlasticJump final : public assembly::Module {
     return op;
   }
 
+  /// c of the owned faces, Pa/m, before the stiffness of the joint joins it.
+  std::vector<Real> augmentation(const assembly::State& state) const {
+    const auto copy = [](const auto& view) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view); };
+    const auto constant = copy(op_->augmentation), factor = copy(state.augmentation);
+    std::vector<Real> c(constant.extent(0));
+    for (std::size_t f = 0; f < c.size(); ++f) c[f] = constant(f) * (factor.extent(0) > 0 ? factor(f) : 1);
+    return c;
+  }
+
   /// Calls visit(face, point) for every owned face, on the host.
   template <class Visit>
   void for_each_face(const assembly::State& state, const Visit& visit) const {
@@ -243,7 +255,8 @@ class ElasticPlasticJump final : public assembly::Module {
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
-  View<Real*> merit_weight_;  // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+  View<Real*> merit_weight_;   // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+  std::vector<Real> modulus_;  // [owned face] Young's, of the softer side, Pa
 };
 
 template <Shape shape, bool tips>
@@ -283,6 +296,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   View<int*> number("number", n_faces);
   View<Real*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
+  modulus_.assign(n_faces, 0);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
   const auto bubble_h = Kokkos::create_mirror_view(bubble_mean);
@@ -305,7 +319,8 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
     bubble_h(f) = assembly::bubble_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
-    Real modulus = 0, height = 0;  // of the softer side; of the cells
+    Real& modulus = modulus_[f];  // of the softer side
+    Real height = 0;              // of the cells
     for (int side : {mesh::minus, mesh::plus}) {
       const Real E = parameters_.elasticity[elasticity_of(face.cell[side])].youngs_modulus();
       modulus = side == mesh::minus ? E : std::min(modulus, E);
@@ -347,10 +362,10 @@ template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, const assembly::Scales& scales,
                                               std::vector<fields::Measure>& measures) const {
   Real largest = 0;
-  const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
+  const auto constants = augmentation(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
-    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, state.augmentation * augmentation(f));
+    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, constants[f]);
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
     const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential);
@@ -362,14 +377,15 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 /// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
-  const auto augmentation = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), op_->augmentation);
+  const auto constants = augmentation(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     const auto& gap = parameters_.joints[joint_of(f)].law.gap;
     Real slip[dim - 1];
     for (int k = 1; k < dim; ++k) slip[k - 1] = point.w[k];
     const Real slipped = laws::norm(slip);
-    grips[f].augmentation += state.augmentation * augmentation(f);
+    grips[f].augmentation += constants[f];
+    grips[f].modulus = modulus_[f];
     grips[f].gap += point.w[0] - gap(slipped, Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {

@@ -58,6 +58,9 @@ class Results(ProgramTest):
                 self.expect_step(step)
             for key in ("fields", "matrices", "modules", "local_groups"):
                 self.assertTrue(r["blocks"][key], key)
+            entities = {"displacement": "node", "tip displacement": "enriched node", "traction": "fracture face"}
+            told = {field["name"]: field["entity"] for field in r["blocks"]["fields"]}
+            self.assertEqual({name: told.get(name) for name in entities}, entities)
             for phase in ("mesh", "time_steps", "output", "linear_solve"):
                 self.assertGreater(r["timing"][phase]["seconds"], 0)
                 self.assertGreater(r["timing"][phase]["count"], 0)
