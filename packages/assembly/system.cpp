@@ -176,6 +176,7 @@ BlockMatrix System::create_matrix() const {
 }
 
 void System::create_matrices() {
+  const auto scope = timers_->scope("structure of the matrices");
   const Context context(mesh_, geometry_, layouts_);
   const int n = static_cast<int>(blocks_.size());
   std::vector<char> linear(n * n, 0), nonlinear(n * n, 0);

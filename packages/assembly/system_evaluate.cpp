@@ -133,8 +133,11 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
       if (!linear_(i, j).is_null()) linear_(i, j)->localApply(*linear_in[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
   }
   const auto views = rows(r);
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    if (!declarations_[m].linear) modules_[m]->residual(state(static_cast<int>(m)), views);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    if (declarations_[m].linear) continue;
+    const auto scope_of_module = timers_->scope(modules_[m]->name());
+    modules_[m]->residual(state(static_cast<int>(m)), views);
+  }
 }
 
 void System::residual(const BlockVector& x, BlockVector& r) {
@@ -168,6 +171,7 @@ void System::jacobian(const BlockVector& x) {
     }
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     if (declarations_[m].linear) continue;
+    const auto scope_of_module = timers_->scope(modules_[m]->name());
     const auto s = state(static_cast<int>(m));
     modules_[m]->jacobian(s, matrix_);
     asymmetric |= !modules_[m]->symmetric(s);
@@ -220,7 +224,10 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
         Kokkos::Max<Real>(largest));
     measures.push_back({blocks_[b].name, largest});
   }
-  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    const auto scope_of_module = timers_->scope(modules_[m]->name());
+    modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
+  }
   std::vector<Real> here, all(measures.size());
   for (const auto& measure : measures)  // a number that is none must not vanish in the maximum
     here.push_back(std::isnan(measure.value) ? std::numeric_limits<Real>::infinity() : measure.value);
@@ -251,7 +258,10 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
 std::vector<char> System::states(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<char> states(mesh_->n_owned_fracture_faces);
-  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->states(state(static_cast<int>(m)), states);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    const auto scope_of_module = timers_->scope(modules_[m]->name());
+    modules_[m]->states(state(static_cast<int>(m)), states);
+  }
   return states;
 }
 

@@ -35,6 +35,14 @@ struct Elasticity {
       for (int k = 0; k < dim; ++k) dot += a[k] * b[k];
     return lambda * a[i] * b[j] + G * (a[j] * b[i] + dot);
   }
+  /// The same for integrals M_ij of a_i b_j.
+  template <int dim>
+  KOKKOS_INLINE_FUNCTION Real stiffness(const Real (&M)[dim][dim], int i, int j) const {
+    Real trace = 0;
+    if (i == j)
+      for (int k = 0; k < dim; ++k) trace += M[k][k];
+    return lambda * M[i][j] + G * (M[j][i] + trace);
+  }
 };
 
 /// Any two of Young's modulus E, Poisson's ratio nu, shear modulus G, Lame's first parameter, bulk modulus K.

@@ -71,17 +71,28 @@ struct ElasticCell {
     });
   }
 
+  /// The integrals of products of gradients come first, then what the law makes of them.
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
     const laws::Elasticity elasticity = material(law(cell));
     for (auto& row : K)
       for (Real& value : row) value = 0;
     for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
       for (int a = 0; a < n; ++a)
-        for (int b = 0; b < n; ++b)
-          for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j)
-              K[a * dim + i][b * dim + j] += volume * elasticity.stiffness(g[a], g[b], i, j);
+        for (int i = 0; i < dim; ++i) {
+          const Real factor = volume * g[a][i];
+          for (int b = a; b < n; ++b)
+            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += factor * g[b][j];
+        }
     });
+    for (int a = 0; a < n; ++a)
+      for (int b = a; b < n; ++b) {
+        Real M[dim][dim];
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) M[i][j] = K[a * dim + i][b * dim + j];
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j)
+            K[a * dim + i][b * dim + j] = K[b * dim + j][a * dim + i] = elasticity.stiffness(M, i, j);
+      }
   }
 };
 

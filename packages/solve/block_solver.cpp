@@ -97,12 +97,15 @@ class Multigrid : public BlockSolver {
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     // MueLu takes matrices that may change; only RaisedDiagonal changes this one
     const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(block.matrix);
-    if (hierarchy_.is_null() || (symmetric_ && !block.symmetric)) {
+    const bool anew = hierarchy_.is_null() || (symmetric_ && !block.symmetric);
+    if (anew) {
       symmetric_ = block.symmetric;
       create(block.block, block.bulk ? block.bulk() : matrix);
     }
-    const RaisedDiagonal raised(*matrix);
-    MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
+    if (!anew || block.bulk) {
+      const RaisedDiagonal raised(*matrix);
+      MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
+    }
     cost.operator_complexity = hierarchy_->GetHierarchy()->GetOperatorComplexity();
     cost.bytes = (cost.operator_complexity - 1) * matrix->getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex));
   }

@@ -88,11 +88,11 @@ class Run:
         return memory.get("peak_bytes_all_ranks", 0), memory.get("peak_bytes_largest_rank", 0)
 
 
-def run(options, sets, directory, ranks=1, time_limit=3600):
-    """Runs SCENE with these entries, then those of the command line. Never throws for what the program does."""
+def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE):
+    """Runs the scene with these entries, then those of the command line. Never throws for what the program does."""
     directory = options.output / directory
     shutil.rmtree(directory, ignore_errors=True)
-    command = [str(options.binary), "run", str(ROOT / "xml" / SCENE), "--output", str(directory)]
+    command = [str(options.binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
     command += [word for entry in (*ALWAYS, *sets, *options.set) for word in ("--set", entry)]
     if ranks > 1:
         command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+#include <ctime>
 #include <sstream>
 #include <thread>
 
@@ -50,6 +51,19 @@ TEST(Timers, add_up_phases_in_the_order_of_their_first_use) {
   EXPECT_GE(inner.seconds, 0.015);
   EXPECT_GE(outer.seconds, inner.seconds);
   EXPECT_LT(last.seconds, inner.seconds);
+  EXPECT_LT(outer.cpu_seconds, 0.5 * outer.seconds);  // asleep
+}
+
+TEST(Timers, count_what_the_process_works) {
+  Timers timers;
+  const auto begin = std::clock();
+  {
+    const auto work = timers.scope("work");
+    while (std::clock() - begin < CLOCKS_PER_SEC / 50) {
+    }
+  }
+  EXPECT_GE(timers.phases()[0].cpu_seconds, 0.019);
+  EXPECT_LT(timers.phases()[0].cpu_seconds, 1);
 }
 
 TEST(Memory, peak_grows_with_what_is_touched) {

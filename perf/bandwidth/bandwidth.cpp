@@ -1,0 +1,191 @@
+// bandwidth SCENE [PATH=VALUE...]: times the parts of the scene's first step, and the memory bandwidth that the same
+// ranks have, and prints them as JSON. The linear system that is solved again and again is that of the step's end.
+#include "model/model.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ctime>
+#include <functional>
+#include <iostream>
+
+namespace {
+
+using namespace sprekk;
+using nlohmann::json;
+
+constexpr std::size_t triad_length = 8u << 20;  // of each array on each rank: together several times the largest caches
+constexpr int n_rounds = 25, n_solves = 3;
+
+struct Kernel {
+  std::string name;
+  std::function<void()> work;
+  std::vector<Real> seconds;
+};
+
+Real sum(const Comm& comm, Real here) {
+  Real all = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+  return all;
+}
+
+/// CPU seconds of the work on the rank that takes most: what else the machine does hardly counts. Collective.
+Real time_of(const Comm& comm, const std::function<void()>& work) {
+  comm.barrier();
+  const auto begin = std::clock();
+  work();
+  const Real here = static_cast<Real>(std::clock() - begin) / CLOCKS_PER_SEC;
+  Real most = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &most);
+  return most;
+}
+
+Real median(std::vector<Real> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+/// The median of each kernel, in rounds in which each has its turn, so that what else the machine does meets all alike.
+json medians(const Comm& comm, std::vector<Kernel> kernels) {
+  json result;
+  for (int round = 0; round <= n_rounds; ++round)
+    for (auto& kernel : kernels) {
+      const Real seconds = time_of(comm, kernel.work);
+      if (round > 0) kernel.seconds.push_back(seconds);  // the first warms up
+    }
+  for (const auto& kernel : kernels) result[kernel.name] = median(kernel.seconds);
+  return result;
+}
+
+/// a = b + s c of STREAM (McCalpin 1995), which counts 24 bytes an entry.
+Kernel triad() {
+  const View<Real*> a("a", triad_length), b("b", triad_length), c("c", triad_length);
+  Kokkos::deep_copy(b, 1);
+  Kokkos::deep_copy(c, 2);
+  return {"triad",
+          [=] {
+            Kokkos::parallel_for(
+                "triad", Kokkos::RangePolicy<Execution>(0, triad_length),
+                KOKKOS_LAMBDA(std::size_t i) { a(i) = b(i) + 3.0 * c(i); });
+            Kokkos::fence();
+          },
+          {}};
+}
+
+Kernel product(const std::string& name, RCP<const fields::Operator> A) {
+  const auto x = rcp(new fields::MultiVector(A->getDomainMap(), 1)),
+             y = rcp(new fields::MultiVector(A->getRangeMap(), 1));
+  x->randomize();
+  return {name, [=] { A->apply(*x, *y); }, {}};
+}
+
+/// What y = A x must at least move: values and columns of entries, starts of rows, x and y.
+Real bytes(const fields::CrsMatrix& A) {
+  return A.getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex)) +
+         A.getNodeNumRows() * (sizeof(std::size_t) + sizeof(Real)) + A.getNodeNumCols() * sizeof(Real);
+}
+
+json to_json(const base::Timers& timers) {
+  json phases = json::object();
+  for (const auto& phase : timers.phases())
+    phases[phase.name] = {{"seconds", phase.cpu_seconds}, {"count", phase.count}};
+  return phases;
+}
+
+/// The step, and back: history and solver are then as they were at its begin. Returns the x of its end.
+fields::BlockVector take_step(model::Model& model, Real t, json& result) {
+  const auto start = model.save();
+  const auto report = model.step_to(t);
+  SPREKK_CHECK(report.converged, "the step does not converge: {}", report.reason);
+  result["newton_iterations"] = report.newton_iterations;
+  result["phases"] = to_json(model.timers());
+  auto x = fields::create_like(model.state());
+  fields::copy(model.state(), x);
+  model.restore(start);
+  return x;
+}
+
+/// Set-ups and solves with the Jacobians at the end x and at the begin of the step, by turns.
+void solve_again(model::Model& model, const fields::BlockVector& x, solve::CondensedSolve& linear,
+                 const base::Timers& timers, json& result) {
+  auto& system = model.system();
+  auto b = fields::create_like(x), dx = fields::create_like(x);
+  const auto set_up = [&](const fields::BlockVector& at) {
+    system.jacobian(at);
+    linear.update();
+  };
+  set_up(x);
+  result["first"] = to_json(timers);
+  system.residual(model.state(), b);
+  std::vector<Real> solves, setups;
+  for (int k = 0; k < n_solves; ++k) {
+    solve::LinearReport report;
+    solves.push_back(time_of(*system.comm(), [&] { report = linear.solve(b, dx, linear.tolerance()); }));
+    SPREKK_CHECK(report.converged, "{}", report.reason);
+    result["iterations"] = report.iterations;
+  }
+  for (int k = 0; k < n_solves; ++k) {
+    system.jacobian(model.state());
+    setups.push_back(time_of(*system.comm(), [&] { linear.update(); }));
+    set_up(x);
+  }
+  result["solve"] = median(solves);
+  result["elimination and set-up"] = median(setups);
+}
+
+json measure(const model::Scene& scene, RCP<const Comm> comm) {
+  json result;
+  model::Model model(scene, comm);
+  const Real t = scene.time.times().front();
+  const auto x = take_step(model, t, result);
+  auto& system = model.system();
+  system.set_time(t, t - scene.time.start);
+  const auto timers = rcp(new base::Timers);
+  solve::CondensedSolve linear(system, scene.solver.linear_solver, timers);
+  solve_again(model, x, linear, *timers, result);
+
+  const auto& solver = *linear.solver().solver;
+  SPREKK_CHECK(!solver.preconditioner().is_null(),
+               "the scene is solved directly; Solver.Linear solver.type must be iterative");
+  const RCP<const fields::CrsMatrix> A = system.matrix()(0, 0);
+  result["medians"] = medians(*comm, {triad(), product("SpMV", A), product("preconditioner", solver.preconditioner())});
+  std::vector<Real> cycles;
+  const auto preconditioner = product("preconditioner", solver.preconditioner());
+  for (int round = 0; round < n_rounds; ++round) {
+    const Real before = solver.costs().back().application_seconds;
+    preconditioner.work();
+    cycles.push_back(solver.costs().back().application_seconds - before);
+  }
+  const auto cycle = solver.costs().back();  // multigrid, perhaps below a fine level
+  // Chebyshev smoothing of that degree from zero, the residual, and smoothing again
+  const int degree = solver.parameters().sublist("MueLu").sublist("smoother: params").get<int>("chebyshev: degree");
+  const Real share = cycle.operator_complexity / (cycle.operator_complexity - 1);  // all levels over the coarse ones
+  result["V-cycle"] = {{"seconds", median(cycles)},
+                       {"matrix_passes", 2 * degree},
+                       {"matrix_bytes", sum(*comm, cycle.bytes * share)},
+                       {"operator_complexity", cycle.operator_complexity}};
+  result["triad_bytes"] = sum(*comm, 3.0 * sizeof(Real) * triad_length);
+  result["spmv_bytes"] = sum(*comm, bytes(*A));
+  result["unknowns"] = A->getGlobalNumRows();
+  result["entries"] = A->getGlobalNumEntries();
+  result["ranks"] = comm->getSize();
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard guard(&argc, &argv);
+  const auto comm = Tpetra::getDefaultComm();
+  try {
+    SPREKK_CHECK(argc > 1, "usage: bandwidth SCENE [PATH=VALUE...]");
+    const auto result = measure(model::read_scene(*comm, argv[1], {argv + 2, argv + argc}), comm);
+    if (comm->getRank() == 0) std::cout << result.dump(2) << '\n';
+  } catch (const Error& error) {  // the same on every rank
+    if (comm->getRank() == 0) std::cerr << "bandwidth: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""What the parts of a Newton step cost, in products of the displacement matrix with a vector, and how much of the memory's bandwidth they use.
+
+The scene is a network of fractures in all states; bandwidth.cpp does the timing."""
+import json
+import os
+import subprocess
+import sys
+
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "perf/krylov"))
+
+import linear  # noqa: E402
+from krylov import STATES  # noqa: E402
+
+STATE = "mixed"
+EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
+CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
+COLUMNS = {"part": "", "count": "d", "ms": ".2f", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
+ASKED = {  # of the last line: at least (+) or at most (-)
+    "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_kept_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
+    "newton_spmv": (-1, 350), "contact_share": (-1, 0.05)}
+CONTACT = "elastic-plastic jump"
+FORMATS = {"triad": ".1f", "spmv_share": ".2f", "contact_share": ".3f"}
+
+
+class Measured:
+    """One run of bandwidth.cpp."""
+
+    def __init__(self, found):
+        self.found, self.spmv = found, found["medians"]["SpMV"]
+        self.triad = found["triad_bytes"] / found["medians"]["triad"]  # byte/s
+        self.first, self.phases = found["first"], found["phases"]
+        self.newton = self.phases["time steps"]["seconds"] / found["newton_iterations"]
+        self.first_setup = self.first["set-up of linear solver"]["seconds"]
+
+    def share(self, bytes_moved, seconds):
+        return bytes_moved / seconds / self.triad
+
+    def parts(self):
+        """name, count, seconds, share of the triad's bandwidth, share of the step's time, key of the last line."""
+        found, phases = self.found, self.phases
+        assembly, cycle, contact = phases["assembly of the linear part"], found["V-cycle"], phases[CONTACT]
+        return [("triad", None, found["medians"]["triad"], 1, None, None),
+                ("SpMV", None, self.spmv, self.share(found["spmv_bytes"], self.spmv), None, "spmv_share"),
+                ("assembly of the bulk", assembly["count"], assembly["seconds"], None, None, "assembly_spmv"),
+                ("structure of the matrices", None, phases["structure of the matrices"]["seconds"], None, None, None),
+                ("V-cycle", None, cycle["seconds"], self.share(cycle["matrix_passes"] * cycle["matrix_bytes"], cycle["seconds"]), None, None),
+                ("V-cycle and crack tips", None, found["medians"]["preconditioner"], None, None, None),
+                ("elimination", None, self.first["local elimination"]["seconds"], None, None, None),
+                ("first set-up", None, self.first_setup, None, None, None),
+                ("elimination and set-up, kept", None, found["elimination and set-up"], None, None, None),
+                ("solve", found["iterations"], found["solve"], None, None, "solve_kept_spmv"),
+                ("solve and first set-up", found["iterations"], found["solve"] + self.first_setup, None, None, "solve_first_spmv"),
+                ("Newton step", found["newton_iterations"], self.newton, None, None, "newton_spmv"),
+                ("contact kernels", None, contact["seconds"] / found["newton_iterations"], None, contact["seconds"] / phases["time steps"]["seconds"],
+                 "contact_share")]
+
+    def summary(self):
+        spmv = {key: seconds / self.spmv for *_, seconds, _, _, key in self.parts() if key and key.endswith("_spmv")}
+        shares = {key: of_triad or of_time for *_, of_triad, of_time, key in self.parts() if key and key.endswith("_share")}
+        return {"triad": self.triad / 1e9, "assemblies": self.phases["assembly of the linear part"]["count"], **spmv, **shares}
+
+
+def asked(key):
+    if key not in ASKED:
+        return ""
+    sign, bound = ASKED[key]
+    return f"{'>=' if sign > 0 else '<='} {bound:g}"
+
+
+def run(options, cells, edge):
+    sets = (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE], *options.set)
+    command = [str(options.program), str(ROOT / "xml" / linear.SCENE), *sets]
+    if options.ranks > 1:
+        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(options.ranks), *command]
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    if done.returncode:
+        sys.exit(f"bandwidth: {done.stderr.strip()}")
+    (options.output / f"{cells}.json").write_text(done.stdout)
+    return Measured(json.loads(done.stdout))
+
+
+def draw(measured, file):
+    """The parts in products, with what is asked of them."""
+    import style
+    names = [name for name, *_ in next(iter(measured.values())).parts()][2:]
+    figure, ax = style.plt.subplots(figsize=(7.5, 4.2))
+    height = 0.8 / len(measured)
+    for k, (cells, one) in enumerate(measured.items()):
+        for i, (name, _, seconds, _, _, key) in enumerate(one.parts()[2:]):
+            y = i + height * (k - (len(measured) - 1) / 2)
+            ax.barh(y, seconds / one.spmv, 0.9 * height, color=style.LINES[k], label=cells if i == 0 else None)
+            ax.annotate(f"{seconds / one.spmv:.3g}", (seconds / one.spmv, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
+            if key in ASKED and key.endswith("_spmv"):
+                ax.plot(2 * [ASKED[key][1]], [i - 0.45, i + 0.45], color=style.INK, linewidth=1.2, label="asked" if k == 0 and key == "assembly_spmv" else None)
+    ax.set_yticks(range(len(names)), names)
+    ax.invert_yaxis()
+    ax.set(xscale="log", xlabel="products of the displacement matrix with a vector (-)")
+    ax.set_xlim(right=2 * ax.get_xlim()[1])
+    ax.grid(False, axis="y")
+    unknowns = next(iter(measured.values())).found["unknowns"]
+    ax.set_title(", ".join(f"{cells}: SpMV at {one.summary()['spmv_share']:.0%} of {one.triad / 1e9:.1f} GB/s" for cells, one in measured.items()) + f"; {unknowns:,} unknowns")
+    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    figure.savefig(file, dpi=150)
+
+
+def main(words):
+    parser = linear.parser("bandwidth", __doc__)
+    parser.add_argument("--edge", type=int, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
+    parser.add_argument("--ranks", type=int, default=1, metavar="N", help="ranks (1)")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/bandwidth/bandwidth", help="what bandwidth.cpp became")
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    edge = options.edge or (QUICK if options.quick else EDGE)
+    table, measured = linear.Table(COLUMNS, 42), {}
+    for cells in CELLS:
+        if options.only not in cells:
+            continue
+        measured[cells] = one = run(options, cells, edge)
+        for name, count, seconds, of_triad, of_time, key in one.parts():
+            table.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, asked(key)])
+    if not measured:
+        sys.exit(f'bandwidth: no cells match "{options.only}"')
+    table.write(options.output / "bandwidth.csv")
+    draw(measured, options.output / "bandwidth.png")
+    worst = {key: (min if key == "triad" or ASKED[key][0] > 0 else max)(one.summary()[key] for one in measured.values()) for key in ("triad", *ASKED)}
+    missed = [f"missed: {key} = {worst[key]:.3g}, asked is {asked(key)}" for key, (sign, bound) in ASKED.items() if sign * worst[key] < sign * bound]
+    print("\n".join(["", *missed, f"bandwidth.csv and bandwidth.png in {options.output}"]))
+    print(" ".join(f"{key}={format(value, FORMATS.get(key, '.0f'))}" for key, value in worst.items()))
+    return 1 if worst["assemblies"] > ASKED["assemblies"][1] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
