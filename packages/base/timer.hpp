@@ -5,29 +5,34 @@
 
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <string>
 #include <vector>
 
 namespace sprekk::base {
 
-/// Wall-clock time of phases on this rank: `auto scope = timers.scope("assembly");` adds the life of `scope`. Phases
-/// may lie inside of each other; each counts its whole time.
+/// Wall-clock and processor time of phases on this rank: `auto scope = timers.scope("assembly");` adds the life of
+/// `scope`. Phases may lie inside of each other; each counts its whole time.
 class Timers {
  public:
   struct Phase {
     std::string name;
     double seconds = 0;
-    long long count = 0;  ///< how often it was entered
+    double cpu_seconds = 0;  ///< of all threads of the process
+    long long count = 0;     ///< how often it was entered
   };
 
   class Scope {
    public:
-    Scope(Timers& timers, std::size_t phase) : timers_(timers), phase_(phase), begin_(Clock::now()) {}
+    Scope(Timers& timers, std::size_t phase)
+        : timers_(timers), phase_(phase), begin_(Clock::now()), cpu_begin_(std::clock()) {}
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
     ~Scope() {
-      timers_.phases_[phase_].seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
-      ++timers_.phases_[phase_].count;
+      auto& phase = timers_.phases_[phase_];
+      phase.seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
+      phase.cpu_seconds += static_cast<double>(std::clock() - cpu_begin_) / CLOCKS_PER_SEC;
+      ++phase.count;
     }
 
    private:
@@ -35,6 +40,7 @@ class Timers {
     Timers& timers_;
     std::size_t phase_;
     Clock::time_point begin_;
+    std::clock_t cpu_begin_;
   };
 
   [[nodiscard]] Scope scope(const std::string& name) {

@@ -321,7 +321,8 @@ void Results::write_json() {
   }
   json_["timing"] = json::object();
   for (const auto& phase : model_.timers().phases())
-    json_["timing"][with_underscores(phase.name)] = {{"seconds", phase.seconds}, {"count", phase.count}};
+    json_["timing"][with_underscores(phase.name)] = {
+        {"seconds", phase.seconds}, {"cpu_seconds", phase.cpu_seconds}, {"count", phase.count}};
   io::write_json(comm, directory_ + "/results.json", json_);
   last_write_ = std::chrono::steady_clock::now();
 }
