@@ -111,7 +111,7 @@ class TipCell {
   /// and the area (vector, pointing out of the cell) that the point stands for. Nothing on a face without a tip.
   template <class Visit>
   void for_each_face_point(int local_face, const Visit& visit) const {
-    const auto nodes = mesh::face_nodes(shape)[local_face];
+    const auto& nodes = mesh::face_nodes(shape)[local_face];
     std::vector<char> tips;
     for (int k = 0; k < n_face; ++k) tips.push_back(tips_[nodes[k]]);
     if (std::count(tips.begin(), tips.end(), 0) == n_face) return;
@@ -128,12 +128,13 @@ class TipCell {
           t[i] += dN[k][1] * X;
         }
       }
-      for (int k = 0; k < n_face; ++k) psi[k] = tips[k] ? 0 : N[k] * (1 / std::sqrt(rho) - 1);
+      const Real fall = 1 / std::sqrt(rho) - 1;
+      for (int k = 0; k < n_face; ++k) psi[k] = tips[k] ? 0 : N[k] * fall;
       std::array<Real, 3> area = dim == 2 ? std::array<Real, 3>{s[1], -s[0], 0}
                                           : std::array<Real, 3>{s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2],
                                                                 s[0] * t[1] - s[1] * t[0]};
       Real outward = 0;
-      for (int i = 0; i < dim; ++i) outward += area[i] * (x[i] - centre(i));
+      for (int i = 0; i < dim; ++i) outward += area[i] * (x[i] - centre_[i]);
       for (int i = 0; i < dim; ++i) area[i] *= outward < 0 ? -point.weight : point.weight;
       visit(N, psi, area, x);
     }
@@ -163,12 +164,6 @@ class TipCell {
     }
   }
 
-  Real centre(int i) const {
-    Real sum = 0;
-    for (int a = 0; a < n; ++a) sum += X_[a][i];
-    return sum / n;
-  }
-
   std::array<Real, 3> place(const Real (&N)[n]) const {
     std::array<Real, 3> x{};
     for (int a = 0; a < n; ++a)
@@ -179,21 +174,25 @@ class TipCell {
   /// 1, and the distance from the centre over the size of the cell.
   void offsets(const std::array<Real, 3>& x, Real (&offset)[dim + 1]) const {
     offset[0] = 1;
-    for (int i = 0; i < dim; ++i) offset[1 + i] = (x[i] - centre(i)) / size_;
+    for (int i = 0; i < dim; ++i) offset[1 + i] = (x[i] - centre_[i]) / size_;
   }
 
   void balance() {
     for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i) size_ = std::max(size_, std::abs(X_[a][i] - X_[0][i]));
+      for (int i = 0; i < dim; ++i) {
+        size_ = std::max(size_, std::abs(X_[a][i] - X_[0][i]));
+        centre_[i] += X_[a][i] / n;
+      }
     Real missing[n * dim][dim + 1] = {}, moments[(dim + 1) * (dim + 1)] = {}, offset[dim + 1];
-    for (int f = 0; f < mesh::n_faces(shape); ++f)
+    for (int f = 0; f < mesh::n_faces(shape); ++f) {
+      const auto& nodes = mesh::face_nodes(shape)[f];
       for_each_face_point(f, [&](const auto&, const auto& psi, const auto& area, const auto& x) {
         offsets(x, offset);
         for (int k = 0; k < n_face; ++k)
           for (int i = 0; i < dim; ++i)
-            for (int m = 0; m <= dim; ++m)
-              missing[mesh::face_nodes(shape)[f][k] * dim + i][m] += psi[k] * area[i] * offset[m];
+            for (int m = 0; m <= dim; ++m) missing[nodes[k] * dim + i][m] += psi[k] * area[i] * offset[m];
       });
+    }
     for_each_point([&](const auto&, Real volume, const auto& x, const Values& v) {
       offsets(x, offset);
       for (int m = 0; m <= dim; ++m)
@@ -211,7 +210,7 @@ class TipCell {
   }
 
   std::vector<char> tips_;  // [node]
-  Real X_[n][dim], correction_[n][dim][dim + 1] = {}, size_ = 0;
+  Real X_[n][dim], centre_[dim] = {}, correction_[n][dim][dim + 1] = {}, size_ = 0;
 };
 
 }  // namespace sprekk::assembly

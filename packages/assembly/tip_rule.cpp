@@ -18,7 +18,7 @@ std::vector<Node1D> gauss(int n) {
   std::vector<Node1D> rule;
   for (int i = 0; i < n; ++i) {
     Real z = std::cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
-    for (int iteration = 0; iteration < 20; ++iteration) {
+    for (Real step = 1; std::abs(step) > 1e-9;) {  // squared by the next one
       Real p = 1, before = 0;
       for (int k = 1; k <= n; ++k) {
         const Real next = ((2 * k - 1) * z * p - (k - 1) * before) / k;
@@ -26,7 +26,8 @@ std::vector<Node1D> gauss(int n) {
         p = next;
       }
       slope = n * (z * p - before) / (z * z - 1);
-      z -= p / slope;
+      step = p / slope;
+      z -= step;
     }
     rule.push_back({(1 + z) / 2, 1 / ((1 - z * z) * slope * slope)});
   }
@@ -54,6 +55,8 @@ std::vector<Barycentric> simplex_rule(std::size_t n_corners, const std::vector<N
 void append(const std::vector<Point>& tips, const std::vector<Point>& others, Real volume, int n,
             std::vector<RulePoint>& rule) {
   const auto line = gauss(n);
+  const auto at_tips = simplex_rule(tips.size(), line), at_others = simplex_rule(others.size(), line);
+  rule.reserve(rule.size() + line.size() * at_tips.size() * at_others.size());
   const auto combine = [](const std::vector<Point>& corners, const Barycentric& at, Real factor, Point& x) {
     for (std::size_t k = 0; k < corners.size(); ++k)
       for (int i = 0; i < 3; ++i) x[i] += factor * at.l[k] * corners[k][i];
@@ -62,8 +65,8 @@ void append(const std::vector<Point>& tips, const std::vector<Point>& others, Re
     const Real rho = s.x * s.x;
     const Real weight =
         volume * s.weight * 2 * s.x * std::pow(rho, others.size() - 1.0) * std::pow(1 - rho, tips.size() - 1.0);
-    for (const auto& t : simplex_rule(tips.size(), line))
-      for (const auto& o : simplex_rule(others.size(), line)) {
+    for (const auto& t : at_tips)
+      for (const auto& o : at_others) {
         RulePoint point{{}, weight * t.weight * o.weight};
         combine(tips, t, 1 - rho, point.xi);
         combine(others, o, rho, point.xi);

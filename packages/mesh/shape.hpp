@@ -39,12 +39,12 @@ constexpr int n_face_nodes(Shape s) {
 }
 constexpr int max_face_nodes = 9;
 
-/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes
-/// on its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to
-/// node (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
-constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
-  using Faces = std::array<std::array<int, max_face_nodes>, 6>;
-  Faces faces{};
+using FaceNodes = std::array<std::array<int, max_face_nodes>, 6>;
+
+namespace detail {
+
+constexpr FaceNodes face_nodes(Shape s) {
+  FaceNodes faces{};
   for (auto& face : faces)
     for (int& node : face) node = -1;
   const int n = n_face_nodes(s);
@@ -70,6 +70,18 @@ constexpr std::array<std::array<int, max_face_nodes>, 6> face_nodes(Shape s) {
       }
   return faces;
 }
+
+inline constexpr std::array<FaceNodes, 8> all_face_nodes = {
+    face_nodes(Shape::triangle),      face_nodes(Shape::quadrilateral), face_nodes(Shape::tetrahedron),
+    face_nodes(Shape::hexahedron),    face_nodes(Shape::triangle6),     face_nodes(Shape::quadrilateral9),
+    face_nodes(Shape::tetrahedron10), face_nodes(Shape::hexahedron27)};
+
+}  // namespace detail
+
+/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes
+/// on its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to
+/// node (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
+constexpr const FaceNodes& face_nodes(Shape s) { return detail::all_face_nodes[static_cast<int>(s)]; }
 
 /// f(std::integral_constant<Shape, s>) for a shape that is known at run time only.
 template <class F>

@@ -1,0 +1,91 @@
+"""Runs of Sprekk: the tilted fracture and the crack of perf/verification, what they cost and how far off they are."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT / "perf/verification"), str(ROOT / "apps/plot")]
+
+import exact  # noqa: E402
+import measure  # noqa: E402
+import meshes  # noqa: E402
+import read  # noqa: E402
+from runs import FUNCTIONALS, Run  # noqa: E402
+
+COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # phases that follow each other
+REPEATED = 3  # short runs: the median counts
+TILTED = Path(__file__).resolve().parent / "tilted.xml"
+MODES = {"opening": ("sneddon", exact.Crack(1, 1e-3, 1, 0.25)), "sliding": ("sneddon_shear", exact.Crack(2, 1e-3, 1, 0.25))}
+
+
+def run(options, scene, sets, name):
+    """(directory, results.json, processor seconds)."""
+    directory, seconds = options.output / name, []
+    command = [str(options.binary), "run", str(scene), "--output", str(directory)]
+    command += [word for entry in (*sets, *options.set) for word in ("--set", entry)]
+    for _ in range(REPEATED):
+        shutil.rmtree(directory, ignore_errors=True)
+        done = subprocess.run(["timeout", "900", *command], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"})
+        if done.returncode:
+            sys.exit(f"peer: {name}: status {done.returncode}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+        results = json.loads((directory / "results.json").read_text())
+        seconds.append(sum(results["timing"][phase]["cpu_seconds"] for phase in COUNTED))
+    return directory, results, sorted(seconds)[REPEATED // 2]
+
+
+def made(results, seconds, **more):
+    eliminated = {block for group in results["blocks"].get("local_groups", []) for block in group["blocks"]}
+    unknowns = sum(field["unknowns"] for field in results["blocks"]["fields"] if field["name"] not in eliminated)
+    return Run("Sprekk", results["mesh"]["cells"], unknowns, results["steps"][-1]["newton_iterations"], seconds,
+               results["memory"]["peak_bytes_largest_rank"], **more)
+
+
+def tilted(options, file, name, *sets):
+    _, results, seconds = run(options, TILTED, (f"Mesh file.path={file.resolve()}", *sets), name)
+    step = results["steps"][-1]
+    crack = step["fractures"]["crack"]
+    traction, jump, force = crack["mean_traction"], crack["mean_jump"]["global"], step["reactions"]["top"]
+    values = (crack["max_slip"], crack["mean_slip"], traction["local"][0], *(crack["area"] * traction["global"][i] for i in (0, 2)),
+              jump[0], jump[2], force[0], force[2])
+    return made(results, seconds, values=dict(zip(FUNCTIONALS, values)))
+
+
+def crack(options, mode, file, name, *sets):
+    """With the relative error of the jump, of all faces and of those that end more than a tenth of the half-length from a tip."""
+    scene, known = MODES[mode]
+    directory, results, seconds = run(options, ROOT / f"xml/verification/{scene}.xml", (f"Mesh file.path={file.resolve()}", *sets), name)
+    faces = read.segments(read.grid(read.written_steps(directory, "fractures")[-1][1]))
+    corners = faces.points[np.array([line[:2] for line in faces.polygons])][:, :, :2]
+    size, away = measure.area(corners), np.abs(corners[:, :, 0]).max(axis=1) < 0.9
+    means, jump = known.jump_mean(corners), faces.cell_data["jump"][:, :2]
+    return made(results, seconds, values={f"{mode}{where}": measure.relative(jump - means, means, weights)
+                                          for where, weights in (("", size), (", tips left out", size * away))})
+
+
+def tilted_mesh(folder, h, smallest, growth):
+    """Tetrahedra of the block: edges of `smallest` at the front of the fracture, growing by `growth` per length to h."""
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    along, normal = f"({c:.9g}*(x-0.5)-{s:g}*(z-0.5))", f"({s:g}*(x-0.5)+{c:.9g}*(z-0.5))"
+    script = f"""SetFactory("OpenCASCADE");
+Box(1) = {{0, 0, 0, 1, 1, 1}};
+Rectangle(7) = {{-0.25, -0.25, 0, 0.5, 0.5}};
+Rotate{{ {{0, 1, 0}}, {{0, 0, 0}}, Pi/6 }}{{ Surface{{7}}; }}
+Translate{{ 0.5, 0.5, 0.5 }}{{ Surface{{7}}; }}
+BooleanFragments{{ Volume{{1}}; Delete; }}{{ Surface{{7}}; Delete; }}
+Physical Surface("crack") = {{ Surface In BoundingBox{{0.1, 0.1, 0.1, 0.9, 0.9, 0.9}} }};
+Physical Surface("bottom") = {{ Surface In BoundingBox{{-0.1, -0.1, -0.1, 1.1, 1.1, 0.1}} }};
+Physical Surface("top") = {{ Surface In BoundingBox{{-0.1, -0.1, 0.9, 1.1, 1.1, 1.1}} }};
+Physical Volume("rock") = {{Volume{{:}}}};
+Mesh.Algorithm3D = 1;
+Mesh.Optimize = 1;
+{meshes.QUIET}Field[1].F = "{smallest:g}+{growth:g}*Sqrt({normal}^2+(Max(Abs({along}),Abs(y-0.5))-0.25)^2)";
+Mesh.MeshSizeMax = {h:g};
+"""
+    return meshes.with_gmsh(script, folder / f"tilted_{h:g}_{smallest:g}.msh", 3)

@@ -1,0 +1,68 @@
+"""What the runs of PorePy have in common: what is counted, and the line of JSON that they print."""
+import json
+import os
+import resource
+import time
+
+import numpy as np
+import porepy as pp
+
+
+class Counted:
+    """Counts processor seconds of the parts of a run, linear solves, and the size of the matrix; the first base of a model."""
+
+    def __init__(self, params):
+        super().__init__(params)
+        self.seconds, self.solves, self.size = {}, 0, (0, 0)
+
+    def count(self, part, call):
+        begin = time.process_time()
+        result = call()
+        self.seconds[part] = self.seconds.get(part, 0) + time.process_time() - begin
+        return result
+
+    def set_geometry(self):
+        self.count("mesh", super().set_geometry)
+
+    def discretize(self):
+        self.count("discretisation", super().discretize)
+
+    def assemble_linear_system(self):
+        self.count("assembly", super().assemble_linear_system)
+
+    def solve_linear_system(self):
+        matrix = self.linear_system[0]
+        self.solves, self.size = self.solves + 1, (matrix.shape[0], matrix.nnz)
+        return self.count("solution", super().solve_linear_system)
+
+
+def run(make, coarse, size):
+    """Runs make(coarse), to load and compile what is needed, then make(size); returns that model."""
+    pp.run_time_dependent_model(make(coarse))
+    model = make(size)
+    model.count("all", lambda: pp.run_time_dependent_model(model))
+    return model
+
+
+def evaluate(model, operator):
+    return np.asarray(model.equation_system.evaluate(operator))
+
+
+def vectors(model, operator):
+    """[cell, component]"""
+    return evaluate(model, operator).reshape(-1, model.nd)
+
+
+def parameters(shear_modulus, lame, friction, size, **more):
+    return {"times_to_export": [], "grid_type": "simplex", "meshing_arguments": size, "folder_name": os.devnull,
+            "max_iterations": 40, "nl_convergence_tol": 1e-10,
+            "material_constants": {"solid": pp.SolidConstants(shear_modulus=shear_modulus, lame_lambda=lame, friction_coefficient=friction),
+                                   "numerical": pp.NumericalConstants(characteristic_displacement=1e-2)}, **more}
+
+
+def tell(model, **values):
+    """Prints what was measured; the mesh, which is the same for both programs or made beforehand, does not count."""
+    seconds = model.seconds
+    print(json.dumps({"cpu_seconds": seconds["all"] - seconds["mesh"], "parts": seconds, "solves": model.solves,
+                      "unknowns": model.size[0], "entries": model.size[1], "cells": model.mdg.subdomains(dim=model.nd)[0].num_cells,
+                      "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, **values}))
