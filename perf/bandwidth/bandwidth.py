@@ -18,7 +18,7 @@ from krylov import STATES  # noqa: E402
 STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
 CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
-COLUMNS = {"part": "", "count": "d", "ms": ".2f", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
+COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
 ASKED = {  # of the last line: at least (+) or at most (-)
     "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_kept_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
     "newton_spmv": (-1, 350), "contact_share": (-1, 0.05)}
@@ -68,7 +68,7 @@ def asked(key):
     if key not in ASKED:
         return ""
     sign, bound = ASKED[key]
-    return f"{'>=' if sign > 0 else '<='} {bound:g}"
+    return f"{'>=' if sign > 0 else '<='}{bound:g}"
 
 
 def run(options, cells, edge):
