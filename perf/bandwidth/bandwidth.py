@@ -93,7 +93,8 @@ def draw(measured, file):
         for i, (name, _, seconds, _, _, key) in enumerate(one.parts()[2:]):
             y = i + height * (k - (len(measured) - 1) / 2)
             ax.barh(y, seconds / one.spmv, 0.9 * height, color=style.LINES[k], label=cells if i == 0 else None)
-            ax.annotate(f"{seconds / one.spmv:.3g}", (seconds / one.spmv, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
+            times = seconds / one.spmv
+            ax.annotate(f"{times:.1f}" if times < 100 else f"{times:,.0f}", (times, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
             if key in ASKED and key.endswith("_spmv"):
                 ax.plot(2 * [ASKED[key][1]], [i - 0.45, i + 0.45], color=style.INK, linewidth=1.2, label="asked" if k == 0 and key == "assembly_spmv" else None)
     ax.set_yticks(range(len(names)), names)
