@@ -18,7 +18,7 @@ from krylov import STATES  # noqa: E402
 STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
 CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
-COLUMNS = {"part": "", "count": "d", "ms": ".2f", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
+COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
 ASKED = {  # of the last line: at least (+) or at most (-)
     "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_kept_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
     "newton_spmv": (-1, 350), "contact_share": (-1, 0.05)}
@@ -68,7 +68,7 @@ def asked(key):
     if key not in ASKED:
         return ""
     sign, bound = ASKED[key]
-    return f"{'>=' if sign > 0 else '<='} {bound:g}"
+    return f"{'>=' if sign > 0 else '<='}{bound:g}"
 
 
 def run(options, cells, edge):
@@ -93,7 +93,8 @@ def draw(measured, file):
         for i, (name, _, seconds, _, _, key) in enumerate(one.parts()[2:]):
             y = i + height * (k - (len(measured) - 1) / 2)
             ax.barh(y, seconds / one.spmv, 0.9 * height, color=style.LINES[k], label=cells if i == 0 else None)
-            ax.annotate(f"{seconds / one.spmv:.3g}", (seconds / one.spmv, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
+            times = seconds / one.spmv
+            ax.annotate(f"{times:.1f}" if times < 100 else f"{times:,.0f}", (times, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
             if key in ASKED and key.endswith("_spmv"):
                 ax.plot(2 * [ASKED[key][1]], [i - 0.45, i + 0.45], color=style.INK, linewidth=1.2, label="asked" if k == 0 and key == "assembly_spmv" else None)
     ax.set_yticks(range(len(names)), names)

@@ -92,7 +92,7 @@ def draw(rows, file):
     """CPU seconds per unknown, what they went into, program beside program."""
     import style
     sizes, names = sorted({row.unknowns for row in rows}), list(dict.fromkeys(row.name for row in rows))
-    figure, ax = style.plt.subplots(figsize=(7.5, 3.4))
+    figure, ax = style.plt.subplots(figsize=(8.5, 3.4))
     width = 0.8 / len(names)
     parts = [*PARTS, "rest"]
     for row in rows:
@@ -102,9 +102,9 @@ def draw(rows, file):
         for k, part in enumerate(parts):
             ax.bar(x, per * seconds[part], 0.92 * width, bottom=bottom, color=(style.LINES[:3] + [style.FAINT])[k], label=part if row is rows[0] else None)
             bottom += per * seconds[part]
-        ax.annotate(f"{row.name}\n{row.iterations} iterations", (x, bottom), xytext=(0, 3), textcoords="offset points", ha="center", fontsize=7)
+        ax.annotate(f"{row.name.split()[-1]}\n{row.iterations} it.", (x, bottom), xytext=(0, 3), textcoords="offset points", ha="center", fontsize=7)
     ax.set_xticks(range(len(sizes)), [f"{size:,} unknowns" for size in sizes])
-    ax.set(ylabel="CPU time per unknown (µs)", title="elastic block, conjugate gradients to a residual of 1e-8, one rank")
+    ax.set(ylabel="CPU time per unknown (µs)", title="elastic block, Sprekk and DOLFINx with PETSc: conjugate gradients to a residual of 1e-8, one rank")
     ax.set_ylim(0, 1.15 * ax.get_ylim()[1])
     ax.grid(False, axis="x")
     ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
