@@ -142,7 +142,7 @@ def draw(same, found, file):
     figure, axes = style.plt.subplots(1, 2, figsize=(9, 3.6))
     for (code, of), colour in zip(same.items(), style.LINES):
         axes[0].loglog([run.unknowns for run in of], [run.seconds for run in of], "o-", color=colour, markersize=4, label=code)
-    axes[0].set(xlabel="unknowns (-)", title="tilted fracture, the same meshes: time of the processor (s)")
+    axes[0].set(xlabel="unknowns (-)", title="the same meshes: time of the processor (s)")
     axes[0].legend()
     for colour, (what, (their, our, error)) in zip(style.LINES, found.items()):
         for of, line in ((their, "--"), (our, "-")):
