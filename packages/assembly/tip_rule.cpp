@@ -18,7 +18,7 @@ std::vector<Node1D> gauss(int n) {
   std::vector<Node1D> rule;
   for (int i = 0; i < n; ++i) {
     Real z = std::cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
-    for (Real step = 1; std::abs(step) > 1e-9;) {  // squared by the next one
+    for (int iteration = 0; iteration < 6; ++iteration) {
       Real p = 1, before = 0;
       for (int k = 1; k <= n; ++k) {
         const Real next = ((2 * k - 1) * z * p - (k - 1) * before) / k;
@@ -26,8 +26,7 @@ std::vector<Node1D> gauss(int n) {
         p = next;
       }
       slope = n * (z * p - before) / (z * z - 1);
-      step = p / slope;
-      z -= step;
+      z -= p / slope;
     }
     rule.push_back({(1 + z) / 2, 1 / ((1 - z * z) * slope * slope)});
   }

@@ -27,8 +27,8 @@ GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # 
 QUICK = 2  # meshes of each
 ASKED = {"ratio_3945": 100, "ratio_10966": 300, "ratio_equal_error": 50}
 SLIP = "slip mean"
-COLUMNS = {"mesh, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU s": ".3f", "MB": ".0f", **{name: ".4f" for name in FUNCTIONALS}}
-ERRORS = {"error, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU s": ".3f", "MB": ".0f", "rel. error": ".2e"}
+COLUMNS = {"mesh, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f", **{name: ".4f" for name in FUNCTIONALS}}
+ERRORS = {"error, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f", "rel. error": ".2e"}
 WHY = """peer: nothing to compare with: POREPY is to name a checkout of PorePy, of November 2025 if possible:
   git clone https://github.com/pmgbergen/porepy && git -C porepy checkout 614c076c && POREPY=$PWD/porepy ./sprekk perf peer"""
 
@@ -129,7 +129,7 @@ def tell_apart(found):
 
 def tell_equal(found):
     """Prints seconds at equal error; the smallest ratio."""
-    table, ratios = linear.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU s": ".3f", "our CPU s": ".3f", "ratio": ".0f"}, 28), []
+    table, ratios = linear.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU seconds": ".3f", "our CPU seconds": ".3f", "ratio": ".0f"}, 28), []
     for what, (their, our, error) in found.items():
         best, good = runs.at_equal_error(our, their, error)
         ratios.append(runs.ratio(best, good))
@@ -142,7 +142,7 @@ def draw(same, found, file):
     figure, axes = style.plt.subplots(1, 2, figsize=(9, 3.6))
     for (code, of), colour in zip(same.items(), style.LINES):
         axes[0].loglog([run.unknowns for run in of], [run.seconds for run in of], "o-", color=colour, markersize=4, label=code)
-    axes[0].set(xlabel="unknowns (-)", title="tilted fracture, the same meshes: time of the processor (s)")
+    axes[0].set(xlabel="unknowns (-)", title="the same meshes: time of the processor (s)")
     axes[0].legend()
     for colour, (what, (their, our, error)) in zip(style.LINES, found.items()):
         for of, line in ((their, "--"), (our, "-")):
@@ -156,7 +156,7 @@ def draw(same, found, file):
 def write(file, same, found):
     with open(file, "w", newline="") as opened:
         writer = csv.writer(opened)
-        writer.writerow(["case", "code", "cells", "unknowns", "Newton", "CPU s", "MB", "quantity", "value"])
+        writer.writerow(["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"])
         for code, of in same.items():
             writer.writerows(["tilted", code, *cells(run), name, value] for run in of for name, value in run.values.items())
         for what, (their, our, error) in found.items():
@@ -178,8 +178,10 @@ def main(words):
     print("values times 1000")
     _, same = compare_tilted(options, QUICK if options.quick else len(TILTED))
     print()
-    wrong = [] if options.quick else tell_apart(same) + [""]
-    print(end="" if options.quick else "\n")
+    wrong = []
+    if not options.quick:
+        wrong = tell_apart(same)
+        print()
     _, found, exact = compare_errors(options, same, QUICK if options.quick else len(FINE))
     print(f"\nmean slip without error: {exact:.4e}\n")
     total = {f"ratio_{their.cells}": runs.ratio(their, our) for their, our in zip(same["PorePy"], same["Sprekk"])}
