@@ -1,6 +1,8 @@
 // The constant of the face law, held against the stiffness of the rock.
 #include "assembly/system.hpp"
 
+#include "base/check.hpp"
+
 #include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
@@ -76,6 +78,8 @@ bool System::calibrate(const BlockVector& x, bool first) {
 
 /// Factors of all faces from those of their classes.
 void System::correct_augmentation(const std::vector<Grip>& grips) {
+  SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
+               calibration_.size(), n_classes);
   View<Real*> factor("factor", grips.size());
   const auto host = Kokkos::create_mirror_view(factor);
   for (std::size_t f = 0; f < grips.size(); ++f) {

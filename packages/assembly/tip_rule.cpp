@@ -55,7 +55,6 @@ void append(const std::vector<Point>& tips, const std::vector<Point>& others, Re
             std::vector<RulePoint>& rule) {
   const auto line = gauss(n);
   const auto at_tips = simplex_rule(tips.size(), line), at_others = simplex_rule(others.size(), line);
-  rule.reserve(rule.size() + line.size() * at_tips.size() * at_others.size());
   const auto combine = [](const std::vector<Point>& corners, const Barycentric& at, Real factor, Point& x) {
     for (std::size_t k = 0; k < corners.size(); ++k)
       for (int i = 0; i < 3; ++i) x[i] += factor * at.l[k] * corners[k][i];

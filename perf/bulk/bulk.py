@@ -70,6 +70,8 @@ def run_peers(options, edge):
     directory = options.output / f"peer_{edge}"
     directory.mkdir(exist_ok=True)
     names = [name for name in PEERS if re.search(options.only, name)]
+    if not names:
+        sys.exit(f'bulk: no peer matches "{options.only}"; there are {", ".join(PEERS)}')
     words = [sys.executable, "-B", str(Path(__file__).with_name("peer.py")), directory, edge, YOUNG, POISSON, ",".join(map(str, TRACTION)), linear.RESIDUAL, *names]
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
     if done.returncode:

@@ -166,7 +166,7 @@ def write(file, same, found):
 def main(words):
     parser = linear.parser("peer", __doc__)
     options = parser.parse_args(words)
-    options.porepy = os.environ.get("POREPY")
+    options.porepy = os.environ.get("POREPY") and Path(os.environ["POREPY"]).resolve()
     if not options.porepy:
         print(WHY)
         return 0
@@ -188,7 +188,8 @@ def main(words):
     total["ratio_equal_error"] = tell_equal(found)
     write(options.output / "peer.csv", same, found)
     draw(same, found, options.output / "peer.png")
-    missed = [f"missed: {name} = {total[name]:.0f}, asked are {asked}" for name, asked in ASKED.items() if name in total and not total[name] >= asked]
+    missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()
+              if not total.get(name, 0) >= asked]
     print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and peer.png in {options.output}"]))
     last = {name: value for name, value in total.items() if options.quick or name in ASKED}
     print(" ".join(f"{name}={value:.0f}" for name, value in last.items()))

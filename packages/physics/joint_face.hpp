@@ -1,0 +1,142 @@
+// The traction rows of a fracture face, and their derivatives by Sacado.
+#pragma once
+
+#include "assembly/assembler.hpp"
+#include "laws/joint.hpp"
+
+#include <Sacado.hpp>
+
+namespace sprekk::physics {
+
+/// The joint law on one fracture face.
+///
+/// | symbol       | shape                                                    | unit |                              |
+/// | x            | u [minus then plus node, dim], beta [2 dim], lambda [dim] | m, m, Pa | unknowns                |
+/// |              | q [minus then plus node, dim], with tips                 | m    | see tip_enrichment.hpp       |
+/// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
+/// | frame        | [face, dim, dim]                                         | -    | rows n, t1[, t2]             |
+/// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
+/// | tip_share    | [face, minus then plus node]                             | -    | face mean of psi; with tips  |
+/// | bubble_mean  | [face]                                                   | -    | mean(b)                      |
+/// | law          | [number]                                                 |      | joint laws                   |
+/// | number       | [face]                                                   |      | number of the face's law     |
+/// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
+/// | augmentation | [face]                                                   | Pa/m | c, but for the factor        |
+/// | factor       | [face]; empty: 1                                         | -    | of c                         |
+/// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
+/// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
+template <mesh::Shape shape, bool tips>
+struct JointFace {
+  using Cell = assembly::ReferenceCell<shape>;
+  static constexpr int dim = Cell::dim, n = Cell::n_face_nodes;
+  template <class... More>
+  using Slots =
+      assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>, More...>;
+  using Columns = std::conditional_t<tips, Slots<assembly::Slot<2 * n, dim>>, Slots<>>;
+  using Rows = assembly::Slots<assembly::Slot<1, dim>>;
+  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim, q = lambda + dim;  // where they start in x
+  using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+
+  ConstView<Real***> frame;
+  ConstView<Real**> share, tip_share;
+  ConstView<Real*> bubble_mean;
+  ConstView<laws::Joint*> law;
+  ConstView<int*> number;
+  ConstView<Real**> rest;
+  ConstView<Real*> augmentation;
+  View<Real**> p_old;
+  ConstView<Real*> damping = {};
+  ConstView<Real*> factor = {};
+
+  KOKKOS_INLINE_FUNCTION Real constant(int f) const {
+    return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
+  }
+  KOKKOS_INLINE_FUNCTION laws::Augmentation constants(int f) const {
+    return laws::augmentation(law(number(f)), constant(f));
+  }
+
+  /// w = mean of R (u+ - u-) over the face.
+  KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
+    Real global[dim];
+    for (int i = 0; i < dim; ++i) {
+      global[i] = bubble_mean(f) * (x[beta + dim + i] - x[beta + i]);
+      for (int a = 0; a < n; ++a) {
+        global[i] += share(f, a) * (x[(n + a) * dim + i] - x[a * dim + i]);
+        if (tips) global[i] += tip_share(f, n + a) * x[q + (n + a) * dim + i] - tip_share(f, a) * x[q + a * dim + i];
+      }
+    }
+    for (int k = 0; k < dim; ++k) {
+      w[k] = rest.extent(0) > 0 ? rest(f, k) : 0;
+      for (int i = 0; i < dim; ++i) w[k] += frame(f, k, i) * global[i];
+    }
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION laws::ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
+                                                     T (&R)[dim]) const {
+    Real old[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), w, traction, old, R);
+  }
+
+  /// Jump, traction, residual and state of a face.
+  struct Point {
+    Real w[dim], traction[dim], R[dim];
+    laws::ContactState state;
+  };
+  KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
+    Point p;
+    jump(f, x, p.w);
+    for (int i = 0; i < dim; ++i) p.traction[i] = x[lambda + i];
+    p.state = evaluate(f, p.w, p.traction, p.R);
+    return p;
+  }
+
+  KOKKOS_INLINE_FUNCTION void residual(int f, const Real (&x)[Columns::size], Real (&r)[dim]) const {
+    const Point p = point(f, x);
+    for (int i = 0; i < dim; ++i) r[i] = p.R[i];
+  }
+
+  /// Lets faces that are free to slide or part resist it like a spring of damping times c_t, c_n, in derivatives alone.
+  KOKKOS_INLINE_FUNCTION void damp(int f, laws::ContactState state, Fad (&R)[dim]) const {
+    const Real share = damping.extent(0) > 0 ? damping(f) : 0;
+    if (share == 0 || state == laws::ContactState::stick) return;
+    const auto& joint = law(number(f));
+    const auto add = [&](int k, Real stiffness, Real compliance) {
+      R[k].fastAccessDx(k) -= stiffness;
+      R[k].fastAccessDx(dim + k) += stiffness * compliance;
+    };
+    for (int k = 1; k < dim; ++k) add(k, share * constants(f).tangential, joint.elastic.compliance);
+    if (state == laws::ContactState::open) add(0, share * constants(f).normal, joint.gap.closure.initial_compliance());
+  }
+
+  /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.
+  KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&x)[Columns::size], Real (&J)[dim][Columns::size]) const {
+    Real w_value[dim];
+    jump(f, x, w_value);
+    Fad w[dim], traction[dim], R[dim];
+    for (int i = 0; i < dim; ++i) {
+      w[i] = Fad(2 * dim, i, w_value[i]);
+      traction[i] = Fad(2 * dim, dim + i, x[lambda + i]);
+    }
+    damp(f, evaluate(f, w, traction, R), R);
+    for (int k = 0; k < dim; ++k) {
+      for (int i = 0; i < dim; ++i) {
+        Real dR_djump = 0;  // derivative in component i of the global jump
+        for (int l = 0; l < dim; ++l) dR_djump += R[k].dx(l) * frame(f, l, i);
+        for (int a = 0; a < n; ++a) {
+          J[k][a * dim + i] = -share(f, a) * dR_djump;
+          J[k][(n + a) * dim + i] = share(f, a) * dR_djump;
+          if (!tips) continue;
+          J[k][q + a * dim + i] = -tip_share(f, a) * dR_djump;
+          J[k][q + (n + a) * dim + i] = tip_share(f, n + a) * dR_djump;
+        }
+        J[k][beta + i] = -bubble_mean(f) * dR_djump;
+        J[k][beta + dim + i] = bubble_mean(f) * dR_djump;
+        J[k][lambda + i] = R[k].dx(dim + i);
+      }
+    }
+  }
+};
+
+}  // namespace sprekk::physics
