@@ -160,7 +160,7 @@ def penny():
 # of coarse meshes, whose estimates are off by more than two
 COARSE = {2: (("mixed quadrilateral 1", "n=8", "jump"),),
           3: (*((f"{regime} tetrahedron 1", "n=4", "jump") for regime in ("mixed", "stick", "slip", "uniform")),
-              ("slip hexahedron 1", "n=8", "jump"))}
+              ("slip hexahedron 1", "n=8", "jump"), ("slip hexahedron 1", "n=12", "jump"), ("uniform hexahedron 2", "n=4", "jump"))}
 
 
 def manufactured(dimension, cells):
