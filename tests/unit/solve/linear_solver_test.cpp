@@ -109,6 +109,16 @@ TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
   }
 }
 
+/// Its set-up raises the diagonal for a while.
+TEST(IterativeSolver, LeavesTheMatrixAsItWas) {
+  Grid grid(48);
+  const auto values = grid.matrix->getLocalMatrixHost().values;
+  const std::vector<Real> before(values.data(), values.data() + values.extent(0));
+  const auto solver = solve::make_iterative_solver({}, grid.problem.blocks());
+  ASSERT_EQ(solver->setup(system_of(grid.matrix, grid.problem.blocks()[0], true)), "");
+  EXPECT_EQ(std::vector<Real>(values.data(), values.data() + values.extent(0)), before);
+}
+
 TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
   for (int n : {32, 64}) {
     Grid grid(n);
