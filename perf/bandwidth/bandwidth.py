@@ -4,6 +4,7 @@
 The scene is a network of fractures in all states; bandwidth.cpp does the timing."""
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -111,14 +112,14 @@ def draw(measured, file):
 def main(words):
     parser = linear.parser("bandwidth", __doc__)
     parser.add_argument("--edge", type=int, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
-    parser.add_argument("--ranks", type=int, default=1, metavar="N", help="ranks (1)")
+    parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="ranks (1)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/perf/bandwidth/bandwidth", help="what bandwidth.cpp became")
     options = parser.parse_args(words)
     options.output.mkdir(parents=True, exist_ok=True)
     edge = options.edge or (QUICK if options.quick else EDGE)
     table, measured = linear.Table(COLUMNS, 42), {}
     for cells in CELLS:
-        if options.only not in cells:
+        if not re.search(options.only, cells):
             continue
         measured[cells] = one = run(options, cells, edge)
         for name, count, seconds, of_triad, of_time, key in one.parts():

@@ -3,6 +3,7 @@ import argparse
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -126,11 +127,26 @@ def joint(**entries):
     return tuple(f"Materials.joint.{names[key]}={value}" for key, value in entries.items())
 
 
+def pattern(words):
+    """A regular expression, for an option."""
+    try:
+        return re.compile(words).pattern
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f'"{words}" is no regular expression: {error}') from None
+
+
+def count(words):
+    """A number of ranks, for an option."""
+    if not words.isdecimal() or int(words) < 1:
+        raise argparse.ArgumentTypeError(f'"{words}" is no whole number from 1 on')
+    return int(words)
+
+
 def parser(name, text):
     """The options that all programs have."""
     made = argparse.ArgumentParser(prog=f"sprekk perf {name}", description=text)
     made.add_argument("--quick", action="store_true", help="a small version, for a test; the status is 1 if a bound on counts is missed")
-    made.add_argument("--only", metavar="PATTERN", default="", help="rows whose name matches this regular expression")
+    made.add_argument("--only", type=pattern, metavar="PATTERN", default="", help="rows whose name matches this regular expression")
     made.add_argument("--set", metavar="PATH=VALUE", action="append", default=[], help="an entry of every scene, as for `sprekk run`; may be repeated")
     made.add_argument("--output", type=Path, default=Path(f"output/perf/{name}"), metavar="DIR")
     made.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
