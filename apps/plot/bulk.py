@@ -31,11 +31,18 @@ def warp_factor(points, displacement, factor=None):
     return nice(0.05 * np.max(np.ptp(points, axis=0)) / largest) if largest > 0 else 0
 
 
-def edge_segments(polygons, keep):
-    """Pairs of points of the edges that so many polygons share as keep(n) says."""
-    pairs = np.concatenate([np.stack([p, np.roll(p, -1)], 1) for p in polygons])
-    ends, counts = np.unique(np.sort(pairs, axis=1), axis=0, return_counts=True)
-    return ends[keep(counts)]
+def rim(surface, joints):
+    """Pairs of points: edges of the outer boundary and of the sides of fractures, which are in `joints` (or None).
+
+    The pieces that ranks write have points of their own: edges between two pieces are found twice at one place."""
+    edges = np.concatenate([np.stack([p, np.roll(p, -1)], 1) for p in surface.polygons])
+    faces = read.segments(joints) if joints else None
+    points = np.concatenate([surface.points, faces.points]) if faces else surface.points
+    place = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)
+    number = lambda ends: np.sort(place[ends], axis=1) @ (len(points), 1)  # one for each pair of places
+    here, counts = np.unique(number(edges), return_counts=True)
+    sides = number(np.array([ends[:2] for ends in faces.polygons]) + len(surface.points)) if faces else []
+    return edges[np.isin(number(edges), np.concatenate([here[counts == 1], sides]))]
 
 
 def triangles(polygons):
@@ -54,12 +61,12 @@ def panels(surface):
         yield quantity(values), plt.get_cmap(colours), quantity.label, on_points
 
 
-def of_plane(grid, title, factor=None):
+def of_plane(grid, fractures, title, factor=None):
     surface = read.surface(grid)
     displacement = surface.point_data["displacement"]
     factor = warp_factor(surface.points, displacement, factor)
     rest, moved = surface.points[:, :2], (surface.points + factor * displacement)[:, :2]
-    rim = edge_segments(surface.polygons, lambda n: n == 1)  # outer boundary and sides of fractures
+    edges = rim(surface, fractures)
     width, height = np.ptp(moved, axis=0)
     rows, columns = (3, 1) if width > 1.8 * height else (1, 3)
     figure, axes = plt.subplots(rows, columns, sharex=True, sharey=True,
@@ -73,8 +80,8 @@ def of_plane(grid, title, factor=None):
         else:
             ax.add_collection(PolyCollection(surface.corners(moved), array=values, cmap=colours, norm=norm,
                                              edgecolors="face", linewidths=0.2))
-        ax.add_collection(LineCollection(rest[rim], colors=FAINT, linewidths=0.7, linestyles=(0, (4, 3))))
-        ax.add_collection(LineCollection(moved[rim], colors=INK, linewidths=0.9))
+        ax.add_collection(LineCollection(rest[edges], colors=FAINT, linewidths=0.7, linestyles=(0, (4, 3))))
+        ax.add_collection(LineCollection(moved[edges], colors=INK, linewidths=0.9))
         ax.set_aspect("equal")
         ax.margins(0.03)
         ax.autoscale_view()
@@ -128,5 +135,5 @@ def of_body(grid, fractures, title, factor=None, whole=False):
 def of_step(grid, fractures, title, factor=None, whole=False):
     """Of the rock's grid; the fractures' may be None."""
     if read.is_plane(grid):
-        return of_plane(grid, title, factor)
+        return of_plane(grid, fractures, title, factor)
     return of_body(grid, fractures, title, factor, whole)

@@ -1,7 +1,7 @@
 """Where the estimated error sits: of the stress in the rock, of the jump on the fractures."""
 import numpy as np
 import read
-from bulk import edge_segments
+from bulk import rim
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
 from style import FAINT, INK, Quantity, colour_bar, draw_polygons_3d, limits, plt
@@ -29,10 +29,10 @@ def headline(title, estimate):
     return f"{title}, relative error estimated: {', '.join(parts)}"
 
 
-def of_plane(grid, joints):
+def of_plane(grid, joints, fractures):
     surface = read.surface(grid)
     points = surface.points[:, :2]
-    rim = edge_segments(surface.polygons, lambda n: n == 1)
+    edges = rim(surface, fractures)
     figure, axes = plt.subplots(1, 2 if joints else 1, squeeze=False, sharex=True, sharey=True,
                                 figsize=(10 if joints else 5.5, 4.3 * np.clip(np.ptp(points[:, 1]) / np.ptp(points[:, 0]), 0.4, 2) + 0.9))
     density, norm, colours = density_colours(surface.cell_data["error density"])
@@ -47,7 +47,7 @@ def of_plane(grid, joints):
         axes[0, 1].add_collection(LineCollection(ends, array=values, cmap=colours, norm=norm, linewidths=4, zorder=3))
         colour_bar(figure, axes[0, 1], norm, colours, label)
     for ax in axes.flat:
-        ax.add_collection(LineCollection(points[rim], colors=INK if ax is axes[0, 0] else FAINT, linewidths=0.7))
+        ax.add_collection(LineCollection(points[edges], colors=INK if ax is axes[0, 0] else FAINT, linewidths=0.7))
         ax.set_aspect("equal")
         ax.margins(0.03)
         ax.autoscale_view()
@@ -76,7 +76,7 @@ def of_body(grid, joints, whole):
 
 def of_step(grid, joints, estimate, title, whole=False):
     """Of the rock's grid, that of the fractures (or None), and the estimate of the step in the results."""
-    joints = joints if joints and "jump error" in read.arrays(joints.GetCellData()) else None
-    figure = of_plane(grid, joints) if read.is_plane(grid) else of_body(grid, joints, whole)
+    fractures, joints = joints, joints if joints and "jump error" in read.arrays(joints.GetCellData()) else None
+    figure = of_plane(grid, joints, fractures) if read.is_plane(grid) else of_body(grid, joints, whole)
     figure.suptitle(headline(title, estimate), fontsize=10)
     return figure

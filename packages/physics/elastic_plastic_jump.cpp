@@ -76,15 +76,6 @@ class ElasticPlasticJump final : public assembly::Module {
     return op;
   }
 
-  /// c of the owned faces, Pa/m, before the stiffness of the joint joins it.
-  std::vector<Real> augmentation(const assembly::State& state) const {
-    const auto copy = [](const auto& view) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view); };
-    const auto constant = copy(op_->augmentation), factor = copy(state.augmentation);
-    std::vector<Real> c(constant.extent(0));
-    for (std::size_t f = 0; f < c.size(); ++f) c[f] = constant(f) * (factor.extent(0) > 0 ? factor(f) : 1);
-    return c;
-  }
-
   /// Calls visit(face, point) for every owned face, on the host.
   template <class Visit>
   void for_each_face(const assembly::State& state, const Visit& visit) const {
@@ -231,10 +222,9 @@ template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, const assembly::Scales& scales,
                                               std::vector<fields::Measure>& measures) const {
   Real largest = 0;
-  const auto constants = augmentation(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
-    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, constants[f]);
+    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, point.constant);
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
     const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential);
@@ -246,14 +236,13 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 /// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
-  const auto constants = augmentation(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     const auto& gap = parameters_.joints[joint_of(f)].law.gap;
     Real slip[dim - 1];
     for (int k = 1; k < dim; ++k) slip[k - 1] = point.w[k];
     const Real slipped = laws::norm(slip);
-    grips[f].augmentation += constants[f];
+    grips[f].augmentation += point.constant;
     grips[f].modulus = modulus_[f];
     grips[f].gap += point.w[0] - gap(slipped, Real(0));
     for (int k = 0; k < dim; ++k)

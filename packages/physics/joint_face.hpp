@@ -48,6 +48,7 @@ struct JointFace {
   ConstView<Real*> damping = {};
   ConstView<Real*> factor = {};
 
+  /// c, Pa/m, before the stiffness of the joint joins it.
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
     return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
   }
@@ -79,16 +80,18 @@ struct JointFace {
     return laws::contact_residual<dim>(law(number(f)), constants(f), w, traction, old, R);
   }
 
-  /// Jump, traction, residual and state of a face.
+  /// Jump, traction, residual, state and constant of a face.
   struct Point {
     Real w[dim], traction[dim], R[dim];
     laws::ContactState state;
+    Real constant;
   };
   KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
     Point p;
     jump(f, x, p.w);
     for (int i = 0; i < dim; ++i) p.traction[i] = x[lambda + i];
     p.state = evaluate(f, p.w, p.traction, p.R);
+    p.constant = constant(f);
     return p;
   }
 

@@ -110,6 +110,21 @@ class Pictures(PlotTest):
         titles = [ax.get_title(loc="left") for ax in made["fractures"].axes]
         self.assertEqual([t for t in titles if t], ["flat", "steep"])
 
+    def test_rim_of_a_plane_run_is_that_of_the_body(self):
+        """No edges between the pieces of ranks; each side of a fracture once."""
+        def rim(ranks, *overrides):
+            self.run_scene("verification/crossing_2d.xml", *overrides, ranks=ranks)
+            rock, joints = (read.grid(self.folder / "out" / f"{kind}_0000.pvtu") for kind in ("bulk", "fractures"))
+            surface = read.surface(rock)
+            ends = surface.points[bulk.rim(surface, joints)]
+            return np.sum(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)), joints
+        length, joints = rim(1)
+        faces = read.segments(joints)
+        sides = 2 * sum(np.linalg.norm(np.diff(corners[:2], axis=0)) for corners in faces.corners())
+        self.assertAlmostEqual(length, 4 + sides, 9)
+        self.assertAlmostEqual(rim(2)[0], length, 9)
+        self.assertAlmostEqual(rim(2, "Mesh.order=2")[0], length, 9)
+
     def test_run_in_3d_on_two_ranks(self):
         self.run_scene("verification/crossing_3d.xml", ranks=2)
         made = self.figures("out")
