@@ -1,7 +1,6 @@
 #include "solve/fine_level.hpp"
 
 #include <Ifpack2_Factory.hpp>
-#include <Teuchos_DefaultSerialComm.hpp>
 #include <TpetraExt_TripleMatrixMultiply.hpp>
 
 #include <algorithm>
@@ -24,64 +23,34 @@ RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>&
   return product;
 }
 
-RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A, int n_sweeps) {
+RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
   const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
   ParameterList list;
   list.set("relaxation: type", "Symmetric Gauss-Seidel");
   list.set("relaxation: use l1", true);  // converges on any number of ranks
-  list.set("relaxation: sweeps", n_sweeps);
   S->setParameters(list);
   S->initialize();
   S->compute();
   return S;
 }
 
-/// The inverse, by factors, of a matrix on one rank.
-class LocalInverse : public Operator {
- public:
-  LocalInverse(const RCP<const CrsMatrix>& A, bool symmetric) : map_(A->getRowMap()), solver_(make_direct_solver({})) {
-    const RCP<const Comm> alone = rcp(new Teuchos::SerialComm<int>);
-    const LocalIndex n = map_->getNodeNumElements();
-    local_ = rcp(new Map(n, 0, alone));
-    if (n == 0) return;
-    const auto part = rcp(new CrsMatrix(local_, A->getNodeMaxNumRowEntries()));
-    const auto from = A->getLocalMatrixHost();
-    const auto& columns = *A->getColMap();
-    std::vector<GlobalIndex> kept;
-    std::vector<Real> values;
-    for (LocalIndex row = 0; row < n; ++row) {
-      kept.clear();
-      values.clear();
-      for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1); ++k) {
-        kept.push_back(map_->getLocalElement(columns.getGlobalElement(from.graph.entries(k))));
-        values.push_back(from.values(k));
-      }
-      part->insertGlobalValues(row, static_cast<LocalIndex>(kept.size()), values.data(), kept.data());
-    }
-    part->fillComplete(local_, local_);
-    const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{local_});
-    const auto failure = solver_->setup({joined, {part}, symmetric, {}, part});
-    SPREKK_CHECK(failure.empty(), "around crack tips: {}", failure);
-  }
-  RCP<const Map> getDomainMap() const override { return map_; }
-  RCP<const Map> getRangeMap() const override { return map_; }
-
-  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real, Real) const override {
-    for (std::size_t v = 0; v < b.getNumVectors() && local_->getNodeNumElements() > 0; ++v) {
-      Vector from(local_), to(local_);
-      Kokkos::deep_copy(from.getLocalViewDevice(Tpetra::Access::OverwriteAll),
-                        b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
-      solver_->solve(from, to, 1);
-      Kokkos::deep_copy(y.getVectorNonConst(v)->getLocalViewDevice(Tpetra::Access::OverwriteAll),
-                        to.getLocalViewDevice(Tpetra::Access::ReadOnly));
-    }
-  }
-
- private:
-  RCP<const Map> map_, local_;
-  std::unique_ptr<LinearSolver> solver_;
-};
+/// The same numbers of the unknowns of a map on all ranks, from 0 without gaps.
+RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
+  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const auto &rows = A->getRowMap(), &columns = A->getColMap();
+  const auto map = rcp(new Map(invalid, rows->getNodeNumElements(), 0, rows->getComm()));
+  Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex> of_rows(rows), of_columns(columns);
+  for (LocalIndex i = 0, n = rows->getNodeNumElements(); i < n; ++i)
+    of_rows.replaceLocalValue(i, map->getGlobalElement(i));
+  if (A->getGraph()->getImporter().is_null())
+    Tpetra::deep_copy(of_columns, of_rows);
+  else
+    of_columns.doImport(of_rows, *A->getGraph()->getImporter(), Tpetra::INSERT);
+  const auto numbers = of_columns.getData();
+  const auto column_map = rcp(new Map(invalid, numbers(), 0, rows->getComm()));
+  return rcp(new CrsMatrix(A->getLocalMatrixDevice(), map, column_map, map, map));
+}
 
 /// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; empty, for all, of a
 /// block of order 2.
@@ -183,6 +152,38 @@ class Cycle : public Operator {
 
 }  // namespace
 
+/// The inverse of a matrix by its factors, on rank 0: the rows around crack tips are few.
+class FineLevel::DirectInverse : public Operator {
+ public:
+  explicit DirectInverse(const RCP<const CrsMatrix>& A)
+      : map_(A->getRowMap()), A_(renumbered(A)), solver_(make_direct_solver({}, true)) {}
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+
+  /// Factors the present values. Collective.
+  void setup(bool symmetric) {
+    const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
+    const auto failure = solver_->setup({joined, {A_}, symmetric, {}, A_});
+    SPREKK_CHECK(failure.empty(), "around crack tips: {}", failure);
+  }
+
+  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real, Real) const override {
+    for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
+      Vector from(A_->getRowMap()), to(A_->getRowMap());
+      Kokkos::deep_copy(from.getLocalViewDevice(Tpetra::Access::OverwriteAll),
+                        b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
+      solver_->solve(from, to, 1);
+      Kokkos::deep_copy(y.getVectorNonConst(v)->getLocalViewDevice(Tpetra::Access::OverwriteAll),
+                        to.getLocalViewDevice(Tpetra::Access::ReadOnly));
+    }
+  }
+
+ private:
+  RCP<const Map> map_;
+  RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
+  std::unique_ptr<LinearSolver> solver_;
+};
+
 bool have_fine_level(const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
   const bool enriched =
@@ -202,12 +203,14 @@ void FineLevel::setup(const LinearSystem& system) {
       {first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk, system.symmetric});
   if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
   smoothed_->update();
-  const bool alone = system.joined->map()->getComm()->getSize() == 1;
   RCP<const Operator> smoother;
-  if (P.is_null() && alone)
-    smoother = rcp(new LocalInverse(smoothed_->matrix(), system.symmetric));
-  else
-    smoother = gauss_seidel(smoothed_->matrix(), P.is_null() ? 2 : 1);
+  if (P.is_null()) {
+    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix()));
+    direct_->setup(system.symmetric);
+    smoother = direct_;
+  } else {
+    smoother = gauss_seidel(smoothed_->matrix());
+  }
   cycle_ = rcp(new Cycle(system, *smoothed_, smoother, order_one_->inverse()));
 }
 

@@ -12,8 +12,7 @@ bool have_fine_level(const std::vector<Block>& blocks);
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
 /// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
 /// enrich it. S works on the unknowns that order 1 does not have, and on those that couple to them: of order 2 on all,
-/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve on one
-/// rank, by two such sweeps on several.
+/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);
@@ -23,8 +22,11 @@ class FineLevel {
   SolverCost order_one_cost() const { return order_one_->costs().front(); }
 
  private:
+  class DirectInverse;
+
   RCP<BlockSolver> order_one_;
   std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
+  RCP<DirectInverse> direct_;               // their inverse, of blocks that enrich
   RCP<const fields::Operator> cycle_;
 };
 

@@ -173,7 +173,7 @@ def summary(runs):
     counted = [run.newton for run in runs if run.measured]
     violations = [run.worst.max() for run in runs if run.worst is not None and run.measured]
     if not counted:
-        counted = [[0]]
+        counted = [[np.nan]]
     largest = [max(newton) for newton in counted]
     return {"failures": sum(bool(run.failures) for run in runs), "median": np.median([np.median(n) for n in counted]),
             "p90": np.percentile(largest, 90, method="higher"), "max": max(largest), "worst_violation": max(violations, default=0)}
@@ -232,11 +232,12 @@ def main(words):
     bar_chart(runs, options.output / "contact.png")
     total = summary(runs)
     print(f"\n{len(runs)} scenes in {sum(run.seconds for run in runs):.0f} s, {sum(len(run.faces) for run in runs)} steps written, "
-          f"{sum(run.undirected for run in runs)} of them not judged by direction; contact.csv and contact.png in {options.output}")
+          f"{sum(run.undirected for run in runs)} of them not judged by direction; "
+          f"{sum(bool(run.scene.refused) for run in runs)} scenes that must be refused are not in the counts; contact.csv and contact.png in {options.output}")
     above = [] if options.only else [f"{key} = {total[key]:g}, the bound is {bound:g}" for key, bound in BOUNDS.items() if total[key] > bound]
     for what in [f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures] + above:
         print(what)
-    print("failures={failures} median={median:g} p90={p90:g} max={max} worst_violation={worst_violation:.1e}".format(**total))
+    print("failures={failures} median={median:g} p90={p90:g} max={max:g} worst_violation={worst_violation:.1e}".format(**total))
     return 1 if total["failures"] or (options.quick and above) else 0
 
 
