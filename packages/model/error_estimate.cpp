@@ -1,6 +1,8 @@
 #include "model/error_estimate.hpp"
 
+#include "assembly/prescribed_error.hpp"
 #include "mesh/extents.hpp"
+#include "model/scene_check.hpp"
 #include "physics/traction_recovery.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -70,6 +72,23 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   return estimate;
 }
 
+void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
+  const auto& system = model_.system();
+  const auto& mesh = model_.mesh();
+  const auto conditions =
+      dirichlet_conditions(model_.scene().boundary_conditions, mesh.boundary_names, mesh.region_names);
+  const auto error =
+      assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
+  const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (const int block : blocks_) {
+    if (block < 0) continue;
+    const auto constrained = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(block));
+    const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < constrained.extent(0); ++i)
+      if (constrained(i)) view(i, 0) = block == blocks_[physics::nodal] ? missed(i, 0) : 0;
+  }
+}
+
 void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std::vector<OutputField>& outputs,
                                    ErrorEstimate& estimate) {
   auto& system = model_.system();
@@ -80,13 +99,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
   physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda], model_.scene().initial_stress(),
                                    *model_.state()[lambda], stress.forces);
-  for (const int block : blocks_) {
-    if (block < 0) continue;
-    const auto prescribed = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(block));
-    const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < prescribed.extent(0); ++i)
-      if (prescribed(i)) view(i, 0) = 0;
-  }
+  prescribe(right_side);
   const auto report = model_.newton().answer(model_.state(), right_side, x, solve_tolerance);
   estimate.failure = report.reason;
   if (!report.converged) return;

@@ -30,8 +30,8 @@ class ErrorEstimator {
   explicit ErrorEstimator(Model& model);
 
   /// Of the present state. `outputs` are its. The stress against the recovered one (see physics::StressRecovery); for
-  /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over,
-  /// with states of contact as they are. Collective.
+  /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over
+  /// and to what prescribed displacements miss between nodes, with states of contact as they are. Collective.
   ErrorEstimate operator()(const std::vector<assembly::OutputField>& outputs);
 
  private:
@@ -39,6 +39,9 @@ class ErrorEstimator {
   physics::ByField<const fields::Layout*> layouts() const;
   void estimate_jump(const physics::StressError& error, const std::vector<assembly::OutputField>& outputs,
                      ErrorEstimate& estimate);
+
+  /// Sets the rows of prescribed unknowns to what these miss between nodes.
+  void prescribe(fields::BlockVector& right_side);
 
   Model& model_;
   physics::ByField<int> blocks_;  // of displacements, -1: there is none

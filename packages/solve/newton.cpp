@@ -146,7 +146,12 @@ NewtonReport Newton::solve(BlockVector& x) {
     const int here = search.damped;
     int anywhere = 0;
     Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-    damped_ = anywhere > 0;
+    factors_ = anywhere > 0 ? Factors::damped : Factors::good;
+    if (report.converged && anywhere > 0) {  // now, for after a commit faces that slid would stick
+      problem_.damp(0, {});
+      problem_.jacobian(x);
+      factors_ = Factors::old;
+    }
   }
   if (!search.failure.empty()) report.reason = search.failure;
   if (report.iterations > 0 && !report.linear_solves.back().converged)
@@ -158,12 +163,13 @@ NewtonReport Newton::solve(BlockVector& x) {
 }
 
 LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
-  if (linear_->n_setups() == 0 || damped_) {
+  if (linear_->n_setups() == 0 || factors_ == Factors::damped) {
     problem_.damp(0, {});
     problem_.jacobian(x);
-    linear_->update();
-    damped_ = false;
+    factors_ = Factors::old;
   }
+  if (factors_ == Factors::old) linear_->update();
+  factors_ = Factors::good;
   return linear_->solve(b, dx, tolerance);
 }
 

@@ -50,8 +50,9 @@ class Newton {
   /// rank.
   NewtonReport solve(BlockVector& x);
 
-  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with, or that at x if there was none or it was
-  /// damped: how x answers to small forces b. Rows of constrained unknowns are dx_i = b_i. Collective.
+  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with: how x answers to small forces b. If that was
+  /// damped, with the one where the solve converged, or at x if it did not; if there was none, with that at x. Rows of
+  /// constrained unknowns are dx_i = b_i. Collective.
   LinearReport answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   const CondensedSolve& linear() const { return *linear_; }
@@ -61,7 +62,8 @@ class Newton {
   NewtonOptions options_;
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ThyraModel> model_;
-  bool damped_ = false;  // the last Jacobian that was solved with
+  /// What answer() finds: the last Jacobian, an older one than the matrix holds, one with damping.
+  enum class Factors { good, old, damped } factors_ = Factors::good;
 };
 
 }  // namespace sprekk::solve

@@ -159,8 +159,7 @@ def penny():
 
 # of coarse meshes, whose estimates are off by more than two
 COARSE = {2: (("mixed quadrilateral 1", "n=8", "jump"),),
-          3: (*((f"{regime} tetrahedron 1", "n=4", "jump") for regime in ("mixed", "stick", "slip", "uniform")),
-              ("slip hexahedron 1", "n=8", "jump"), ("slip hexahedron 1", "n=12", "jump"), ("uniform hexahedron 2", "n=4", "jump"))}
+          3: (("uniform tetrahedron 1", "n=4", "jump"), ("uniform hexahedron 2", "n=4", "jump"))}
 
 
 def manufactured(dimension, cells):
@@ -307,7 +306,7 @@ def free_sides():
     return Case("free_sides", "block with free sides and a compliant fracture", "", every, errors, prescribed,
                 ("quadrilateral 2", "n=32", "jump"), jumps, ("jump", "shear force"), None,
                 [Bound(one.name, one.meshes[-1][0], name, 1e-3) for one in every if one.name[-1] == "2" for name in ("shear force", "load")],
-                unsure=tuple(("tetrahedron 2", f"n={n}", "jump") for n in (8, 16, 32)))  # one layer: no node has cells all around
+                unsure=tuple(("tetrahedron 2", f"n={n}", "jump") for n in (8, 16, 32)))  # a shift of the whole jump
 
 
 CASES = (sneddon, sneddon_shear, inclined, penny, t_junction, wavy, free_sides, mms2d, mms3d)

@@ -6,6 +6,7 @@
 #include <Tpetra_Core.hpp>
 #include <cmath>
 
+#include "assembly/prescribed_error.hpp"
 #include "base/check.hpp"
 #include "mesh/distribute.hpp"
 #include "unit/assembly/dense.hpp"
@@ -88,6 +89,49 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
       const LocalIndex node = entry.unknown / dim;
       EXPECT_EQ(entry.unknown % dim, entry.component);
       for (int i = 0; i < dim; ++i) EXPECT_EQ(entry.x[i], p.mesh->coordinates[node * dim + i]);
+    }
+  }
+}
+
+/// Faces have edges of 1, so a function with second derivative g'' along one of them exceeds its linear interpolant by
+/// -g''/12 in the mean, on triangles, too; where two boundaries meet, by what lies between theirs.
+TEST(Constraints, MissCurvedValuesBetweenNodes) {
+  for (const auto& cell : mesh::testing::all_cells) {
+    const Problem p(cell);
+    const int dim = p.mesh->dim();
+    const auto g = text("3*x*x+6*t*y*y+x-y"), linear = text("t*x-2*y");
+    const std::vector<DirichletCondition> conditions = {p.on("lid", "north", {g, linear}), p.on("wall", "west", {g})};
+    const auto error = test::gather(prescribed_error(*p.mesh, p.layout, conditions, 2));
+    for (int node = 0; node < static_cast<int>(p.global.n_nodes()); ++node) {
+      const Real x = p.global.coordinates[node * dim], y = p.global.coordinates[node * dim + 1];
+      SCOPED_TRACE(fmt::format("{} {} {}", cell, x, y));
+      const Real west = -2, north = -0.5, found = error(node * dim, 0);
+      if (x == 0 && y == 4) {
+        EXPECT_GT(found, west + 0.1);
+        EXPECT_LT(found, north - 0.1);
+      } else {
+        EXPECT_NEAR(found, x == 0 ? west : y == 4 ? north : 0, 1e-13);
+      }
+      for (int c = 1; c < dim; ++c) EXPECT_NEAR(error(node * dim + c, 0), 0, 1e-13);
+    }
+  }
+}
+
+/// Order 2 follows a quadratic function, and misses one with fourth derivative g4 by -g4/2880 in the mean of an edge.
+TEST(Constraints, MissLessAtOrderTwo) {
+  for (const auto& [formula, missed] : {std::pair{"3*y*y", 0.0}, {"y^4", -24.0 / 2880}}) {
+    auto box = crossed("quadrilateral");
+    box.order = 2;
+    const auto mesh = mesh::make_distributed(mesh::make_box(box), Tpetra::getDefaultComm());
+    const fields::Layout layout({"displacement", fields::Entity::node, 2, "m"}, *mesh);
+    const auto& names = mesh->boundary_names;
+    const int west = static_cast<int>(std::find(names.begin(), names.end(), "west") - names.begin());
+    const auto error =
+        prescribed_error(*mesh, layout, {{"wall", "displacement", west, {text(formula), std::nullopt}}}, 0);
+    const auto values = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LocalIndex i = 0; i < layout.n_owned(); ++i) {
+      const bool held = i % 2 == 0 && mesh->coordinates[i] == 0;
+      EXPECT_NEAR(values(i, 0), held ? missed : 0, 1e-13) << formula;
     }
   }
 }

@@ -110,7 +110,7 @@ TEST(ErrorEstimate, ManufacturedSolutions) {
     for (const std::string regime : {"stick", "slip", "mixed"})
       for (const auto& d : discretisations(dim)) {
         const int n = dim == 2 ? 16 : d.order == 1 ? 8 : d.cell == "hexahedron" ? 6 : 4;
-        if (dim == 3 && regime != "mixed") continue;
+        if (dim == 3 && regime != "mixed" && (regime != "slip" || d.order == 2)) continue;
         SCOPED_TRACE(regime + " " + d.name());
         const auto cells =
             dim == 2 ? fmt::format("Mesh.cells={{{0}, {0}}}", n) : fmt::format("Mesh.cells={{{0}, {0}, {0}}}", n);

@@ -1,0 +1,67 @@
+#include "assembly/prescribed_error.hpp"
+
+#include "assembly/geometry.hpp"
+
+#include <algorithm>
+
+namespace sprekk::assembly {
+
+namespace {
+
+using mesh::Shape;
+
+LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, int k) {
+  return mesh.cells[face.cell * mesh.nodes_per_cell() + mesh::face_nodes(mesh.shape)[face.local_face][k]];
+}
+
+/// The integral of g - I g over a face, and the face's area.
+template <Shape shape>
+std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, const base::Expression& g,
+                           Real t) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
+  FaceValues interpolant{};
+  for (int k = 0; k < n; ++k) {
+    std::array<Real, 3> x{};
+    std::copy_n(&mesh.coordinates[node_of(mesh, face, k) * dim], dim, x.begin());
+    interpolant[k] = g(x, t);
+  }
+  Real sum = 0, total = 0;
+  for_each_face_point<shape>(mesh, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
+    sum += area * g(x, t);
+    for (int k = 0; k < n; ++k) sum -= area * N[k] * interpolant[k];
+    total += area;
+  });
+  return {sum, total};
+}
+
+}  // namespace
+
+fields::Vector prescribed_error(const mesh::Mesh& mesh, const fields::Layout& layout,
+                                const std::vector<DirichletCondition>& conditions, Real t) {
+  const int n_components = layout.field().n_components;
+  fields::MultiVector local(layout.ghosted(), 2), owned(layout.owned(), 2);  // integrals, areas
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    const auto sums = local.getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (const auto& condition : conditions)
+      for (const auto& face : mesh.boundary_faces) {
+        const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];
+        if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;
+        for (int c = 0; c < n_components; ++c) {
+          if (!condition.values[c]) continue;
+          const auto of_face = missed<shape()>(mesh, face, *condition.values[c], t);
+          for (int k = 0; k < mesh::n_face_nodes(shape()); ++k)
+            for (int i = 0; i < 2; ++i)
+              sums(mesh.free_node(node_of(mesh, face, k)) * n_components + c, i) += of_face[i];
+        }
+      }
+  });
+  owned.doExport(local, *layout.import(), Tpetra::ADD);
+  fields::Vector result(layout.owned());
+  const auto sums = owned.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto mean = result.getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (LocalIndex i = 0; i < layout.n_owned(); ++i)
+    if (sums(i, 1) > 0) mean(i, 0) = sums(i, 0) / sums(i, 1);
+  return result;
+}
+
+}  // namespace sprekk::assembly
