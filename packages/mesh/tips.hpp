@@ -17,4 +17,8 @@ std::vector<char> tip_nodes(const GlobalMesh& mesh);
 /// a face those nodes are left out that touch the fewest fracture faces: the corners of a fracture.
 void mark_tips(GlobalMesh& mesh);
 
+/// The same of every rank's part, with the numbers of enriched nodes, which do not depend on the ranks. `mesh` has no
+/// tied nodes. Collective.
+void mark_tips(Mesh& mesh);
+
 }  // namespace sprekk::mesh
