@@ -239,10 +239,12 @@ void turn_for_refinement(GlobalMesh& mesh) {
   for (auto& face : mesh.boundary_faces) face.local_face = turned(face.cell, face.local_face);
 }
 
-RCP<const Mesh> refined(RCP<const Mesh> mesh, int times) {
-  check_size(*mesh, times);
-  for (int k = 0; k < times; ++k) mesh = Divider(*raise_order(*mesh)).divide();
-  return mesh;
+RCP<Mesh> refined(const Mesh& mesh, int times) {
+  check_size(mesh, times);
+  const auto once = [](const Mesh& coarse) { return Divider(*raise_order(coarse)).divide(); };
+  auto result = once(mesh);
+  for (int k = 1; k < times; ++k) result = once(*result);
+  return result;
 }
 
 }  // namespace sprekk::mesh

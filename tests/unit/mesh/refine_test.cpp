@@ -49,7 +49,7 @@ GlobalMesh ready(const BoxMesh& box) {
 }
 
 GlobalMesh refined_alone(const GlobalMesh& mesh, int times) {
-  return whole(*refined(make_distributed(mesh, alone()), times));
+  return whole(*refined(*make_distributed(mesh, alone()), times));
 }
 
 /// Boxes whose fractures cross, end on each other, at the boundary and in the rock, or have tips all around a face.
@@ -150,7 +150,7 @@ TEST(Refine, IsTheSameOnAnyRanks) {
           std::vector<int> fine_part;
           for (GlobalIndex c = 0; c < fine.n_cells(); ++c)
             fine_part.push_back(part[c / (fine.n_cells() / coarse.n_cells())]);
-          auto mesh = *refined(distribute(coarse, part, comm), times);
+          auto mesh = *refined(*distribute(coarse, part, comm), times);
           if (times == 1) expect_as_documented(fine, fine_part, mesh);
           mark_tips(fine);
           mark_tips(mesh);
@@ -238,11 +238,11 @@ TEST(Refine, KeepsShapesOfTetrahedra) {
 TEST(Refine, Errors) {
   const auto comm = Tpetra::getDefaultComm();
   const auto mesh = make_distributed(make_box(unit_steps("hexahedron", {2, 2, 2})), comm);
-  EXPECT_THAT(error_of([&] { refined(mesh, 12); }), HasSubstr("refinements: 12 make 5.5e+11 cells of 8"));
-  EXPECT_THAT(error_of([&] { refined(mesh, 1000); }), HasSubstr("take fewer, or more ranks"));
+  EXPECT_THAT(error_of([&] { refined(*mesh, 12); }), HasSubstr("refinements: 12 make 5.5e+11 cells of 8"));
+  EXPECT_THAT(error_of([&] { refined(*mesh, 1000); }), HasSubstr("take fewer, or more ranks"));
   auto box = unit_steps("triangle", {4, 4});
   box.periodic = {"x"};
-  EXPECT_THAT(error_of([&] { refined(make_distributed(make_box(box), comm), 1); }),
+  EXPECT_THAT(error_of([&] { refined(*make_distributed(make_box(box), comm), 1); }),
               HasSubstr("without periodic sides"));
 }
 
