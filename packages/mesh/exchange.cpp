@@ -2,6 +2,8 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Export.hpp>
+#include <algorithm>
+#include <utility>
 
 namespace sprekk::mesh {
 namespace {
@@ -20,6 +22,21 @@ GhostExchange::GhostExchange(const std::vector<GlobalIndex>& ids, LocalIndex n_o
     : import_(map_of(ids.data(), n_owned, comm), map_of(ids.data(), static_cast<LocalIndex>(ids.size()), comm)),
       owned_(import_.getSourceMap()),
       all_(import_.getTargetMap()) {}
+
+void GhostExchange::to_largest(std::vector<GlobalIndex>& values) const {
+  {
+    const auto to = all_.getDataNonConst();
+    std::copy(values.begin(), values.end(), to.begin());
+    const auto owned = owned_.getDataNonConst();
+    std::copy_n(values.begin(), owned.size(), owned.begin());
+  }
+  owned_.doExport(all_, import_, Tpetra::ABSMAX);
+  {
+    const auto owned = owned_.getData();
+    std::copy(owned.begin(), owned.end(), values.begin());
+  }
+  (*this)(values);
+}
 
 std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& counts,
                                      const RCP<const Comm>& comm) {

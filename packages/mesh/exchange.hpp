@@ -10,7 +10,7 @@
 
 namespace sprekk::mesh {
 
-/// From the owners of entities to the ranks that have them as ghosts.
+/// Between the owners of entities and the ranks that have them as ghosts.
 class GhostExchange {
  public:
   /// `ids` are the global numbers of this rank's entities, the first n_owned of them owned. Collective.
@@ -30,6 +30,9 @@ class GhostExchange {
       for (std::size_t i = owned_.getLocalLength(); i < n; ++i) values[i * width + k] = static_cast<T>(to[i]);
     }
   }
+
+  /// Sets the values of entities, none of them negative, to the largest that any rank has. Collective.
+  void to_largest(std::vector<GlobalIndex>& values) const;
 
  private:
   using Vector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;

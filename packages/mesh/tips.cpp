@@ -114,19 +114,25 @@ void number_enriched(Mesh& mesh, const GhostExchange& exchange) {
   }
 }
 
+GhostExchange exchange_of_nodes(const Mesh& mesh) {
+  SPREKK_CHECK(mesh.tied_to.empty(), "tips: need a mesh without periodic sides once it is distributed");
+  return {mesh.node_id, mesh.n_owned_nodes, mesh.comm};
+}
+
 }  // namespace
 
 std::vector<char> tip_nodes(const GlobalMesh& mesh) {
   return find_tips(mesh, [](auto&) {});
 }
 
+std::vector<char> tip_nodes(const Mesh& mesh) { return find_tips(mesh, exchange_of_nodes(mesh)); }
+
 void mark_tips(GlobalMesh& mesh) {
   mesh.tip = find_marks(mesh, [](auto&) {});
 }
 
 void mark_tips(Mesh& mesh) {
-  SPREKK_CHECK(mesh.tied_to.empty(), "mark tips: needs a mesh without periodic sides");
-  const GhostExchange exchange(mesh.node_id, mesh.n_owned_nodes, mesh.comm);
+  const auto exchange = exchange_of_nodes(mesh);
   mesh.tip = find_marks(mesh, exchange);
   number_enriched(mesh, exchange);
 }

@@ -268,30 +268,36 @@ void Scene::describe(base::Section& s) {
   add_library_materials(materials, used);
 }
 
+/// Does about crack tips what the entry says.
+template <class AnyMesh>
+void enrich(AnyMesh& mesh, const std::string& tips) {
+  if (tips == "plain") return;
+  if (mesh::order(mesh.shape) == 1) {
+    mesh::mark_tips(mesh);
+  } else {
+    assembly::move_to_quarter_points(mesh);
+    mesh.tip = mesh::tip_nodes(mesh);
+  }
+}
+
 mesh::GlobalMesh Scene::make_mesh() const {
   auto result = read_mesh();
-  if (refinements() > 0) {
+  if (refinements() > 0)
     mesh::turn_for_refinement(result);
-    return result;
-  }
-  if ((mesh_file ? mesh_file->tips : mesh.tips) == "plain") return result;
-  if (mesh::order(result.shape) == 1) {
-    mesh::mark_tips(result);
-  } else {
-    assembly::move_to_quarter_points(result);
-    result.tip = mesh::tip_nodes(result);
-  }
+  else
+    enrich(result, tips());
   return result;
 }
 
 RCP<const mesh::Mesh> Scene::refined(RCP<const mesh::Mesh> coarse) const {
   if (refinements() == 0) return coarse;
   auto fine = mesh::refined(*coarse, refinements());
-  if ((mesh_file ? mesh_file->order.value_or(1) : mesh.order) == 2) return mesh::raise_order(*fine);
-  if ((mesh_file ? mesh_file->tips : mesh.tips) == "plain") return fine;
-  mesh::mark_tips(*fine);
+  if ((mesh_file ? mesh_file->order.value_or(1) : mesh.order) == 2) fine = mesh::raise_order(*fine);
+  enrich(*fine, tips());
   return fine;
 }
+
+const std::string& Scene::tips() const { return mesh_file ? mesh_file->tips : mesh.tips; }
 
 int Scene::refinements() const { return mesh_file ? mesh_file->refinements : mesh.refinements; }
 

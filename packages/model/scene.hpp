@@ -149,6 +149,7 @@ struct Scene {
   RCP<const mesh::Mesh> refined(RCP<const mesh::Mesh> mesh) const;
   mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
   int refinements() const;             ///< of the mesh that is used
+  const std::string& tips() const;     ///< the same
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;

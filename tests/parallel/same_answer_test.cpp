@@ -116,6 +116,7 @@ TEST(SameAnswer, LoadsAndVaryingMaterials) {
 TEST(SameAnswer, Refined) {
   expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=2"}));
   expect_same_answer(read_scene("gmsh/crossing.xml", {"Mesh file.refinements=1"}));
+  expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=1", "Mesh.order=2"}));
 }
 
 TEST(SameAnswer, ScenesOfTheThesis) {

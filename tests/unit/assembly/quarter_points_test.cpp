@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/distribute.hpp"
+#include "mesh/raise_order.hpp"
+#include "mesh/refine.hpp"
 #include "mesh/tips.hpp"
 
 namespace sprekk::assembly {
@@ -219,6 +222,47 @@ TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
     }
     EXPECT_GT(moved_copies, 0);
     EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+  }
+}
+
+/// As many nodes at the same places as in the box of twice the cells, on any number of ranks.
+TEST(QuarterPoints, OfPartsThatWereRefined) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    auto coarse = box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 1, 3, 3}});
+    if (!is_flat(cell)) {  // the front of one ends in the other
+      coarse.fractures["f1"].lower_corner = {2, 2, 1};
+      coarse.fractures["f1"].upper_corner = {4, 4, 1};
+    }
+    auto fine = coarse;
+    for (int& n : fine.cells) n *= 2;
+    coarse.order = 1;
+    const auto mesh = mesh::raise_order(*mesh::refined(*mesh::make_distributed(
+                                                           [&] {
+                                                             auto global = make_box(coarse);
+                                                             turn_for_refinement(global);
+                                                             return global;
+                                                           },
+                                                           comm),
+                                                       1));
+    auto at_once = make_box(fine);
+    move_to_quarter_points(at_once);
+    move_to_quarter_points(*mesh);
+    std::map<std::array<long long, 3>, int> here, all;
+    const auto add = [&](auto& places, const Real* x) {
+      std::array<long long, 3> key{};
+      for (int i = 0; i < mesh->dim(); ++i) key[i] = std::llround(1e6 * x[i]);
+      ++places[key];
+    };
+    for (GlobalIndex node = 0; node < at_once.n_nodes(); ++node) add(all, &at_once.coordinates[node * at_once.dim()]);
+    for (LocalIndex node = 0; node < mesh->n_nodes(); ++node) add(here, &mesh->coordinates[node * mesh->dim()]);
+    EXPECT_EQ(mesh->n_global_nodes, at_once.n_nodes());
+    if (cell == "triangle") continue;  // diagonals of boxes alternate
+    for (const auto& [place, n] : here) {
+      ASSERT_TRUE(all.count(place)) << cell << " " << place[0] << " " << place[1] << " " << place[2];
+      EXPECT_LE(n, all[place]);
+    }
+    EXPECT_TRUE(comm->getSize() > 1 || here == all) << cell;
   }
 }
 
