@@ -197,16 +197,17 @@ Real worst_inside(const std::array<Vector, 4>& x) {
 
 /// No rank goes on to numbers that its indices cannot hold.
 void check_size(const Mesh& mesh, int times) {
-  const Real factor = std::pow(subdivision(mesh.shape).n_children(), times);
-  const Real most_here = static_cast<Real>(std::numeric_limits<LocalIndex>::max()) / n_nodes(quadratic(mesh.shape)),
-             most = static_cast<Real>(std::numeric_limits<GlobalIndex>::max()) / n_nodes(quadratic(mesh.shape));
+  const Real factor = std::pow(subdivision(mesh.shape).n_children(), times),
+             nodes_per_cell = n_nodes(quadratic(mesh.shape)), here = factor * static_cast<Real>(mesh.n_cells()),
+             all = factor * static_cast<Real>(mesh.n_global_cells),
+             most_here = static_cast<Real>(std::numeric_limits<LocalIndex>::max()) / nodes_per_cell,
+             most = static_cast<Real>(std::numeric_limits<GlobalIndex>::max()) / nodes_per_cell;
   base::collectively(*mesh.comm, [&] {
-    SPREKK_CHECK(factor * static_cast<Real>(mesh.n_cells()) <= most_here &&
-                     factor * static_cast<Real>(mesh.n_global_cells) <= most,
-                 "refinements: {} make {:.3g} cells of {}, and {:.3g} of the {} on rank {} with its ghosts, which may "
-                 "have {:.3g}; take fewer, or more ranks",
-                 times, factor * static_cast<Real>(mesh.n_global_cells), mesh.n_global_cells,
-                 factor * static_cast<Real>(mesh.n_cells()), mesh.n_cells(), mesh.comm->getRank(), most_here);
+    SPREKK_CHECK(
+        here <= most_here && all <= most,
+        "refinements: {} make {:.3g} cells of {}; of these rank {} would hold {:.3g} with its ghosts, may hold "
+        "{:.3g}; take fewer, or more ranks",
+        times, all, mesh.n_global_cells, mesh.comm->getRank(), here, most_here);
   });
 }
 

@@ -17,7 +17,7 @@ import linear  # noqa: E402
 
 SCENE = "seed/immersed_3d.xml"
 EDGE, QUICK = 72, 12  # cubes along an edge of the box: 2.2 million and 10 thousand tetrahedra
-COLUMNS = {"mesh": "", "cells": ",d", "nodes": ",d", "cells of a rank": ",d", "s": ".2f", "MB of rank 0": ",.0f", "MB of others": ",.0f", "byte/cell": ",.0f"}
+COLUMNS = {"mesh": "", "million cells": ".3f", "million nodes": ".3f", "of a rank": ".3f", "s": ".2f", "MB of rank 0": ",.0f", "MB of others": ",.0f", "byte/cell": ",.0f"}
 
 
 def run(options, edge, refinements, ranks):
@@ -31,11 +31,11 @@ def run(options, edge, refinements, ranks):
 
 
 def row(name, found):
-    """Memory is the peak of a rank less what it holds before there is a mesh; a rank's cells include ghosts."""
+    """Memory is the peak of a process less what it holds before there is a mesh; the cells of a rank include ghosts."""
     extra = [1e-6 * (peak - before) for peak, before in zip(found["peak_bytes"], found["peak_bytes_before"])]
     most = int(max(found["local_cells"]))
     seconds = found["seconds_to_distribute"] + found["seconds_to_refine"]
-    return [name, found["cells"], found["nodes"], most, seconds, extra[0], max(extra[1:], default=None), 1e6 * max(extra) / most]
+    return [name, 1e-6 * found["cells"], 1e-6 * found["nodes"], 1e-6 * most, seconds, extra[0], max(extra[1:], default=None), 1e6 * max(extra) / most]
 
 
 def main(words):
@@ -46,7 +46,7 @@ def main(words):
     options = parser.parse_args(words)
     options.output.mkdir(parents=True, exist_ok=True)
     edge = options.edge or (QUICK if options.quick else EDGE)
-    table, cells = linear.Table(COLUMNS, 30), set()
+    table, cells = linear.Table(COLUMNS, 32), set()
     for ranks in (1, options.ranks):
         for refinements in (0, 1, 2) if options.quick else (0, 2, 3):
             name = f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once")
