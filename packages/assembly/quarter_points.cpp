@@ -1,34 +1,31 @@
 #include "assembly/quarter_points.hpp"
 
 #include "assembly/reference_cell.hpp"
+#include "mesh/alike_nodes.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/tips.hpp"
-#include "mesh/union_find.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace sprekk::assembly {
 namespace {
 
-using mesh::GlobalMesh;
 using mesh::operator+;
 using mesh::operator-;
 using mesh::operator*;
 using mesh::Vector;
 
-template <Shape shape>
+/// On a whole mesh, or collectively on every rank's part of it.
+template <Shape shape, class AnyMesh>
 class QuarterPoints {
  public:
   using Cell = ReferenceCell<shape>;
   static constexpr int dim = Cell::dim, n = Cell::n_nodes, n_corners = Cell::n_corners;
 
-  explicit QuarterPoints(GlobalMesh& mesh)
-      : mesh_(mesh), before_(mesh.coordinates), edges_(mesh::CellGeometry(shape).edges()), alike_(mesh.n_nodes()) {
-    for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)
-      alike_.join(static_cast<GlobalIndex>(node), mesh.parent_node[node]);
-    for (GlobalIndex node = mesh.n_free_nodes(); node < mesh.n_nodes(); ++node) alike_.join(node, mesh.free_node(node));
-  }
+  explicit QuarterPoints(AnyMesh& mesh)
+      : mesh_(mesh), before_(mesh.coordinates), edges_(mesh::CellGeometry(shape).edges()), alike_(mesh) {}
 
   void move() {
     mark();
@@ -42,28 +39,31 @@ class QuarterPoints {
 
  private:
   using Edge = mesh::CellGeometry::Edge;
-  enum : char { stays, moves, kept };
+  static constexpr GlobalIndex stays = 0, kept = std::numeric_limits<GlobalIndex>::max();
 
   GlobalIndex node(GlobalIndex cell, int k) const { return mesh_.cells[cell * n + k]; }
-  char& state(GlobalIndex cell, const Edge& edge) { return state_[alike_.find(node(cell, edge.middle))]; }
+  GlobalIndex& state(GlobalIndex cell, const Edge& edge) { return state_[node(cell, edge.middle)]; }
+  bool moves(GlobalIndex cell, const Edge& edge) { return state(cell, edge) != stays && state(cell, edge) != kept; }
+  Vector at(GlobalIndex node) const {
+    Vector x{};
+    std::copy_n(&mesh_.coordinates[node * dim], dim, x.begin());
+    return x;
+  }
 
   /// Finds the edges that are to move, and the cells that have some.
   void mark() {
     const auto is_tip = mesh::tip_nodes(mesh_);
-    if (std::find(is_tip.begin(), is_tip.end(), 1) == is_tip.end()) return;
     state_.assign(mesh_.n_nodes(), stays);
-    end_.assign(mesh_.n_nodes(), -1);
     const auto tip = [&](GlobalIndex cell, int corner) { return is_tip[node(cell, corner)] == 1; };
     for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell) {
       const bool collapses = has_face_of_tips([&](int corner) { return tip(cell, corner); });
       for (const auto& edge : edges_) {
         if (collapses) state(cell, edge) = kept;
         if (tip(cell, edge.from) == tip(cell, edge.to) || state(cell, edge) == kept) continue;
-        state(cell, edge) = moves;
-        end_[alike_.find(node(cell, edge.middle))] =
-            alike_.find(node(cell, tip(cell, edge.from) ? edge.from : edge.to));
+        state(cell, edge) = 1 + alike_[node(cell, tip(cell, edge.from) ? edge.from : edge.to)];
       }
     }
+    alike_.to_largest(state_);
     for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell)
       if (is_moved(cell)) cells_.push_back(cell);
   }
@@ -77,15 +77,15 @@ class QuarterPoints {
   }
 
   bool is_moved(GlobalIndex cell) {
-    return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& edge) { return state(cell, edge) == moves; });
+    return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& edge) { return moves(cell, edge); });
   }
 
   void move_edges(GlobalIndex cell) {
     for (const auto& edge : edges_) {
-      if (state(cell, edge) != moves) continue;
+      if (!moves(cell, edge)) continue;
       const GlobalIndex middle = node(cell, edge.middle), from = node(cell, edge.from), to = node(cell, edge.to);
-      const bool starts = alike_.find(from) == end_[alike_.find(middle)];
-      const Vector tip = point(mesh_, starts ? from : to), other = point(mesh_, starts ? to : from);
+      const bool starts = state(cell, edge) == 1 + alike_[from];
+      const Vector tip = at(starts ? from : to), other = at(starts ? to : from);
       put(middle, tip + 0.25 * (other - tip));
     }
   }
@@ -100,8 +100,7 @@ class QuarterPoints {
     if constexpr (dim == 3)
       for (const auto& face : mesh::face_nodes(shape))
         if (std::any_of(edges_.begin(), edges_.end(), [&](const Edge& edge) {
-              return state(cell, edge) == moves &&
-                     std::find(face.begin() + 4, face.end() - 1, edge.middle) != face.end() - 1;
+              return moves(cell, edge) && std::find(face.begin() + 4, face.end() - 1, edge.middle) != face.end() - 1;
             }))
           put_inside(cell, {face.begin(), face.end() - 1}, face.back());
   }
@@ -112,7 +111,7 @@ class QuarterPoints {
     const Real share = corners == 4 ? 0.5 : 0.25;
     Vector sum{};
     for (std::size_t k = 0; k < around.size(); ++k)
-      sum = sum + (k < corners ? -0.25 : share) * point(mesh_, node(cell, around[k]));
+      sum = sum + (k < corners ? -0.25 : share) * at(node(cell, around[k]));
     put(node(cell, inside), sum);
   }
 
@@ -126,7 +125,9 @@ class QuarterPoints {
       any = true;
       for (const auto& edge : edges_) state(cell, edge) = kept;
     }
-    return any;
+    if (!alike_.any(any)) return false;
+    alike_.to_largest(state_);
+    return true;
   }
 
   bool is_valid(GlobalIndex cell) const {
@@ -145,21 +146,24 @@ class QuarterPoints {
     return true;
   }
 
-  GlobalMesh& mesh_;
+  AnyMesh& mesh_;
   const std::vector<Real> before_;  // coordinates
   const std::vector<Edge> edges_;
-  mesh::UnionFind alike_;           // nodes: copies of one another, or tied
-  std::vector<char> state_;         // [node on an edge, the first of those alike]
-  std::vector<GlobalIndex> end_;    // [node on an edge, the first of those alike] the tip, the first of those alike
+  mesh::AlikeNodes alike_;
+  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip towards which it moves
   std::vector<GlobalIndex> cells_;  // that have edges to move
 };
 
-}  // namespace
-
-void move_to_quarter_points(GlobalMesh& mesh) {
+template <class AnyMesh>
+void move_in(AnyMesh& mesh) {
   mesh::for_shape(mesh.shape, [&](auto shape) {
-    if constexpr (mesh::order(shape()) == 2) QuarterPoints<shape()>(mesh).move();
+    if constexpr (mesh::order(shape()) == 2) QuarterPoints<shape(), AnyMesh>(mesh).move();
   });
 }
+
+}  // namespace
+
+void move_to_quarter_points(mesh::GlobalMesh& mesh) { move_in(mesh); }
+void move_to_quarter_points(mesh::Mesh& mesh) { move_in(mesh); }
 
 }  // namespace sprekk::assembly

@@ -18,4 +18,7 @@ namespace sprekk::assembly {
 /// `mesh` is split; nothing happens in a mesh of order 1. Not collective.
 void move_to_quarter_points(mesh::GlobalMesh& mesh);
 
+/// The same of every rank's part, which has no tied nodes. Collective.
+void move_to_quarter_points(mesh::Mesh& mesh);
+
 }  // namespace sprekk::assembly

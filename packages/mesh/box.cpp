@@ -307,6 +307,16 @@ void BoxMesh::Region::describe(base::Section& s) {
   s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
 }
 
+void describe_refinements(base::Section& s, int& refinements, const std::vector<std::string>& periodic) {
+  s.entry(
+      refinements, "refinements", "-", base::between(0, 20),
+      "how often every cell is cut into 4 (2D) or 8 (3D) smaller ones, by all ranks at once after the mesh has been "
+      "distributed: for meshes larger than the memory of one rank");
+  if (refinements > 0 && !periodic.empty())
+    s.fail("refinements",
+           fmt::format("is {}, must be 0 with \"periodic\"; make the cells smaller instead", refinements));
+}
+
 void describe_tips(base::Section& s, std::string& tips) {
   s.choice(tips, "tips", {"enriched", "plain"},
            "crack tips; enriched: displacements grow with the square root of the distance from them, at order 1 by "
@@ -329,6 +339,7 @@ void BoxMesh::describe(base::Section& s) {
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
   s.entry(periodic, "periodic", "-",
           "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
+  describe_refinements(s, refinements, periodic);
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; without it the order is regular");
   if (!s.complete()) return;

@@ -34,6 +34,7 @@ struct BoxMesh {
   std::vector<Real> lower_corner{0, 0}, upper_corner{1, 1};  ///< metre, before the rotation
   std::vector<int> cells{1, 1};                              ///< squares or cubes in each direction
   int order = 1;                                             ///< of the cells: 1 or 2
+  int refinements = 0;                                       ///< see describe_refinements(); no matter to make_box()
   std::string tips = "enriched";          ///< what is done about crack tips, see describe(); no matter to make_box()
   std::map<std::string, Region> regions;  ///< besides "bulk"; of several that hold a cell the last by name counts
   std::map<std::string, Fracture> fractures;
@@ -43,6 +44,10 @@ struct BoxMesh {
   std::vector<std::string> periodic;  ///< directions x, y, z in which opposite sides are tied, see tie_periodic()
   void describe(base::Section& section);
 };
+
+/// The entry of any mesh's section that says how often cells are refined once they are distributed; `periodic` are its
+/// entries of that name, which must be empty then.
+void describe_refinements(base::Section& section, int& refinements, const std::vector<std::string>& periodic);
 
 /// The entry of any mesh's section that says what is done about crack tips.
 void describe_tips(base::Section& section, std::string& tips);

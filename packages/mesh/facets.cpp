@@ -6,6 +6,16 @@
 #include "base/check.hpp"
 
 namespace sprekk::mesh {
+namespace {
+
+FaceCorners corners_of(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  const auto nodes = nodes_of_face(mesh, cell, local_face);
+  FaceCorners result{{}, n_face_corners(mesh.shape)};
+  for (int k = 0; k < result.n; ++k) result.x[k] = point(mesh, nodes[k]);
+  return result;
+}
+
+}  // namespace
 
 Vector point(const GlobalMesh& mesh, GlobalIndex node) {
   Vector x{};
@@ -21,10 +31,9 @@ std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, Gl
   return nodes;
 }
 
-Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
-  const auto nodes = nodes_of_face(mesh, cell, local_face);
-  const auto edge = [&](int from, int to) { return point(mesh, nodes[to]) - point(mesh, nodes[from]); };
-  switch (n_face_corners(mesh.shape)) {
+Vector area_vector(const FaceCorners& corners) {
+  const auto edge = [&](int from, int to) { return corners.x[to] - corners.x[from]; };
+  switch (corners.n) {
     case 2:
       return {edge(0, 1)[1], -edge(0, 1)[0], 0};
     case 3:
@@ -34,12 +43,18 @@ Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
   }
 }
 
-Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
-  const int n = n_face_corners(mesh.shape);
-  const auto nodes = nodes_of_face(mesh, cell, local_face);
+Vector face_centre(const FaceCorners& corners) {
   Vector sum{};
-  for (int k = 0; k < n; ++k) sum = sum + point(mesh, nodes[k]);
-  return (1.0 / n) * sum;
+  for (int k = 0; k < corners.n; ++k) sum = sum + corners.x[k];
+  return (1.0 / corners.n) * sum;
+}
+
+Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  return area_vector(corners_of(mesh, cell, local_face));
+}
+
+Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  return face_centre(corners_of(mesh, cell, local_face));
 }
 
 std::array<Vector, 3> face_frame(const Vector& direction, int dim) {

@@ -25,10 +25,19 @@ Vector point(const GlobalMesh& mesh, GlobalIndex node);
 /// Nodes of a cell's face in the order of face_nodes(shape); unused entries are -1.
 std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
-/// Area times outward unit normal of a cell's face; in 2D length times normal. Exact for plane faces.
+/// The corners of a face in order around it, and how many they are.
+struct FaceCorners {
+  std::array<Vector, 4> x;
+  int n;
+};
+
+/// Area times unit normal of a face, outward where the corners are ordered as in face_nodes(); in 2D length times
+/// normal. Exact for plane faces.
+Vector area_vector(const FaceCorners& corners);
 Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
-/// Mean of the corners of a cell's face.
+/// Mean of the corners of a face.
+Vector face_centre(const FaceCorners& corners);
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
 /// Rows n, t1, t2 of the frame whose normal n points along `direction`. 2D: t1 = (n_y, -n_x), t2 = 0.

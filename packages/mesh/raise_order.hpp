@@ -11,4 +11,9 @@ namespace sprekk::mesh {
 /// fracture opens. Linear in the number of cells.
 GlobalMesh raise_order(GlobalMesh mesh);
 
+/// The same of a distributed mesh, which is split: places in fractures get a node for each set of cells that faces
+/// connect which are in no fracture. Cells and their ghosts stay; the numbers of nodes do not depend on the ranks.
+/// Throws an Error if there are tied nodes, or crack tips that are marked. Collective.
+RCP<Mesh> raise_order(const Mesh& mesh);
+
 }  // namespace sprekk::mesh

@@ -176,6 +176,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   {
     const auto scope = timers_->scope("mesh");
     mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
+    mesh = draft.value.refined(mesh);
   }
   scene_ = std::move(draft.value);
   std::vector<std::unique_ptr<assembly::Module>> modules;

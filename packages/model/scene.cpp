@@ -6,6 +6,8 @@
 #include "base/xml.hpp"
 #include "mesh/msh_reader.hpp"
 #include "mesh/periodic.hpp"
+#include "mesh/raise_order.hpp"
+#include "mesh/refine.hpp"
 #include "mesh/tips.hpp"
 #include "model/material_library.hpp"
 #include "model/scene_check.hpp"
@@ -240,6 +242,7 @@ void MeshFile::describe(base::Section& s) {
       "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
   if (periodic.size() % 2 == 1)
     s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
+  mesh::describe_refinements(s, refinements, periodic);
   s.named_sections(fractures, "fractures", "the physical groups that are fractures, by their names");
 }
 
@@ -265,22 +268,47 @@ void Scene::describe(base::Section& s) {
   add_library_materials(materials, used);
 }
 
+/// Does about crack tips what the entry says.
+template <class AnyMesh>
+void enrich(AnyMesh& mesh, const std::string& tips) {
+  if (tips == "plain") return;
+  if (mesh::order(mesh.shape) == 1) {
+    mesh::mark_tips(mesh);
+  } else {
+    assembly::move_to_quarter_points(mesh);
+    mesh.tip = mesh::tip_nodes(mesh);
+  }
+}
+
 mesh::GlobalMesh Scene::make_mesh() const {
   auto result = read_mesh();
-  if ((mesh_file ? mesh_file->tips : mesh.tips) == "plain") return result;
-  if (mesh::order(result.shape) == 1) {
-    mesh::mark_tips(result);
-  } else {
-    assembly::move_to_quarter_points(result);
-    result.tip = mesh::tip_nodes(result);
-  }
+  if (refinements() > 0)
+    mesh::turn_for_refinement(result);
+  else
+    enrich(result, tips());
   return result;
 }
 
+RCP<const mesh::Mesh> Scene::refined(RCP<const mesh::Mesh> coarse) const {
+  if (refinements() == 0) return coarse;
+  auto fine = mesh::refined(*coarse, refinements());
+  if ((mesh_file ? mesh_file->order.value_or(1) : mesh.order) == 2) fine = mesh::raise_order(*fine);
+  enrich(*fine, tips());
+  return fine;
+}
+
+const std::string& Scene::tips() const { return mesh_file ? mesh_file->tips : mesh.tips; }
+
+int Scene::refinements() const { return mesh_file ? mesh_file->refinements : mesh.refinements; }
+
 mesh::GlobalMesh Scene::read_mesh() const {
-  if (!mesh_file) return mesh::make_box(mesh);
+  if (!mesh_file) {
+    auto box = mesh;
+    if (refinements() > 0) box.order = 1;
+    return mesh::make_box(box);
+  }
   mesh::MshOptions options;
-  options.order = mesh_file->order;
+  if (refinements() == 0) options.order = mesh_file->order;
   for (const auto& [name, fracture] : mesh_file->fractures) {
     auto& orientation = options.fractures[name];
     orientation.swap_sides = fracture.swap_sides;
@@ -292,7 +320,11 @@ mesh::GlobalMesh Scene::read_mesh() const {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (std::size_t i = 0; i + 1 < mesh_file->periodic.size(); i += 2)
     pairs.emplace_back(mesh_file->periodic[i], mesh_file->periodic[i + 1]);
-  return mesh::tie_periodic(mesh::read_msh(mesh_file->path, options), pairs);
+  auto result = mesh::read_msh(mesh_file->path, options);
+  SPREKK_CHECK(refinements() == 0 || mesh::order(result.shape) == 1,
+               "Mesh file > \"refinements\": is {}, must be 0 for cells of order 2 as in {}", refinements(),
+               mesh_file->path);
+  return mesh::tie_periodic(result, pairs);
 }
 
 physics::InitialStress Scene::initial_stress() const {

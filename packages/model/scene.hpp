@@ -76,6 +76,7 @@ struct MeshFile {
   };
   std::string path;                           ///< relative to the scene's file; of a host, to the current directory
   std::optional<int> order;                   ///< of the cells, 1 or 2; absent: as in the file
+  int refinements = 0;                        ///< see mesh::describe_refinements()
   std::string tips = "enriched";              ///< see mesh::describe_tips()
   std::vector<std::string> periodic;          ///< boundaries in pairs, see mesh::tie_periodic()
   std::map<std::string, Fracture> fractures;  ///< the physical groups that are fractures
@@ -142,9 +143,13 @@ struct Scene {
   Real augmentation = physics::ElasticPlasticJumpParameters().augmentation;
 
   void describe(base::Section& section);
-  /// The global mesh of either kind. Not collective.
+  /// The global mesh of either kind; if it is to be refined, as refined() takes it. Not collective.
   mesh::GlobalMesh make_mesh() const;
+  /// What is left to do once make_mesh() has been distributed: refinement, and what comes after it. Collective.
+  RCP<const mesh::Mesh> refined(RCP<const mesh::Mesh> mesh) const;
   mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
+  int refinements() const;             ///< of the mesh that is used
+  const std::string& tips() const;     ///< the same
   const Material& material_of(const std::string& region) const;
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;

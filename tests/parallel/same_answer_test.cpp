@@ -113,6 +113,12 @@ TEST(SameAnswer, LoadsAndVaryingMaterials) {
                                                          "Materials.rock.shear modulus=1e6*(1 + y)"}));
 }
 
+TEST(SameAnswer, Refined) {
+  expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=2"}));
+  expect_same_answer(read_scene("gmsh/crossing.xml", {"Mesh file.refinements=1"}));
+  expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=1", "Mesh.order=2"}));
+}
+
 TEST(SameAnswer, ScenesOfTheThesis) {
   for (const char* name : {"push_2d", "push_3d", "pull_2d", "pull_3d", "immersed_2d"}) {
     SCOPED_TRACE(name);

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/distribute.hpp"
+#include "mesh/raise_order.hpp"
+#include "mesh/refine.hpp"
 #include "mesh/tips.hpp"
 
 namespace sprekk::assembly {
@@ -219,6 +222,44 @@ TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
     }
     EXPECT_GT(moved_copies, 0);
     EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+  }
+}
+
+/// As many nodes at the same places as in the box of twice the cells, on any number of ranks.
+TEST(QuarterPoints, OfPartsThatWereRefined) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    auto parameters = box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 1, 3, 3}});
+    if (!is_flat(cell)) {  // its front ends in the other, whose far side has no tips
+      parameters.fractures["f1"].lower_corner = {2, 1, 1};
+      parameters.fractures["f1"].upper_corner = {3, 2, 1};
+    }
+    auto fine = parameters;
+    for (int& n : fine.cells) n *= 2;
+    auto at_once = make_box(fine);
+    move_to_quarter_points(at_once);
+    parameters.order = 1;
+    auto coarse = make_box(parameters);
+    turn_for_refinement(coarse);
+    std::vector<int> part;
+    for (GlobalIndex c = 0; c < coarse.n_cells(); ++c) part.push_back(static_cast<int>(c * c % 7) % comm->getSize());
+    const auto mesh = mesh::raise_order(*mesh::refined(*distribute(coarse, part, comm), 1));
+    move_to_quarter_points(*mesh);
+    EXPECT_EQ(mesh->n_global_nodes, at_once.n_nodes());
+    if (cell == "triangle") continue;  // diagonals of boxes alternate
+    std::map<std::array<long long, 3>, int> here, all;
+    const auto add = [&](auto& places, const Real* x) {
+      std::array<long long, 3> key{};
+      for (int i = 0; i < mesh->dim(); ++i) key[i] = std::llround(1e6 * x[i]);
+      ++places[key];
+    };
+    for (GlobalIndex node = 0; node < at_once.n_nodes(); ++node) add(all, &at_once.coordinates[node * at_once.dim()]);
+    for (LocalIndex node = 0; node < mesh->n_nodes(); ++node) add(here, &mesh->coordinates[node * mesh->dim()]);
+    for (const auto& [place, n] : here) {
+      ASSERT_TRUE(all.count(place)) << cell << " " << place[0] << " " << place[1] << " " << place[2];
+      EXPECT_LE(n, all[place]);
+    }
+    EXPECT_TRUE(comm->getSize() > 1 || here == all) << cell;
   }
 }
 

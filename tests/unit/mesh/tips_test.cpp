@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Tpetra_Core.hpp>
 #include <algorithm>
 
+#include "mesh/distribute.hpp"
 #include "meshes.hpp"
+#include "parts.hpp"
 
 namespace sprekk::mesh::testing {
 namespace {
@@ -56,6 +59,26 @@ TEST(Tips, OfASquareAreItsRim) {
     auto box = unit_steps(cell, {5, 5, 4});
     box.fractures["a"] = fracture({1, 1, 2}, {4, 4, 2});
     EXPECT_EQ(places_of_tips(make_box(box)).size(), 12u) << cell;
+  }
+}
+
+/// Between two fractures a cell apart there are faces with tips only.
+TEST(Tips, OnPartsAsOnTheWhole) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells) {
+    const bool flat = dim_of(cell) == 2;
+    auto box = unit_steps(cell, flat ? std::vector<int>{6, 4} : std::vector<int>{6, 4, 2});
+    box.fractures["a"] = line(flat, {1, 2}, {3, 2});
+    box.fractures["b"] = line(flat, {4, 2}, {5, 2});
+    for (const auto& global : {make_box(crossed(cell)), make_box(box)}) {
+      auto marked = global;
+      mark_tips(marked);
+      std::vector<int> part;
+      for (GlobalIndex c = 0; c < global.n_cells(); ++c) part.push_back(static_cast<int>(c * c % 7) % comm->getSize());
+      auto mesh = *distribute(global, part, comm);
+      mark_tips(mesh);
+      expect_identical(mesh, *distribute(marked, part, comm));
+    }
   }
 }
 

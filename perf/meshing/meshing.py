@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Seconds and memory for meshes that one rank makes and sends out, and for the same meshes refined by all ranks.
+
+meshing.cpp makes the mesh of a scene and nothing else."""
+import json
+import os
+import re
+import subprocess
+import sys
+
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "perf/krylov"))
+
+import linear  # noqa: E402
+
+SCENE = "seed/immersed_3d.xml"
+EDGE, QUICK = 72, 12  # cubes along an edge of the box: 2.2 million and 10 thousand tetrahedra
+COLUMNS = {"mesh": "", "million cells": ".3f", "million nodes": ".3f", "of a rank": ".3f", "s": ".2f", "MB of rank 0": ",.0f", "MB of others": ",.0f", "byte/cell": ",.0f"}
+
+
+def run(options, edge, refinements, ranks):
+    coarse = edge >> refinements
+    sets = (*linear.cells(coarse), f"Mesh.refinements={refinements}", *options.set)
+    command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), str(options.program), str(ROOT / "xml" / SCENE), *sets]
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    if done.returncode:
+        sys.exit(f"meshing: {done.stderr.strip()}")
+    return json.loads(done.stdout)
+
+
+def row(name, found):
+    """Memory is the peak of a process less what it holds before there is a mesh; the cells of a rank include ghosts."""
+    extra = [1e-6 * (peak - before) for peak, before in zip(found["peak_bytes"], found["peak_bytes_before"])]
+    most = int(max(found["local_cells"]))
+    seconds = found["seconds_to_distribute"] + found["seconds_to_refine"]
+    return [name, 1e-6 * found["cells"], 1e-6 * found["nodes"], 1e-6 * most, seconds, extra[0], max(extra[1:], default=None), 1e6 * max(extra) / most]
+
+
+def main(words):
+    parser = linear.parser("meshing", __doc__)
+    parser.add_argument("--edge", type=int, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
+    parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several (2)")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/meshing/meshing", help="what meshing.cpp became")
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    edge = options.edge or (QUICK if options.quick else EDGE)
+    table, cells = linear.Table(COLUMNS, 32), set()
+    for ranks in (1, options.ranks):
+        for refinements in (0, 1, 2) if options.quick else (0, 2, 3):
+            name = f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once")
+            if not re.search(options.only, name):
+                continue
+            found = run(options, edge, refinements, ranks)
+            cells.add((found["cells"], found["nodes"], found["fracture_faces"]))
+            table.add(row(name, found))
+    table.write(options.output / "meshing.csv")
+    print(f"\nmeshing.csv in {options.output}")
+    if len(cells) > 1:
+        print(f"missed: the meshes differ in size: {sorted(cells)}")
+    return 1 if len(cells) != 1 else 0
+
+
+def counted(n, what):
+    return f"{n} {what}" + ("s" if n > 1 else "")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
