@@ -11,7 +11,7 @@
 namespace sprekk::mesh {
 
 /// Sets of nodes that are copies of one another or tied to each other. Of a distributed mesh, which has no tied nodes,
-/// the sets reach over the ranks, and all members are collective.
+/// the sets reach over the ranks; construction, to_largest() and any() are collective.
 class AlikeNodes {
  public:
   explicit AlikeNodes(const GlobalMesh& mesh);

@@ -1,14 +1,8 @@
 #include "model/scene.hpp"
 
-#include "assembly/quarter_points.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
-#include "mesh/msh_reader.hpp"
-#include "mesh/periodic.hpp"
-#include "mesh/raise_order.hpp"
-#include "mesh/refine.hpp"
-#include "mesh/tips.hpp"
 #include "model/material_library.hpp"
 #include "model/scene_check.hpp"
 
@@ -266,65 +260,6 @@ void Scene::describe(base::Section& s) {
   for (const auto& [name, region] : regions) used.push_back(region.material);
   for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
   add_library_materials(materials, used);
-}
-
-/// Does about crack tips what the entry says.
-template <class AnyMesh>
-void enrich(AnyMesh& mesh, const std::string& tips) {
-  if (tips == "plain") return;
-  if (mesh::order(mesh.shape) == 1) {
-    mesh::mark_tips(mesh);
-  } else {
-    assembly::move_to_quarter_points(mesh);
-    mesh.tip = mesh::tip_nodes(mesh);
-  }
-}
-
-mesh::GlobalMesh Scene::make_mesh() const {
-  auto result = read_mesh();
-  if (refinements() > 0)
-    mesh::turn_for_refinement(result);
-  else
-    enrich(result, tips());
-  return result;
-}
-
-RCP<const mesh::Mesh> Scene::refined(RCP<const mesh::Mesh> coarse) const {
-  if (refinements() == 0) return coarse;
-  auto fine = mesh::refined(*coarse, refinements());
-  if ((mesh_file ? mesh_file->order.value_or(1) : mesh.order) == 2) fine = mesh::raise_order(*fine);
-  enrich(*fine, tips());
-  return fine;
-}
-
-const std::string& Scene::tips() const { return mesh_file ? mesh_file->tips : mesh.tips; }
-
-int Scene::refinements() const { return mesh_file ? mesh_file->refinements : mesh.refinements; }
-
-mesh::GlobalMesh Scene::read_mesh() const {
-  if (!mesh_file) {
-    auto box = mesh;
-    if (refinements() > 0) box.order = 1;
-    return mesh::make_box(box);
-  }
-  mesh::MshOptions options;
-  if (refinements() == 0) options.order = mesh_file->order;
-  for (const auto& [name, fracture] : mesh_file->fractures) {
-    auto& orientation = options.fractures[name];
-    orientation.swap_sides = fracture.swap_sides;
-    if (!fracture.reference_normal) continue;
-    orientation.reference.emplace();
-    std::copy_n(fracture.reference_normal->begin(), std::min<std::size_t>(3, fracture.reference_normal->size()),
-                orientation.reference->begin());
-  }
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (std::size_t i = 0; i + 1 < mesh_file->periodic.size(); i += 2)
-    pairs.emplace_back(mesh_file->periodic[i], mesh_file->periodic[i + 1]);
-  auto result = mesh::read_msh(mesh_file->path, options);
-  SPREKK_CHECK(refinements() == 0 || mesh::order(result.shape) == 1,
-               "Mesh file > \"refinements\": is {}, must be 0 for cells of order 2 as in {}", refinements(),
-               mesh_file->path);
-  return mesh::tie_periodic(result, pairs);
 }
 
 physics::InitialStress Scene::initial_stress() const {
