@@ -89,7 +89,7 @@ def networks():
     yield Scene("network 3D K_t=1e-6", box, joint(stiffness="1e-6"))
     yield Scene("network 3D K_t=1e6", box, joint(stiffness="1e6"))
     yield Scene("network 3D mu=0", box, joint(friction=0))
-    yield Scene("network 3D mu=1", box, joint(friction=1))
+    yield Scene("network 3D mu=1", box, joint(friction=1), several=True)
     yield Scene("network 3D mu=2", box, joint(friction=2), refused=PAST_UNIQUENESS)
     yield Scene("network 3D dilation 20", box, joint(dilation=20))
     yield Scene("network 3D all of it", box, joint(stiffness=10, dilation=10, closure="1e-3", normal=10))
