@@ -1,6 +1,7 @@
 #include "assembly/prescribed_error.hpp"
 
 #include "assembly/geometry.hpp"
+#include "base/check.hpp"
 
 #include <algorithm>
 
@@ -14,7 +15,7 @@ LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face,
   return mesh.cells[face.cell * mesh.nodes_per_cell() + mesh::face_nodes(mesh.shape)[face.local_face][k]];
 }
 
-/// The integral of g - I g over a face, and the face's area.
+/// The integral of g - I g over a face, and the face's area. Throws where g has no value.
 template <Shape shape>
 std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, const base::Expression& g,
                            Real t) {
@@ -34,26 +35,33 @@ std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFac
   return {sum, total};
 }
 
+/// Adds to each node's integrals and areas those of the owned faces around it. [ghosted unknown, 2]
+template <Shape shape, class Sums>
+void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletCondition& condition, Real t,
+               const Sums& sums) {
+  for (const auto& face : mesh.boundary_faces) {
+    const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];
+    if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;
+    for (int c = 0; c < n_components; ++c) {
+      if (!condition.values[c]) continue;
+      const auto of_face = missed<shape>(mesh, face, *condition.values[c], t);
+      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+        for (int i = 0; i < 2; ++i) sums(mesh.free_node(node_of(mesh, face, k)) * n_components + c, i) += of_face[i];
+    }
+  }
+}
+
 }  // namespace
 
 fields::Vector prescribed_error(const mesh::Mesh& mesh, const fields::Layout& layout,
                                 const std::vector<DirichletCondition>& conditions, Real t) {
   const int n_components = layout.field().n_components;
   fields::MultiVector local(layout.ghosted(), 2), owned(layout.owned(), 2);  // integrals, areas
-  mesh::for_shape(mesh.shape, [&](auto shape) {
+  base::collectively(*mesh.comm, [&] {
     const auto sums = local.getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (const auto& condition : conditions)
-      for (const auto& face : mesh.boundary_faces) {
-        const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];
-        if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;
-        for (int c = 0; c < n_components; ++c) {
-          if (!condition.values[c]) continue;
-          const auto of_face = missed<shape()>(mesh, face, *condition.values[c], t);
-          for (int k = 0; k < mesh::n_face_nodes(shape()); ++k)
-            for (int i = 0; i < 2; ++i)
-              sums(mesh.free_node(node_of(mesh, face, k)) * n_components + c, i) += of_face[i];
-        }
-      }
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      for (const auto& condition : conditions) add_faces<shape()>(mesh, n_components, condition, t, sums);
+    });
   });
   owned.doExport(local, *layout.import(), Tpetra::ADD);
   fields::Vector result(layout.owned());

@@ -15,7 +15,7 @@ void turn_for_refinement(GlobalMesh& mesh);
 ///
 /// Cells, nodes and fracture faces are numbered independently of the ranks: on any number of them the mesh is the same
 /// to the last bit. Ownership and ghosts are as documented at Mesh, the partition is that of the coarse mesh. No rank
-/// holds more than its part with its ghosts, before and after a step. Linear in the size of the parts.
+/// holds more than its part with its ghosts, before and after a step. Time n log n, memory n, in the size of the parts.
 ///
 /// `mesh` has order 1, no periodic sides and no marked tips. Throws an Error if a part would have more cells or nodes
 /// than a LocalIndex can number, or the mesh more cells than a GlobalIndex can. Collective.

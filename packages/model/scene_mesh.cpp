@@ -69,7 +69,7 @@ mesh::GlobalMesh Scene::read_mesh() const {
     pairs.emplace_back(mesh_file->periodic[i], mesh_file->periodic[i + 1]);
   auto result = mesh::read_msh(mesh_file->path, options);
   SPREKK_CHECK(refinements() == 0 || mesh::order(result.shape) == 1,
-               "Mesh file > \"refinements\": is {}, must be 0 for cells of order 2 as in {}", refinements(),
+               "Sprekk > Mesh file > \"refinements\": is {}, must be 0 for cells of order 2 as in {}", refinements(),
                mesh_file->path);
   return mesh::tie_periodic(result, pairs);
 }

@@ -136,7 +136,7 @@ def pattern(words):
 
 
 def count(words):
-    """A number of ranks, for an option."""
+    """A number of ranks or cells, for an option."""
     if not words.isdecimal() or int(words) < 1:
         raise argparse.ArgumentTypeError(f'"{words}" is no whole number from 1 on')
     return int(words)

@@ -47,7 +47,7 @@ def main(words):
     options.output.mkdir(parents=True, exist_ok=True)
     edge = options.edge or (QUICK if options.quick else EDGE)
     table, cells = linear.Table(COLUMNS, 32), set()
-    for ranks in (1, options.ranks):
+    for ranks in sorted({1, options.ranks}):
         for refinements in (0, 1, 2) if options.quick else (0, 2, 3):
             name = f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once")
             if not re.search(options.only, name):
@@ -55,6 +55,8 @@ def main(words):
             found = run(options, edge, refinements, ranks)
             cells.add((found["cells"], found["nodes"], found["fracture_faces"]))
             table.add(row(name, found))
+    if not cells:
+        sys.exit(f'meshing: no row matches "{options.only}"')
     table.write(options.output / "meshing.csv")
     print(f"\nmeshing.csv in {options.output}")
     if len(cells) > 1:

@@ -14,7 +14,7 @@ import linear  # noqa: E402
 from krylov import STATES  # noqa: E402
 
 STATE = "mixed"
-TIMED = [("timed", 42, ranks) for ranks in (1, 2)]  # cells along an edge of the box: 280 thousand unknowns
+TIMED = 42  # cells along an edge of the box
 STRONG = [("strong", 18, ranks) for ranks in (1, 2, 4, 8, 16)]
 WEAK = [("weak", edge, ranks) for edge, ranks in ((12, 1), (18, 3), (24, 8), (30, 16))]  # about 8000 unknowns per rank
 QUICK = [("strong", 12, ranks) for ranks in (1, 2)]
@@ -80,9 +80,11 @@ def draw(rows, file):
 
 
 def main(words):
-    options = linear.parser("ranks", __doc__).parse_args(words)
+    parser = linear.parser("ranks", __doc__)
+    parser.add_argument("--edge", type=linear.count, default=TIMED, metavar="N", help=f"cells along an edge of the box of the timed scene ({TIMED}, 280 thousand unknowns)")
+    options = parser.parse_args(words)
     options.output.mkdir(parents=True, exist_ok=True)
-    chosen = [row for row in (QUICK if options.quick else TIMED + STRONG + WEAK) if re.search(options.only, f"{row[0]}, {row[2]}")]
+    chosen = [row for row in (QUICK if options.quick else [("timed", options.edge, ranks) for ranks in (1, 2)] + STRONG + WEAK) if re.search(options.only, f"{row[0]}, {row[2]}")]
     if not chosen:
         sys.exit(f'ranks: no row matches "{options.only}"')
     table, rows, failed = linear.Table(COLUMNS, 12), [], []

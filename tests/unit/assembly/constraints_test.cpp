@@ -117,6 +117,14 @@ TEST(Constraints, MissCurvedValuesBetweenNodes) {
   }
 }
 
+/// Values at nodes, but none in the middle of one face.
+TEST(Constraints, HaveNoValueBetweenNodesOnAnyRank) {
+  const Problem p("quadrilateral");
+  const auto conditions = {p.on("lid", "north", {text("sqrt(abs(x-1.5)-0.45)")})};
+  EXPECT_EQ(p.error_of(p.constraints(conditions), 0), "");
+  EXPECT_THROW(prescribed_error(*p.mesh, p.layout, conditions, 0), Error);
+}
+
 /// Order 2 follows a quadratic function, and misses one with fourth derivative g4 by -g4/2880 in the mean of an edge.
 TEST(Constraints, MissLessAtOrderTwo) {
   for (const auto& [formula, missed] : {std::pair{"3*y*y", 0.0}, {"y^4", -24.0 / 2880}}) {
