@@ -75,7 +75,8 @@ def draw(rows, file):
         ax.set_xticks(ticks, ticks)
         ax.minorticks_off()
         ax.set_ylim(0, 1.05 * ax.get_ylim()[1])
-    axes[0].legend(loc="lower left")
+    if axes[0].lines:
+        axes[0].legend(loc="lower left")
     figure.savefig(file, dpi=150)
 
 
