@@ -21,6 +21,7 @@ struct Grip {
   mesh::Vector excess{};  ///< what the traction, an unknown, is above the one that the law answers with, Pa, global
   mesh::Vector traction{}, jump{};  ///< Pa, m, global
   Real augmentation = 0;            ///< c of the face law, Pa/m
+  Real modulus = 0;                 ///< Young's modulus of the softer side, Pa
   Real gap = 0;                     ///< how far the sides are from touching without traction, m
   mesh::Vector away{};              ///< derivative of the gap in the jump
 };

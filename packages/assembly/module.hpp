@@ -86,8 +86,8 @@ class Context {
 /// component).
 struct State {
   Real t = 0, dt = 0;
-  ConstView<Real*> damping = {};  ///< [owned fracture face], see BlockProblem::damp(); empty: zero
-  Real augmentation = 1;          ///< factor of the face law's constant, see BlockProblem::calibrate()
+  ConstView<Real*> damping = {};       ///< [owned fracture face], see BlockProblem::damp(); empty: zero
+  ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };

@@ -296,6 +296,10 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   set_time(memory.t, memory.dt);
   remember(x);
   calibration_ = memory.calibration;
+  augmentation_ = {};
+  if (calibration_.empty()) return;
+  refresh_ghosts(x, false);
+  correct_augmentation(grips());
 }
 
 }  // namespace sprekk::assembly

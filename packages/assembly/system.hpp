@@ -60,9 +60,9 @@ class System : public fields::BlockProblem {
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
   /// What a system has learnt on its way to the last committed state, besides histories.
   struct Memory {
-    Real t = 0, dt = 0;    ///< the time of that state, and of the step to it
-    Scales scales;         ///< of the loads so far
-    Real calibration = 0;  ///< see calibrate()
+    Real t = 0, dt = 0;             ///< the time of that state, and of the step to it
+    Scales scales;                  ///< of the loads so far
+    std::vector<Real> calibration;  ///< see calibrate()
   };
   Memory memory() const { return {t_, dt_, scales_, calibration_}; }  ///< stored data
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
@@ -100,6 +100,8 @@ class System : public fields::BlockProblem {
   bool watches_pieces() const { return loose_ && loose_->possible(); }
   void remember(const fields::BlockVector& x);
   std::vector<Grip> grips();
+  int calibration_class(const Grip& grip) const;
+  void correct_augmentation(const std::vector<Grip>& grips);
   void find_loose();
   /// Adds to dx what of a motion brings the forces along it into balance; with `mode`, of its opposite too. Empty, or
   /// the part that finds no resistance: it goes a little way then, as a mode none.
@@ -126,7 +128,8 @@ class System : public fields::BlockProblem {
   fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
   std::unique_ptr<LoosePieces> loose_;              // null without displacement, or where modules hold bodies
   std::vector<Grip> grips_;                         // of the last calibrate()
-  Real calibration_ = 0;                            // factor of the face law's constant; 0: not yet compared
+  ConstView<Real*> augmentation_;                   // [owned fracture face] factor of the face law's constant
+  std::vector<Real> calibration_;                   // [class of faces] that factor; 0: not yet compared with the rock
   RCP<fields::Vector> committed_;                   // displacement; null: not needed
   RCP<fields::Vector> deformation_;                 // ghosted displacement without rigid motions; null: not needed
   LoosePieces::Motion driven_;                      // where forces out of balance move what is loose, if they do

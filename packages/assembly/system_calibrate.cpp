@@ -1,8 +1,11 @@
 // The constant of the face law, held against the stiffness of the rock.
 #include "assembly/system.hpp"
 
+#include "base/check.hpp"
+
 #include <Teuchos_CommHelpers.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -13,47 +16,78 @@ using fields::BlockVector;
 
 namespace {
 
-constexpr Real usual = 3;  ///< stiffness of the rock, measured as below, over the constant
-constexpr Real near = 10;  ///< factor within which the constant is left alone
+constexpr Real usual = 3;      ///< stiffness of the rock, measured as below, over the constant
+constexpr Real near = 10;      ///< factor within which the constant is left alone
+constexpr int n_classes = 25;  ///< decades of stiffness that are told apart
 enum Sum { worked, of_constant, moved, loaded, area, n_sums };
 
 bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>{}; }
 
 }  // namespace
 
+/// Faces whose rock is of like stiffness, by decades.
+int System::calibration_class(const Grip& grip) const {
+  const Real decade = std::round(std::log10(grip.modulus / reference_.modulus));
+  return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
+}
+
 /// The rock answers a change of traction by a change of jump. From one balanced iterate to the next its stiffness is
 ///   - sum |f| dlambda . dw / sum |f| |dw|^2
-/// over faces that stay closed, weighted by how far each deformation has moved. Measured once: stiffness does not
-/// change, but between later iterates pieces that part move far, which says nothing of it.
+/// over faces of one class that stay closed, weighted by how far each deformation has moved. Measured once: stiffness
+/// does not change, but between later iterates pieces that part move far, which says nothing of it.
 bool System::calibrate(const BlockVector& x, bool first) {
-  if (mesh_->n_global_fracture_faces == 0 || calibration_ != 0) return false;
+  if (mesh_->n_global_fracture_faces == 0) return false;
+  calibration_.resize(n_classes, 0);
+  if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;
   refresh_ghosts(x, false);
   const auto before = std::exchange(grips_, grips());
   if (first) return false;
-  std::array<Real, n_sums> here{}, sums{};
+  std::array<std::array<Real, n_sums>, n_classes> here{}, all{};
   for (std::size_t f = 0; f < grips_.size(); ++f) {
     const auto& now = grips_[f];
+    auto& sums = here[calibration_class(now)];
     const Real size = mesh_->fracture_faces[f].area;
-    here[area] += size;
+    sums[area] += size;
     if (is_open(now) || is_open(before[f])) continue;
     for (int i = 0; i < 3; ++i) {
       const Real jump = now.jump[i] - before[f].jump[i];
       const Real traction = now.traction[i] - before[f].traction[i];
-      here[worked] -= size * traction * jump;
-      here[of_constant] += size * now.augmentation * jump * jump;
-      here[moved] += size * jump * jump;
-      here[loaded] += size * traction * traction;
+      sums[worked] -= size * traction * jump;
+      sums[of_constant] += size * now.augmentation * jump * jump;
+      sums[moved] += size * jump * jump;
+      sums[loaded] += size * traction * traction;
     }
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(n_sums), here.data(), sums.data());
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, n_classes * n_sums, here[0].data(), all[0].data());
   const Real noticeable = 1e-4 * scales_.length;  // without friction no work is done on closed faces
-  if (!(sums[moved] > noticeable * noticeable * sums[area]) ||
-      !(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded])))
-    return false;
-  const Real ratio = sums[worked] / sums[of_constant] / usual;
-  const bool stays = ratio > 1 / near && ratio < near;
-  calibration_ = stays ? 1 : ratio;
-  return !stays;
+  bool corrected = false;
+  for (int k = 0; k < n_classes; ++k) {
+    const auto& sums = all[k];
+    if (sums[area] == 0) calibration_[k] = 1;
+    if (calibration_[k] != 0 || !(sums[moved] > noticeable * noticeable * sums[area]) ||
+        !(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded])))
+      continue;
+    const Real ratio = sums[worked] / sums[of_constant] / usual;
+    const bool stays = ratio > 1 / near && ratio < near;
+    calibration_[k] = stays ? 1 : ratio;
+    corrected |= !stays;
+  }
+  if (corrected) correct_augmentation(grips_);
+  return corrected;
+}
+
+/// Factors of all faces from those of their classes.
+void System::correct_augmentation(const std::vector<Grip>& grips) {
+  SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
+               calibration_.size(), n_classes);
+  View<Real*> factor("factor", grips.size());
+  const auto host = Kokkos::create_mirror_view(factor);
+  for (std::size_t f = 0; f < grips.size(); ++f) {
+    const Real correction = calibration_[calibration_class(grips[f])];
+    host(f) = correction != 0 ? correction : 1;
+  }
+  Kokkos::deep_copy(factor, host);
+  augmentation_ = factor;
 }
 
 }  // namespace sprekk::assembly

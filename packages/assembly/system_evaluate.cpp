@@ -50,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, dt_, damping_, calibration_ != 0 ? calibration_ : 1, {}, history_[module]};
+  State s{t_, dt_, damping_, augmentation_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }

@@ -261,8 +261,10 @@ void Model::restore(const io::Checkpoint& checkpoint) {
   }
   time_ = content.at("time");
   const auto& scales = content.at("scales");
-  system_->resume(
-      x_, {time_, content.at("dt"), {scales.at("stress"), scales.at("length")}, content.value("calibration", Real(0))});
+  system_->resume(x_, {time_,
+                       content.at("dt"),
+                       {scales.at("stress"), scales.at("length")},
+                       content.value("calibration", std::vector<Real>())});
   start_solver();
 }
 

@@ -115,7 +115,8 @@ class ElasticPlasticJump final : public assembly::Module {
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
-  View<Real*> merit_weight_;  // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+  View<Real*> merit_weight_;   // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+  std::vector<Real> modulus_;  // [owned face] Young's, of the softer side, Pa
 };
 
 template <Shape shape, bool tips>
@@ -155,6 +156,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   View<int*> number("number", n_faces);
   View<Real*> augmentation("augmentation", n_faces);
   merit_weight_ = View<Real*>("weight", n_faces * dim);
+  modulus_.assign(n_faces, 0);
   const auto frame_h = Kokkos::create_mirror_view(frame);
   const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
   const auto bubble_h = Kokkos::create_mirror_view(bubble_mean);
@@ -177,8 +179,8 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
     bubble_h(f) = assembly::bubble_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
-    Real modulus = 0;  // of the softer side
-    Real height = 0;   // of the cells
+    Real& modulus = modulus_[f];  // of the softer side
+    Real height = 0;              // of the cells
     for (int side : {mesh::minus, mesh::plus}) {
       const Real E = parameters_.elasticity[elasticity_of(face.cell[side])].youngs_modulus();
       modulus = side == mesh::minus ? E : std::min(modulus, E);
@@ -241,6 +243,7 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
     for (int k = 1; k < dim; ++k) slip[k - 1] = point.w[k];
     const Real slipped = laws::norm(slip);
     grips[f].augmentation += point.constant;
+    grips[f].modulus = modulus_[f];
     grips[f].gap += point.w[0] - gap(slipped, Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {

@@ -22,7 +22,7 @@ namespace sprekk::physics {
 /// | number       | [face]                                                   |      | number of the face's law     |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
 /// | augmentation | [face]                                                   | Pa/m | c, but for the factor        |
-/// | factor       | -                                                        | -    | of c                         |
+/// | factor       | [face]; empty: 1                                         | -    | of c                         |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 template <mesh::Shape shape, bool tips>
@@ -46,10 +46,12 @@ struct JointFace {
   ConstView<Real*> augmentation;
   View<Real**> p_old;
   ConstView<Real*> damping = {};
-  Real factor = 1;
+  ConstView<Real*> factor = {};
 
   /// c, Pa/m, before the stiffness of the joint joins it.
-  KOKKOS_INLINE_FUNCTION Real constant(int f) const { return factor * augmentation(f); }
+  KOKKOS_INLINE_FUNCTION Real constant(int f) const {
+    return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
+  }
   KOKKOS_INLINE_FUNCTION laws::Augmentation constants(int f) const {
     return laws::augmentation(law(number(f)), constant(f));
   }

@@ -83,7 +83,7 @@ class Restart(ProgramTest):
                 self.go(scene, *options, whole, ranks=ranks, output="parts", restart=True)
                 self.expect_same_bits("whole", "parts")
                 if scene == MASONRY:
-                    self.assertNotIn(self.last("whole")[0]["calibration"], (0, 1))
+                    self.assertTrue(any(factor not in (0, 1) for factor in self.last("whole")[0]["calibration"]))
                 self.assertEqual(self.results("parts")["restarts"], [int(first[-1])])
                 shutil.rmtree(self.folder / "whole")
                 shutil.rmtree(self.folder / "parts")
