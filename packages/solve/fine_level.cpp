@@ -35,7 +35,7 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   return S;
 }
 
-/// The same numbers of the unknowns of a map on all ranks, from 0 without gaps.
+/// The matrix with rows and columns numbered from 0 without gaps; it shares the values. Collective.
 RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const auto &rows = A->getRowMap(), &columns = A->getColMap();

@@ -12,7 +12,8 @@ bool have_fine_level(const std::vector<Block>& blocks);
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
 /// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
 /// enrich it. S works on the unknowns that order 1 does not have, and on those that couple to them: of order 2 on all,
-/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve.
+/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve on
+/// rank 0.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);

@@ -40,7 +40,7 @@ def row(name, found):
 
 def main(words):
     parser = linear.parser("meshing", __doc__)
-    parser.add_argument("--edge", type=int, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
+    parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
     parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several (2)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/perf/meshing/meshing", help="what meshing.cpp became")
     options = parser.parse_args(words)
