@@ -1,10 +1,11 @@
-// MueLu for one block, Ifpack2 for another, and the sweep that joins them.
+// Multigrid for one block, Ifpack2 for another, and the sweep that joins them.
 #include <Ifpack2_Factory.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
 #include "solve/fine_level.hpp"
+#include "solve/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -86,9 +87,9 @@ class RaisedDiagonal {
   std::vector<Real> values_;
 };
 
-class Multigrid : public BlockSolver {
+class MueLuMultigrid : public BlockSolver {
  public:
-  Multigrid(const std::string& name, const ParameterList& parameters)
+  MueLuMultigrid(const std::string& name, const ParameterList& parameters)
       : BlockSolver(fmt::format("multigrid of '{}'", name)), parameters_(parameters) {}
 
  private:
@@ -129,6 +130,26 @@ class Multigrid : public BlockSolver {
   ParameterList parameters_;
   RCP<Hierarchy> hierarchy_;
   bool symmetric_ = true;
+};
+
+/// Multigrid on blocks of nodes.
+class NodeMultigrid : public BlockSolver {
+ public:
+  explicit NodeMultigrid(const std::string& name) : BlockSolver(fmt::format("multigrid of '{}'", name)) {}
+
+ private:
+  void prepare(const DiagonalBlock& block, SolverCost& cost) override {
+    if (multigrid_.is_null())
+      multigrid_ = rcp(new Multigrid(block.matrix, block.bulk ? *block.bulk() : *block.matrix, block.block.n_components,
+                                     block.block.near_null_space));
+    multigrid_->setup(block.matrix, block.symmetric);
+    cost.operator_complexity = multigrid_->operator_complexity();
+    cost.bytes = multigrid_->bytes();
+    cost.cycle_bytes = multigrid_->cycle_bytes();
+  }
+  RCP<const Operator> prepared() const override { return multigrid_; }
+
+  RCP<Multigrid> multigrid_;
 };
 
 /// A fine level for one block among others.
@@ -234,7 +255,8 @@ RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& bloc
 }
 
 RCP<BlockSolver> make_multigrid(const ParameterList& muelu, const Block& block) {
-  return rcp(new Multigrid(block.name, multigrid_parameters(muelu, block)));
+  if (!asks_for_muelu(muelu)) return rcp(new NodeMultigrid(block.name));
+  return rcp(new MueLuMultigrid(block.name, multigrid_parameters(muelu, block)));
 }
 
 RCP<const Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) {

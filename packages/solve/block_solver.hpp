@@ -33,6 +33,9 @@ class BlockSolver {
 /// `muelu` goes over the defaults.
 RCP<BlockSolver> make_block_solver(const Teuchos::ParameterList& muelu, const Block& block);
 
+/// Whether MueLu takes the place of multigrid on blocks of nodes: where any of its parameters is given.
+inline bool asks_for_muelu(const Teuchos::ParameterList& muelu) { return muelu.numParams() > 0; }
+
 /// Multigrid on what its coordinates and near null space belong to.
 RCP<BlockSolver> make_multigrid(const Teuchos::ParameterList& muelu, const Block& block);
 

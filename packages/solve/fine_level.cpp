@@ -35,23 +35,6 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   return S;
 }
 
-/// The matrix with rows and columns numbered from 0 without gaps; it shares the values. Collective.
-RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
-  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  const auto &rows = A->getRowMap(), &columns = A->getColMap();
-  const auto map = rcp(new Map(invalid, rows->getNodeNumElements(), 0, rows->getComm()));
-  Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex> of_rows(rows), of_columns(columns);
-  for (LocalIndex i = 0, n = rows->getNodeNumElements(); i < n; ++i)
-    of_rows.replaceLocalValue(i, map->getGlobalElement(i));
-  if (A->getGraph()->getImporter().is_null())
-    Tpetra::deep_copy(of_columns, of_rows);
-  else
-    of_columns.doImport(of_rows, *A->getGraph()->getImporter(), Tpetra::INSERT);
-  const auto numbers = of_columns.getData();
-  const auto column_map = rcp(new Map(invalid, numbers(), 0, rows->getComm()));
-  return rcp(new CrsMatrix(A->getLocalMatrixDevice(), map, column_map, map, map));
-}
-
 /// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; empty, for all, of a
 /// block of order 2.
 std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
@@ -152,38 +135,6 @@ class Cycle : public Operator {
 
 }  // namespace
 
-/// The inverse of a matrix by its factors, on rank 0: the rows around crack tips are few.
-class FineLevel::DirectInverse : public Operator {
- public:
-  explicit DirectInverse(const RCP<const CrsMatrix>& A)
-      : map_(A->getRowMap()), A_(renumbered(A)), solver_(make_direct_solver({}, true)) {}
-  RCP<const Map> getDomainMap() const override { return map_; }
-  RCP<const Map> getRangeMap() const override { return map_; }
-
-  /// Factors the present values. Collective.
-  void setup(bool symmetric) {
-    const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
-    const auto failure = solver_->setup({joined, {A_}, symmetric, {}, A_});
-    SPREKK_CHECK(failure.empty(), "around crack tips: {}", failure);
-  }
-
-  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real, Real) const override {
-    for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
-      Vector from(A_->getRowMap()), to(A_->getRowMap());
-      Kokkos::deep_copy(from.getLocalViewDevice(Tpetra::Access::OverwriteAll),
-                        b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
-      solver_->solve(from, to, 1);
-      Kokkos::deep_copy(y.getVectorNonConst(v)->getLocalViewDevice(Tpetra::Access::OverwriteAll),
-                        to.getLocalViewDevice(Tpetra::Access::ReadOnly));
-    }
-  }
-
- private:
-  RCP<const Map> map_;
-  RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
-  std::unique_ptr<LinearSolver> solver_;
-};
-
 bool have_fine_level(const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
   const bool enriched =
@@ -205,7 +156,7 @@ void FineLevel::setup(const LinearSystem& system) {
   smoothed_->update();
   RCP<const Operator> smoother;
   if (P.is_null()) {
-    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix()));
+    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips"));
     direct_->setup(system.symmetric);
     smoother = direct_;
   } else {

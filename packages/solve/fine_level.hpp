@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solve/block_solver.hpp"
+#include "solve/direct_inverse.hpp"
 
 namespace sprekk::solve {
 
@@ -23,8 +24,6 @@ class FineLevel {
   SolverCost order_one_cost() const { return order_one_->costs().front(); }
 
  private:
-  class DirectInverse;
-
   RCP<BlockSolver> order_one_;
   std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   RCP<DirectInverse> direct_;               // their inverse, of blocks that enrich

@@ -6,6 +6,7 @@
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
 #include "solve/fine_level.hpp"
+#include "solve/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -62,13 +63,13 @@ class IterativeSolver : public LinearSolver {
       : muelu_(options.muelu), parameters_("iterative") {
     check_names(ParameterList(options.muelu).setName("MueLu"), {*MueLu::MasterList::List()});
     check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
-    parameters_.sublist("MueLu") = multigrid_parameters(options.muelu, blocks.front());
+    const int coarse_size = describe_multigrid(blocks.front());
     parameters_.sublist("Belos") = krylov_defaults();
     parameters_.sublist("Belos").setParameters(options.belos);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
     // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
-    if (n <= parameters_.sublist("MueLu").get<int>("coarse: max size")) {
+    if (n <= coarse_size) {
       coarse_ = make_direct_solver(options.mumps, true);
       parameters_.sublist("MUMPS") = coarse_->parameters();
     } else {
@@ -137,6 +138,18 @@ class IterativeSolver : public LinearSolver {
   }
 
  private:
+  /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
+  int describe_multigrid(const Block& block) {
+    if (asks_for_muelu(muelu_)) {
+      parameters_.sublist("MueLu") = multigrid_parameters(muelu_, block);
+      return parameters_.sublist("MueLu").get<int>("coarse: max size");
+    }
+    auto& list = parameters_.sublist("multigrid");
+    list.set("coarsest level", Multigrid::coarse_size, "unknowns at most");
+    list.set("degree of Chebyshev's polynomial", Chebyshev::degree);
+    return Multigrid::coarse_size;
+  }
+
   void make_solvers(const std::vector<Block>& blocks) {
     blocks_ = blocks;
     solvers_.clear();

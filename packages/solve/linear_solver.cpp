@@ -15,7 +15,7 @@ int iterations(const std::vector<LinearReport>& solves) {
 
 void LinearSolverOptions::describe(base::Section& section) {
   section.choice(type, "type", {"auto", "direct", "iterative"},
-                 "direct: MUMPS; iterative: Belos with MueLu; auto: direct up to the limits below");
+                 "direct: MUMPS; iterative: Belos with multigrid; auto: direct up to the limits below");
   section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
   section.entry(forcing, "forcing", "-",
                 "iterative: end a solve early while faces change state, once two accuracies a hundred times apart lead "
@@ -27,7 +27,7 @@ void LinearSolverOptions::describe(base::Section& section) {
                 "absent: true if checkpoints are asked for");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
-  section.passthrough(muelu, "MueLu", "parameters of MueLu");
+  section.passthrough(muelu, "MueLu", "parameters of MueLu; with any, it takes the place of Sprekk's own multigrid");
 }
 
 std::string ChosenSolver::describe() const {

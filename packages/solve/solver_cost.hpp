@@ -16,7 +16,8 @@ struct SolverCost {
   long long n_applications = 0;
   double setup_seconds = 0, application_seconds = 0;
   double operator_complexity = 0;  ///< entries of the matrices of all levels over those of the finest; 0: not multigrid
-  double bytes = 0;                ///< of the coarse matrices: this rank's share of the finest, times what they add
+  double bytes = 0;                ///< that it stores on this rank
+  double cycle_bytes = 0;          ///< of matrices that an application reads on this rank; 0: not known
 };
 
 /// Adds the time that work() takes to `seconds`.

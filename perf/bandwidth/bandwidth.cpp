@@ -159,12 +159,8 @@ json measure(const model::Scene& scene, RCP<const Comm> comm) {
     cycles.push_back(solver.costs().back().application_seconds - before);
   }
   const auto cycle = solver.costs().back();  // multigrid, perhaps below a fine level
-  // Chebyshev smoothing of that degree from zero, the residual, and smoothing again
-  const int degree = solver.parameters().sublist("MueLu").sublist("smoother: params").get<int>("chebyshev: degree");
-  const Real share = cycle.operator_complexity / (cycle.operator_complexity - 1);  // all levels over the coarse ones
   result["V-cycle"] = {{"seconds", median(cycles)},
-                       {"matrix_passes", 2 * degree},
-                       {"matrix_bytes", sum(*comm, cycle.bytes * share)},
+                       {"bytes", sum(*comm, cycle.cycle_bytes)},
                        {"operator_complexity", cycle.operator_complexity}};
   result["triad_bytes"] = sum(*comm, 3.0 * sizeof(Real) * triad_length);
   result["spmv_bytes"] = sum(*comm, bytes(*A));

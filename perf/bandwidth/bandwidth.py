@@ -48,7 +48,7 @@ class Measured:
                 ("SpMV", None, self.spmv, self.share(found["spmv_bytes"], self.spmv), None, "spmv_share"),
                 ("assembly of the bulk", assembly["count"], assembly["seconds"], None, None, "assembly_spmv"),
                 ("structure of the matrices", None, phases["structure of the matrices"]["seconds"], None, None, None),
-                ("V-cycle", None, cycle["seconds"], self.share(cycle["matrix_passes"] * cycle["matrix_bytes"], cycle["seconds"]), None, None),
+                ("V-cycle", None, cycle["seconds"], self.share(cycle["bytes"], cycle["seconds"]), None, None),
                 ("V-cycle and crack tips", None, found["medians"]["preconditioner"], None, None, None),
                 ("elimination", None, self.first["local elimination"]["seconds"], None, None, None),
                 ("first set-up", None, self.first_setup, None, None, None),

@@ -1,0 +1,41 @@
+// Groups of nodes that become the nodes of a coarser level, and the motions of the finer one that they keep.
+#pragma once
+
+#include <vector>
+
+#include "solve/node_matrix.hpp"
+
+namespace sprekk::solve {
+
+/// Which owned nodes are neighbours, in rows as in NodeGraph; without ghosts, and without a node itself.
+struct Neighbours {
+  std::vector<std::size_t> start;
+  std::vector<LocalIndex> node;
+};
+
+/// What is known of the nodes of a level before they are grouped.
+struct Nodes {
+  Neighbours neighbours;
+  std::vector<bool> free;    ///< [node]: couples to others, ghosts included; those that do not are left to smoothing
+  std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
+  int n_modes = 0;
+};
+
+/// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
+/// null for the constant ones. Collective.
+Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes);
+
+/// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours are all in no aggregate yet
+/// makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel and Brezina
+/// 1996). Aggregates hold nodes of one rank only. Stored data.
+struct Aggregates {
+  LocalIndex n = 0;
+  std::vector<LocalIndex> of;
+};
+Aggregates aggregate(const Nodes& nodes);
+
+/// An orthonormal basis of the motions on each aggregate: [node, unknown, mode], zero for motions that others make up.
+/// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis. Stored data.
+std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& aggregates, Nodes& coarse);
+
+}  // namespace sprekk::solve

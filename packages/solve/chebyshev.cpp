@@ -1,0 +1,178 @@
+#include "solve/chebyshev.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <cmath>
+
+#include "solve/node_kernels.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using Policy = Kokkos::RangePolicy<Execution>;
+
+constexpr Real smallest_over_largest = 1.0 / 15, margin = 1.1;  // estimates of the largest come from below
+constexpr int n_powers = 20;  // a few cells unlike all others, as those at crack tips, take more than the usual 10
+
+constexpr int padded(int size) { return (size + 3) / 4 * 4; }
+
+/// A number in [0.5, 1.5) that hardly repeats, for each index of the whole problem.
+KOKKOS_INLINE_FUNCTION Real scattered(unsigned long long i) {
+  i = (i + 1) * 0x9e3779b97f4a7c15ull;  // as splitmix64 (Steele, Lea and Flood 2014)
+  i = (i ^ (i >> 30)) * 0xbf58476d1ce4e5b9ull;
+  i = (i ^ (i >> 27)) * 0x94d049bb133111ebull;
+  return 0.5 + static_cast<Real>((i ^ (i >> 31)) >> 11) * 0x1p-53;
+}
+
+/// out(i, sums) for every row node i with the numbers of (A x) there. Blocks are stored column by column, and read four
+/// numbers at a time, of which the last may be the next column's: these sums are not used. Collective.
+template <int b, class Out>
+void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const View<Real*>& x, const Out& out) {
+  constexpr int lanes = padded(b);
+  constexpr int n_sums = b < 6 ? b : 1;  // of a row, so that an addition need not wait for the one before
+  graph.columns->exchange(x, b);
+  const auto start = graph.start;
+  const auto column = graph.column;
+  Kokkos::parallel_for(
+      "product of nodes", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+        Real sums[n_sums][lanes] = {};
+        const float* a = value.data() + b * b * start(i);
+        for (std::size_t k = start(i); k < start(i + 1); ++k, a += b * b) {
+          const Real* const from = x.data() + static_cast<std::size_t>(column(k)) * b;
+          for (int c = 0; c < b; ++c)
+            for (int r = 0; r < lanes; ++r) sums[c % n_sums][r] += a[c * b + r] * from[c];
+        }
+        for (int k = 1; k < n_sums; ++k)
+          for (int r = 0; r < lanes; ++r) sums[0][r] += sums[k][r];
+        out(i, sums[0]);
+      });
+}
+
+}  // namespace
+
+Chebyshev::Chebyshev(const NodeMatrix& A)
+    : size_(A.height), graph_(A.graph), value_("scaled", A.value.extent(0) + padded(A.height)) {
+  const auto vector = [&](LocalIndex n) { return View<Real*>("smoother", static_cast<std::size_t>(n) * size_); };
+  const auto& halo = *graph_.columns;
+  root_ = View<Real*>("roots", static_cast<std::size_t>(halo.n_all()) * size_);
+  x_ = vector(halo.n_all());
+  next_ = vector(halo.n_all());
+  b_ = vector(halo.n_owned());
+  step_ = vector(halo.n_owned());
+}
+
+void Chebyshev::update(const NodeMatrix& A) {
+  const auto start = graph_.start;
+  const auto column = graph_.column;
+  const auto a = A.value, root = root_;
+  const auto scaled = value_;
+  with_sizes(size_, size_, [&](auto size, auto) {
+    constexpr int b = size();
+    Kokkos::parallel_for(
+        "diagonal", Policy(0, graph_.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const std::size_t begin = start(i), n = start(i + 1) - begin;
+          for (int r = 0; r < b; ++r) {
+            Real diagonal = 0;
+            for (std::size_t k = 0; k < n; ++k)
+              if (column(begin + k) == i) diagonal = std::fabs(a(b * b * begin + (r * n + k) * b + r));
+            root(i * b + r) = diagonal > 0 ? 1 / std::sqrt(diagonal) : 1;
+          }
+        });
+    graph_.columns->exchange(root, b);
+    Kokkos::parallel_for(
+        "scale", Policy(0, graph_.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const std::size_t begin = start(i), n = start(i + 1) - begin;
+          for (int r = 0; r < b; ++r)
+            for (std::size_t k = 0; k < n; ++k)
+              for (int c = 0; c < b; ++c) {
+                const Real value = a(b * b * begin + (r * n + k) * b + c);
+                scaled(b * b * (begin + k) + c * b + r) =
+                    static_cast<float>(value * root(i * b + r) * root(column(begin + k) * b + c));
+              }
+        });
+  });
+  find_largest_eigenvalue();
+}
+
+/// The power method, from the same vector on any number of ranks.
+void Chebyshev::find_largest_eigenvalue() {
+  const auto x = x_, next = next_;
+  const auto& halo = *graph_.columns;
+  const auto nodes = halo.owned()->getLocalMap();
+  const int b = size_;
+  const Policy rows(0, halo.n_owned() * b);
+  Kokkos::parallel_for(
+      "start", rows, KOKKOS_LAMBDA(LocalIndex i) { x(i) = scattered(nodes.getGlobalElement(i / b) * b + i % b); });
+  for (int power = 0; power < n_powers; ++power) {
+    with_sizes(b, b, [&](auto size, auto) {
+      constexpr int m = size();
+      for_scaled_rows<m>(graph_, value_, x, [next](LocalIndex i, const Real* sum) {
+        for (int r = 0; r < m; ++r) next(i * m + r) = sum[r];
+      });
+    });
+    const Real before = square(x), after = square(next);
+    if (!(after > 0)) break;
+    largest_ = std::sqrt(after / before);
+    const Real factor = 1 / std::sqrt(after);
+    Kokkos::parallel_for(
+        "normalise", rows, KOKKOS_LAMBDA(LocalIndex i) { x(i) = factor * next(i); });
+  }
+}
+
+/// Over all owned nodes.
+Real Chebyshev::square(const View<Real*>& x) const {
+  const auto& halo = *graph_.columns;
+  Real here = 0, all = 0;
+  Kokkos::parallel_reduce(
+      "square", Policy(0, halo.n_owned() * size_), KOKKOS_LAMBDA(LocalIndex i, Real & sum) { sum += x(i) * x(i); },
+      here);
+  Teuchos::reduceAll(*halo.owned()->getComm(), Teuchos::REDUCE_SUM, 1, &here, &all);
+  return all;
+}
+
+void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) const {
+  const Real high = margin * largest_, low = smallest_over_largest * largest_;
+  const Real middle = (high + low) / 2, half = (high - low) / 2, sigma = middle / half;
+  const auto root = root_;
+  const auto scaled = b_, step = step_;
+  auto from = x_, to = next_;
+  const Policy rows(0, graph_.n_rows() * size_);
+  Kokkos::parallel_for(
+      "first step", rows, KOKKOS_LAMBDA(LocalIndex i) {
+        scaled(i) = root(i) * b(i);
+        from(i) = step(i) = scaled(i) / middle;
+      });
+  Real rho = 1 / sigma;
+  for (int k = 1; k < degree; ++k) {
+    const Real next_rho = 1 / (2 * sigma - rho), keep = next_rho * rho, gain = 2 * next_rho / half;
+    with_sizes(size_, size_, [&](auto size, auto) {
+      constexpr int m = size();
+      for_scaled_rows<m>(graph_, value_, from, [=](LocalIndex i, const Real* sum) {
+        for (int r = 0; r < m; ++r) {
+          const LocalIndex row = i * m + r;
+          step(row) = keep * step(row) + gain * (scaled(row) - sum[r]);
+          to(row) = from(row) + step(row);
+        }
+      });
+    });
+    std::swap(from, to);
+    rho = next_rho;
+  }
+  Kokkos::parallel_for(
+      "scale back", rows, KOKKOS_LAMBDA(LocalIndex i) {
+        const Real value = root(i) * from(i);
+        x(i) = add ? x(i) + value : value;
+      });
+}
+
+View<Real*> Chebyshev::damped_inverse_diagonal() const {
+  const View<Real*> result("damped inverse diagonal", root_.extent(0));
+  const auto root = root_;
+  const Real damping = 4.0 / 3 / largest_;
+  Kokkos::parallel_for(
+      "damped inverse diagonal", Policy(0, root.extent(0)),
+      KOKKOS_LAMBDA(LocalIndex i) { result(i) = damping * root(i) * root(i); });
+  return result;
+}
+
+}  // namespace sprekk::solve

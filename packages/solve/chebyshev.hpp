@@ -1,0 +1,41 @@
+// Chebyshev's iteration as a smoother.
+#pragma once
+
+#include "solve/node_matrix.hpp"
+
+namespace sprekk::solve {
+
+/// About A^-1 for the upper part of A's spectrum: the polynomial of D^-1 A whose residual is smallest over
+/// [1/15, 1.1] times the largest eigenvalue, D the diagonal (Adams, Brezina, Hu and Tuminaro 2003). It works with
+/// D^-1/2 A D^-1/2 stored in single precision, half of the bytes: a smoother is not exact anyway, and residuals are
+/// computed with A itself. It is linear to double precision. Of a symmetric A it is symmetric. All members are
+/// collective unless they return stored data.
+class Chebyshev {
+ public:
+  static constexpr int degree = 4;
+
+  explicit Chebyshev(const NodeMatrix& A);
+
+  /// Takes the values of A, and looks for its largest eigenvalue.
+  void update(const NodeMatrix& A);
+
+  /// x <- S b, or x += S b; b [owned], x [all].
+  void apply(const View<Real*>& b, const View<Real*>& x, bool add) const;
+
+  /// w D^-1 with w = 4/3 over the largest eigenvalue of D^-1 A, [all nodes, unknown]: what smooths prolongators.
+  View<Real*> damped_inverse_diagonal() const;
+  std::size_t bytes() const { return sizeof(float) * value_.extent(0) + 5 * sizeof(Real) * root_.extent(0); }
+
+ private:
+  void find_largest_eigenvalue();
+  Real square(const View<Real*>& x) const;
+
+  int size_;
+  NodeGraph graph_;
+  View<float*> value_;  // of D^-1/2 A D^-1/2: [entry, column, row], and a few numbers more
+  View<Real*> root_;    // D^-1/2 [all]
+  Real largest_ = 1;
+  mutable View<Real*> b_, step_, x_, next_;  // times D^1/2 or D^-1/2
+};
+
+}  // namespace sprekk::solve

@@ -1,0 +1,384 @@
+#include "solve/galerkin.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "solve/node_kernels.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Map;
+using Policy = Kokkos::RangePolicy<Execution>;
+
+constexpr std::uint16_t nowhere = 0xffff;
+
+/// Sets of nodes, one for each row.
+template <class Node>
+struct Rows {
+  View<std::size_t*> start;
+  View<Node*> node;
+};
+
+/// fill(i, set) adds to the empty set of row i, perhaps several times the same.
+template <class Node, class Fill>
+Rows<Node> make_rows(LocalIndex n, const Fill& fill) {
+  std::vector<Node> all, set;
+  Rows<Node> rows{View<std::size_t*>("start", n + 1), {}};
+  for (LocalIndex i = 0; i < n; ++i) {
+    set.clear();
+    fill(i, set);
+    std::sort(set.begin(), set.end());
+    all.insert(all.end(), set.begin(), std::unique(set.begin(), set.end()));
+    rows.start(i + 1) = all.size();
+    SPREKK_CHECK(all.size() - rows.start(i) < nowhere,
+                 "multigrid: a node couples to {} others; allowed are less than {}", all.size() - rows.start(i),
+                 nowhere);
+  }
+  rows.node = View<Node*>("node", all.size());
+  std::copy(all.begin(), all.end(), rows.node.data());
+  return rows;
+}
+
+/// The rows of owned nodes, with those of ghosts after them. Collective.
+Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo) {
+  const LocalIndex n_owned = halo.n_owned(), n_all = halo.n_all();
+  const View<GlobalIndex*> length("length", n_all);
+  for (LocalIndex i = 0; i < n_owned; ++i) length(i) = owned.start(i + 1) - owned.start(i);
+  halo.exchange(length, 1);
+  Rows<GlobalIndex> all{View<std::size_t*>("start", n_all + 1), {}};
+  for (LocalIndex i = 0; i < n_all; ++i) all.start(i + 1) = all.start(i) + length(i);
+  all.node = View<GlobalIndex*>("node", all.start(n_all));
+  std::copy_n(owned.node.data(), owned.node.extent(0), all.node.data());
+  halo.exchange_rows(all.start, all.node, 1);
+  return all;
+}
+
+/// Owned coarse nodes, then all others that the rows name. Collective.
+std::shared_ptr<const Halo> coarse_halo(const RCP<const Map>& owned, const std::vector<Rows<GlobalIndex>>& named) {
+  std::vector<GlobalIndex> others;
+  for (const auto& rows : named)
+    for (std::size_t k = 0; k < rows.node.extent(0); ++k)
+      if (!owned->isNodeGlobalElement(rows.node(k))) others.push_back(rows.node(k));
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  const auto mine = owned->getNodeElementList();
+  std::vector<GlobalIndex> all(mine.begin(), mine.end());
+  all.insert(all.end(), others.begin(), others.end());
+  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  return std::make_shared<Halo>(owned, rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, owned->getComm())));
+}
+
+View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
+  const View<LocalIndex*> local("local", nodes.extent(0));
+  for (std::size_t k = 0; k < nodes.extent(0); ++k) local(k) = map.getLocalElement(nodes(k));
+  return local;
+}
+
+template <class Node>
+Rows<Node> first_rows(const Rows<Node>& rows, LocalIndex n) {
+  return {Kokkos::subview(rows.start, Kokkos::pair(0, n + 1)), rows.node};
+}
+
+/// Where a node is in a sorted row.
+template <class Node>
+std::uint16_t slot_in(const Rows<Node>& rows, LocalIndex row, Node node) {
+  const auto begin = rows.node.data() + rows.start(row), end = rows.node.data() + rows.start(row + 1);
+  const auto at = std::lower_bound(begin, end, node);
+  SPREKK_CHECK(at != end && *at == node, "multigrid: the graph of the matrix is not symmetric");
+  return static_cast<std::uint16_t>(at - begin);
+}
+
+View<std::uint16_t*> to_view(const std::vector<std::uint16_t>& from) {
+  const View<std::uint16_t*> view("slots", from.size());
+  std::copy(from.begin(), from.end(), view.data());
+  return view;
+}
+
+}  // namespace
+
+Galerkin::Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_modes, const std::vector<Real>& tentative)
+    : fine_(A.graph) {
+  const auto& halo = *fine_.columns;
+  const LocalIndex n_owned = halo.n_owned(), n_all = halo.n_all(), n_coarse = aggregates.n;
+  const int size = A.height;
+  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const auto coarse_map = rcp(new Map(invalid, n_coarse, 0, halo.owned()->getComm()));
+
+  const View<GlobalIndex*> aggregate("aggregate", n_all);
+  for (LocalIndex i = 0; i < n_owned; ++i)
+    aggregate(i) = aggregates.of[i] < 0 ? -1 : coarse_map->getGlobalElement(aggregates.of[i]);
+  halo.exchange(aggregate, 1);
+  tentative_ = View<Real*>("tentative prolongator", static_cast<std::size_t>(n_all) * size * n_modes);
+  std::copy(tentative.begin(), tentative.end(), tentative_.data());
+  halo.exchange(tentative_, size * n_modes);
+
+  const auto entries = [&](LocalIndex i, const auto& work) {
+    for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e) work(fine_.column(e), e);
+  };
+  const auto P = with_ghosts(make_rows<GlobalIndex>(n_owned,
+                                                    [&](LocalIndex i, auto& set) {
+                                                      if (aggregate(i) < 0) return;
+                                                      entries(i, [&](LocalIndex j, std::size_t) {
+                                                        if (aggregate(j) >= 0) set.push_back(aggregate(j));
+                                                      });
+                                                    }),
+                             halo);
+  const auto AP = with_ghosts(make_rows<GlobalIndex>(n_owned,
+                                                     [&](LocalIndex i, auto& set) {
+                                                       if (aggregate(i) < 0) return;
+                                                       entries(i, [&](LocalIndex j, std::size_t) {
+                                                         set.insert(set.end(), P.node.data() + P.start(j),
+                                                                    P.node.data() + P.start(j + 1));
+                                                       });
+                                                     }),
+                              halo);
+  const auto coarse = coarse_halo(coarse_map, {P, AP});
+  aggregate_ = to_local(aggregate, *coarse->all());
+  start_P_all_ = P.start;
+  column_P_all_ = to_local(P.node, *coarse->all());
+  start_AP_all_ = AP.start;
+  const auto column_AP = to_local(AP.node, *coarse->all());
+
+  std::vector<std::vector<std::size_t>> in_row(n_coarse);  // entries of P
+  std::vector<LocalIndex> row_of(P.node.extent(0));
+  for (LocalIndex k = 0; k < n_all; ++k)
+    for (std::size_t e = P.start(k); e < P.start(k + 1); ++e) {
+      row_of[e] = k;
+      if (column_P_all_(e) < n_coarse) in_row[column_P_all_(e)].push_back(e);
+    }
+  const auto R = make_rows<LocalIndex>(n_coarse, [&](LocalIndex I, auto& set) {
+    for (const std::size_t e : in_row[I]) set.push_back(row_of[e]);
+  });
+  transposed_ = View<std::size_t*>("transposed", R.node.extent(0));
+  for (LocalIndex I = 0; I < n_coarse; ++I)
+    std::copy(in_row[I].begin(), in_row[I].end(), transposed_.data() + R.start(I));
+  const auto C = make_rows<LocalIndex>(n_coarse, [&](LocalIndex I, auto& set) {
+    for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
+      set.insert(set.end(), column_AP.data() + AP.start(R.node(e)), column_AP.data() + AP.start(R.node(e) + 1));
+  });
+
+  slot_P_ = Slots("slots of P", fine_.n_entries());
+  slot_R_ = Slots("slots of R", fine_.n_entries());
+  first_slot_AP_ = View<std::size_t*>("first slots of A P", n_owned + 1);
+  std::vector<Slot> slots;
+  for (LocalIndex i = 0; i < n_owned; ++i) {
+    const bool free = aggregate(i) >= 0;
+    entries(i, [&](LocalIndex j, std::size_t e) {
+      const bool both = free && aggregate(j) >= 0;
+      slot_P_(e) = both ? slot_in(P, i, aggregate(j)) : nowhere;
+      slot_R_(e) = both ? slot_in(R, aggregate_(i), j) : nowhere;
+      for (std::size_t s = P.start(j); free && s < P.start(j + 1); ++s) slots.push_back(slot_in(AP, i, P.node(s)));
+    });
+    first_slot_AP_(i + 1) = slots.size();
+  }
+  slot_AP_ = to_view(slots);
+  slots.clear();
+  first_slot_coarse_ = View<std::size_t*>("first slots", n_coarse + 1);
+  for (LocalIndex I = 0; I < n_coarse; ++I) {
+    for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
+      for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s)
+        slots.push_back(slot_in(C, I, column_AP(s)));
+    first_slot_coarse_(I + 1) = slots.size();
+  }
+  slot_coarse_ = to_view(slots);
+
+  first_member_ = View<std::size_t*>("first members", n_coarse + 1);
+  for (const LocalIndex I : aggregates.of)
+    if (I >= 0) ++first_member_(I + 1);
+  for (LocalIndex I = 0; I < n_coarse; ++I) first_member_(I + 1) += first_member_(I);
+  member_ = View<LocalIndex*>("members", first_member_(n_coarse));
+  std::vector<std::size_t> next(first_member_.data(), first_member_.data() + n_coarse);
+  for (LocalIndex i = 0; i < n_owned; ++i)
+    if (aggregates.of[i] >= 0) member_(next[aggregates.of[i]]++) = i;
+
+  const auto values = [](std::size_t n) {
+    return View<Real*>(Kokkos::view_alloc("value", Kokkos::WithoutInitializing), n);
+  };
+  const std::size_t n_P = P.start(n_owned), block = static_cast<std::size_t>(size) * n_modes;
+  value_P_all_ = values(block * P.node.extent(0));
+  P_ = {size,
+        n_modes,
+        {coarse, Kokkos::subview(P.start, Kokkos::pair(0, n_owned + 1)),
+         Kokkos::subview(column_P_all_, Kokkos::pair<std::size_t, std::size_t>(0, n_P))},
+        value_P_all_};
+  R_ = {n_modes, size, {fine_.columns, R.start, R.node}, values(block * R.node.extent(0))};
+  coarse_ = {n_modes,
+             n_modes,
+             {coarse, C.start, C.node},
+             values(static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
+}
+
+void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric) {
+  const int block = P_.height * P_.width;
+  smooth(A, inverse_diagonal);
+  fine_.columns->exchange_rows(start_P_all_, value_P_all_, block);
+  if (symmetric)
+    restrict_symmetric();
+  else
+    restrict_general(A, inverse_diagonal);
+  const View<Real*> AP(Kokkos::view_alloc("A P", Kokkos::WithoutInitializing),
+                       block * start_AP_all_(start_AP_all_.extent(0) - 1));
+  multiply_right(A, AP);
+  fine_.columns->exchange_rows(start_AP_all_, AP, block);
+  multiply_left(AP);
+}
+
+void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const {
+  const auto graph = fine_;
+  const auto a = A.value, p = value_P_all_, t = tentative_;
+  const auto start = start_P_all_;
+  const auto slot = slot_P_;
+  with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
+    constexpr int b = size(), m = modes();
+    Kokkos::parallel_for(
+        "smoothed prolongator", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
+                            n_a = graph.start(i + 1) - begin;
+          Real* const row = p.data() + b * m * first;
+          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
+          if (n == 0) return;
+          for (std::size_t k = 0; k < n_a; ++k) {
+            if (slot(begin + k) == nowhere) continue;
+            const LocalIndex j = graph.column(begin + k);
+            const Real* const from = &t(static_cast<std::size_t>(j) * b * m);
+            for (int r = 0; r < b; ++r) {
+              const Real* const a_r = &a(b * b * begin + (r * n_a + k) * b);
+              Real* const to = row + (r * n + slot(begin + k)) * m;
+              const Real w = inverse_diagonal(static_cast<std::size_t>(i) * b + r);
+              for (int c = 0; c < b; ++c)
+                for (int q = 0; q < m; ++q) to[q] -= w * a_r[c] * from[c * m + q];
+              if (i == j)
+                for (int q = 0; q < m; ++q) to[q] += from[r * m + q];
+            }
+          }
+        });
+  });
+}
+
+void Galerkin::restrict_symmetric() const {
+  const auto p = value_P_all_, r = R_.value;
+  const auto start_P = start_P_all_, start = R_.graph.start;
+  const auto column = R_.graph.column;
+  const auto transposed = transposed_;
+  with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
+    constexpr int b = size(), m = modes();
+    Kokkos::parallel_for(
+        "restriction", Policy(0, R_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
+          const std::size_t begin = start(I), n = start(I + 1) - begin;
+          for (std::size_t k = 0; k < n; ++k) {
+            const LocalIndex row = column(begin + k);
+            const std::size_t first = start_P(row), n_p = start_P(row + 1) - first, s = transposed(begin + k) - first;
+            for (int q = 0; q < m; ++q)
+              for (int c = 0; c < b; ++c)
+                r(b * m * begin + (q * n + k) * b + c) = p(b * m * first + (c * n_p + s) * m + q);
+          }
+        });
+  });
+}
+
+void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const {
+  const auto graph = fine_;
+  const auto a = A.value, r = R_.value, t = tentative_;
+  const auto start = R_.graph.start, first_member = first_member_;
+  const auto member = member_;
+  const auto slot = slot_R_;
+  with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
+    constexpr int b = size(), m = modes();
+    Kokkos::parallel_for(
+        "restriction", Policy(0, R_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
+          const std::size_t n = start(I + 1) - start(I);
+          Real* const row = r.data() + b * m * start(I);
+          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
+          for (std::size_t at = first_member(I); at < first_member(I + 1); ++at) {
+            const LocalIndex j = member(at);
+            const std::size_t begin = graph.start(j), n_a = graph.start(j + 1) - begin;
+            const Real* const from = &t(static_cast<std::size_t>(j) * b * m);
+            for (std::size_t k = 0; k < n_a; ++k) {
+              if (slot(begin + k) == nowhere) continue;
+              const LocalIndex column = graph.column(begin + k);
+              for (int q = 0; q < m; ++q) {
+                Real* const to = row + (q * n + slot(begin + k)) * b;
+                for (int c = 0; c < b; ++c) {
+                  Real sum = 0;
+                  for (int d = 0; d < b; ++d) sum += from[d * m + q] * a(b * b * begin + (d * n_a + k) * b + c);
+                  to[c] += (column == j ? from[c * m + q] : 0) -
+                           sum * inverse_diagonal(static_cast<std::size_t>(column) * b + c);
+                }
+              }
+            }
+          }
+        });
+  });
+}
+
+void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP) const {
+  const auto graph = fine_;
+  const auto a = A.value, p = value_P_all_;
+  const auto start_P = start_P_all_, start = start_AP_all_, first_slot = first_slot_AP_;
+  const auto slots = slot_AP_;
+  with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
+    constexpr int b = size(), m = modes();
+    Kokkos::parallel_for(
+        "A P", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
+                            n_a = graph.start(i + 1) - begin;
+          Real* const row = AP.data() + b * m * first;
+          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
+          if (n == 0) return;
+          const Slot* slot = slots.data() + first_slot(i);
+          for (std::size_t k = 0; k < n_a; ++k) {
+            const LocalIndex j = graph.column(begin + k);
+            const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
+            const Real* const from = p.data() + b * m * first_p;
+            const Real* const block = &a(b * b * begin + k * b);
+            for (std::size_t s = 0; s < n_p; ++s, ++slot)
+              for (int r = 0; r < b; ++r) {
+                Real* const to = row + (r * n + *slot) * m;
+                for (int c = 0; c < b; ++c)
+                  for (int q = 0; q < m; ++q) to[q] += block[r * n_a * b + c] * from[(c * n_p + s) * m + q];
+              }
+          }
+        });
+  });
+}
+
+void Galerkin::multiply_left(const View<Real*>& AP) const {
+  const auto r = R_.value, out = coarse_.value;
+  const auto start_R = R_.graph.start, start_AP = start_AP_all_, start = coarse_.graph.start,
+             first_slot = first_slot_coarse_;
+  const auto column_R = R_.graph.column, column = coarse_.graph.column;
+  const auto slots = slot_coarse_;
+  with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
+    constexpr int b = size(), m = modes();
+    Kokkos::parallel_for(
+        "R A P", Policy(0, coarse_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
+          const std::size_t n = start(I + 1) - start(I), begin = start_R(I), n_r = start_R(I + 1) - begin;
+          Real* const row = out.data() + m * m * start(I);
+          for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
+          const Slot* slot = slots.data() + first_slot(I);
+          for (std::size_t k = 0; k < n_r; ++k) {
+            const LocalIndex fine = column_R(begin + k);
+            const std::size_t first = start_AP(fine), n_ap = start_AP(fine + 1) - first;
+            const Real* const from = AP.data() + b * m * first;
+            const Real* const block = &r(b * m * begin + k * b);
+            for (std::size_t s = 0; s < n_ap; ++s, ++slot)
+              for (int q = 0; q < m; ++q) {
+                Real* const to = row + (q * n + *slot) * m;
+                for (int c = 0; c < b; ++c)
+                  for (int d = 0; d < m; ++d) to[d] += block[q * n_r * b + c] * from[(c * n_ap + s) * m + d];
+              }
+          }
+          for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
+            for (int q = 0; q < m && column(start(I) + k) == I; ++q)
+              if (row[(q * n + k) * m + q] == 0) row[(q * n + k) * m + q] = 1;
+        });
+  });
+}
+
+std::size_t Galerkin::bytes() const {
+  return sizeof(Real) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0) + coarse_.value.extent(0)) +
+         sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) + slot_coarse_.extent(0));
+}
+
+}  // namespace sprekk::solve

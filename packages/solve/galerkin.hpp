@@ -1,0 +1,55 @@
+// From one level of multigrid to the next: interpolation by smoothed aggregation, and the coarse matrix.
+#pragma once
+
+#include "solve/aggregates.hpp"
+
+namespace sprekk::solve {
+
+/// P = (I - w D^-1 A) T, R = T^T (I - w A D^-1) and R A P of a matrix A whose values change and whose graph does not,
+/// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
+/// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). Where numbers go is found once, with
+/// the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. The graph of A must
+/// be symmetric.
+class Galerkin {
+ public:
+  /// Makes the graphs. `tentative` [owned node, unknown, mode]. Collective.
+  Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_modes, const std::vector<Real>& tentative);
+
+  /// Makes the matrices for the present values of A; `inverse_diagonal` [all nodes, unknown] is w D^-1. Collective.
+  void update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric);
+
+  const NodeMatrix& prolongation() const { return P_; }  ///< [fine, coarse]
+  const NodeMatrix& restriction() const { return R_; }   ///< [coarse, fine]
+  const NodeMatrix& coarse() const { return coarse_; }
+  std::size_t bytes() const;  ///< of all that is stored
+
+ private:
+  using Slot = std::uint16_t;  // a place in a row
+  using Slots = View<Slot*>;
+
+  void smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
+  void restrict_symmetric() const;
+  void restrict_general(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
+  void multiply_right(const NodeMatrix& A, const View<Real*>& AP) const;
+  void multiply_left(const View<Real*>& AP) const;
+
+  NodeGraph fine_;                  // of A
+  View<Real*> tentative_;           // [all nodes, unknown, mode]
+  View<LocalIndex*> aggregate_;     // [all nodes] its coarse node, -1: none
+  View<std::size_t*> start_P_all_;  // of rows of P, ghosts' included; their values follow the owned ones'
+  View<LocalIndex*> column_P_all_;
+  View<Real*> value_P_all_;
+  View<std::size_t*> start_AP_all_;   // the same of A P
+  Slots slot_P_;                      // [entry of A] where its column's aggregate is in the row of P
+  Slots slot_AP_;                     // [owned row, entry of A, entry of P] where the product goes in the row of A P
+  View<std::size_t*> first_slot_AP_;  // [owned row]
+  View<std::size_t*> transposed_;     // [entry of R] that of P, ghosts' included
+  Slots slot_R_;                      // [entry of A] where its column is in the row of R of its row's aggregate
+  Slots slot_coarse_;                 // [coarse row, entry of R, entry of A P] where the product goes
+  View<std::size_t*> first_slot_coarse_;  // [coarse row]
+  View<std::size_t*> first_member_;       // [coarse row]
+  View<LocalIndex*> member_;
+  NodeMatrix P_, R_, coarse_;
+};
+
+}  // namespace sprekk::solve

@@ -1,0 +1,150 @@
+#include "solve/multigrid.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Map;
+using fields::MultiVector;
+using Policy = Kokkos::RangePolicy<Execution>;
+
+/// Parts of rock that float would make the last matrix singular.
+constexpr Real raised = 1 + 1e-8;
+
+constexpr Real least_coarsening = 0.8;
+
+GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
+
+void raise_diagonal(CrsMatrix& matrix) {
+  const auto local = matrix.getLocalMatrixHost();
+  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
+  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= raised;
+}
+
+}  // namespace
+
+Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
+                     const RCP<const MultiVector>& modes)
+    : map_(matrix->getRowMap()), finest_(matrix), size_(n_components) {
+  add_level(node_matrix(*matrix, size_));
+  const int shares = levels_.front().A.value.data() == matrix->getLocalMatrixHost().values.data();
+  int all_share = 0;
+  Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_MIN, 1, &shares, &all_share);
+  shares_ = all_share == 1;
+  auto nodes = nodes_of(node_matrix(bulk, size_), modes);
+  while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
+    const auto& A = levels_.back().A;
+    const auto aggregates = aggregate(nodes);
+    Nodes coarse;
+    const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
+    auto galerkin = std::make_unique<Galerkin>(A, aggregates, nodes.n_modes, tentative);
+    if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
+    levels_.back().smoother = std::make_unique<Chebyshev>(A);
+    levels_.back().to_coarse = std::move(galerkin);
+    add_level(levels_.back().to_coarse->coarse());
+    nodes = std::move(coarse);
+  }
+}
+
+void Multigrid::add_level(const NodeMatrix& A) {
+  const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
+  const auto& halo = *A.graph.columns;
+  levels_.push_back({A, {}, {}, vector(halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
+}
+
+void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
+  if (matrix != finest_ || !shares_) levels_.front().A.value = node_matrix(*matrix, size_).value;
+  finest_ = matrix;
+  for (auto& level : levels_) {
+    if (!level.to_coarse) continue;
+    level.smoother->update(level.A);
+    level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
+  }
+  const auto last = crs_matrix(levels_.back().A);
+  raise_diagonal(*last);
+  if (last_.is_null()) {
+    last_matrix_ = last;
+    last_ = rcp(new DirectInverse(last_matrix_, "the coarsest level of multigrid"));
+  } else {
+    Kokkos::deep_copy(last_matrix_->getLocalMatrixDevice().values, last->getLocalMatrixDevice().values);
+  }
+  last_->setup(symmetric);
+}
+
+void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const {
+  const auto given = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto result = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  const auto from = levels_.front().b, to = levels_.front().x;
+  const Policy rows(0, from.extent(0));
+  for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
+    Kokkos::parallel_for(
+        "take", rows, KOKKOS_LAMBDA(LocalIndex i) { from(i) = given(i, v); });
+    cycle(0);
+    Kokkos::parallel_for(
+        "give", rows, KOKKOS_LAMBDA(LocalIndex i) {
+          result(i, v) = beta == 0 ? alpha * to(i) : alpha * to(i) + beta * result(i, v);
+        });
+  }
+}
+
+void Multigrid::cycle(std::size_t level) const {
+  const auto& [A, smoother, to_coarse, b, x, r] = levels_[level];
+  if (!to_coarse) return solve_last();
+  smoother->apply(b, x, false);
+  residual(A, x, b, r);
+  product(to_coarse->restriction(), r, levels_[level + 1].b);
+  cycle(level + 1);
+  add_product(to_coarse->prolongation(), levels_[level + 1].x, x);
+  residual(A, x, b, r);
+  smoother->apply(r, x, true);
+}
+
+void Multigrid::solve_last() const {
+  const auto from = levels_.back().b, to = levels_.back().x;
+  MultiVector b(last_->getDomainMap(), 1), x(last_->getRangeMap(), 1);
+  const Policy rows(0, from.extent(0));
+  {
+    const auto values = b.getLocalViewDevice(Tpetra::Access::OverwriteAll);
+    Kokkos::parallel_for(
+        "take", rows, KOKKOS_LAMBDA(LocalIndex i) { values(i, 0) = from(i); });
+  }
+  last_->apply(b, x, Teuchos::NO_TRANS, 1, 0);
+  const auto values = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  Kokkos::parallel_for(
+      "give", rows, KOKKOS_LAMBDA(LocalIndex i) { to(i) = values(i, 0); });
+}
+
+double Multigrid::operator_complexity() const {
+  double sum = 0;
+  for (const auto& level : levels_) sum += level.A.value.extent(0);
+  return levels_.front().A.value.extent(0) > 0 ? sum / levels_.front().A.value.extent(0) : 1;
+}
+
+double Multigrid::bytes() const {
+  double sum = 0;
+  for (const auto& level : levels_) {
+    if (level.smoother) sum += level.smoother->bytes();
+    if (level.to_coarse) sum += level.to_coarse->bytes();
+  }
+  return sum;
+}
+
+/// Of each level: its matrix twice for residuals, its copy in single precision for the smoother, interpolation and
+/// restriction.
+double Multigrid::cycle_bytes() const {
+  double sum = 0;
+  for (const auto& level : levels_) {
+    if (!level.to_coarse) continue;
+    const auto matrix = [](const NodeMatrix& A, std::size_t number) {
+      return static_cast<double>(A.value.extent(0) * number + A.graph.n_entries() * sizeof(LocalIndex));
+    };
+    sum += 2 * matrix(level.A, sizeof(Real)) + 2 * (Chebyshev::degree - 1) * matrix(level.A, sizeof(float));
+    sum += matrix(level.to_coarse->prolongation(), sizeof(Real)) + matrix(level.to_coarse->restriction(), sizeof(Real));
+  }
+  return sum;
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,54 @@
+// Multigrid on blocks of nodes.
+#pragma once
+
+#include "solve/chebyshev.hpp"
+#include "solve/direct_inverse.hpp"
+#include "solve/galerkin.hpp"
+
+namespace sprekk::solve {
+
+/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once; set-ups
+/// are numbers alone. All members are collective unless they return stored data.
+class Multigrid : public fields::Operator {
+ public:
+  static constexpr int coarse_size = 1000;  ///< unknowns of the last level, which is solved directly
+
+  /// Aggregates by `bulk`, which has the graph of the matrices that follow or less, and no edge across an interface,
+  /// so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
+  Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
+            const RCP<const fields::MultiVector>& modes);
+
+  /// Makes ready for the values of a matrix with the graph of the first; it must live until the next set-up.
+  void setup(const RCP<const CrsMatrix>& matrix, bool symmetric);
+
+  RCP<const fields::Map> getDomainMap() const override { return map_; }
+  RCP<const fields::Map> getRangeMap() const override { return map_; }
+  void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real alpha,
+             Real beta) const override;
+
+  double operator_complexity() const;  ///< entries of the matrices of all levels over those of the finest
+  double bytes() const;                ///< that this rank has stored
+  double cycle_bytes() const;          ///< of matrices that this rank reads in a V-cycle
+
+ private:
+  struct Level {
+    NodeMatrix A;
+    std::unique_ptr<Chebyshev> smoother;
+    std::unique_ptr<Galerkin> to_coarse;
+    View<Real*> b, x, r;  // [owned], [all], [all]
+  };
+
+  void add_level(const NodeMatrix& A);
+  void cycle(std::size_t level) const;
+  void solve_last() const;
+
+  RCP<const fields::Map> map_;
+  RCP<const CrsMatrix> finest_;
+  int size_;
+  bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
+  std::vector<Level> levels_;
+  RCP<CrsMatrix> last_matrix_;
+  RCP<DirectInverse> last_;
+};
+
+}  // namespace sprekk::solve

@@ -1,0 +1,201 @@
+#include "solve/node_matrix.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+#include <vector>
+
+#include "solve/node_kernels.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::CrsMatrix;
+using fields::Map;
+
+/// The nodes of unknowns: those of owned ones, and those of all columns, ghosts after them; [local column] -> node.
+struct ColumnNodes {
+  std::shared_ptr<const Halo> halo;
+  std::vector<LocalIndex> node;
+};
+
+ColumnNodes column_nodes(const CrsMatrix& A, int size) {
+  const auto &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const LocalIndex n_owned = rows.getNodeNumElements() / size;
+  std::vector<GlobalIndex> nodes(n_owned);
+  std::unordered_map<GlobalIndex, LocalIndex> local;
+  for (LocalIndex i = 0; i < n_owned; ++i) {
+    nodes[i] = rows.getGlobalElement(size * i) / size;
+    for (int c = 0; c < size; ++c)
+      SPREKK_CHECK(rows.getGlobalElement(size * i + c) == size * nodes[i] + c,
+                   "unknowns of a node must be consecutive");
+    local[nodes[i]] = i;
+  }
+  ColumnNodes result;
+  for (LocalIndex c = 0, n = columns.getNodeNumElements(); c < n; ++c) {
+    const GlobalIndex node = columns.getGlobalElement(c) / size;
+    const auto [at, is_new] = local.emplace(node, static_cast<LocalIndex>(nodes.size()));
+    if (is_new) nodes.push_back(node);
+    result.node.push_back(at->second);
+  }
+  const auto map = [&](std::size_t n) {
+    return rcp(new Map(invalid, Teuchos::arrayView(nodes.data(), n), 0, rows.getComm()));
+  };
+  result.halo = std::make_shared<Halo>(map(n_owned), map(nodes.size()));
+  return result;
+}
+
+/// Whether the unknowns of every node have neighbouring columns, and their rows the same ones.
+template <class Graph>
+bool in_blocks(const Graph& graph, const ColumnNodes& columns, const Map& map, int size) {
+  const auto n_columns = static_cast<LocalIndex>(columns.node.size());
+  for (LocalIndex c = 0; c < n_columns; ++c)
+    if (columns.node[c] != c / size || map.getGlobalElement(c) % size != c % size) return false;
+  if (n_columns % size != 0) return false;
+  for (LocalIndex row = 0, n = graph.numRows(); row < n; ++row) {
+    const auto first = graph.row_map(row - row % size), begin = graph.row_map(row);
+    const auto length = graph.row_map(row + 1) - begin;
+    if (length % size != 0 || graph.row_map(row - row % size + 1) - first != length) return false;
+    for (std::size_t k = 0; k < length; ++k)
+      if (graph.entries(begin + k) != graph.entries(first + k) ||
+          graph.entries(begin + k) % size != static_cast<LocalIndex>(k % size))
+        return false;
+  }
+  return true;
+}
+
+template <class Local>
+NodeMatrix shared(const Local& A, int size) {
+  NodeMatrix result{size, size, {}, A.values};
+  const LocalIndex n = A.numRows() / size;
+  result.graph.start = View<std::size_t*>("start", n + 1);
+  result.graph.column = View<LocalIndex*>("column", A.nnz() / (size * size));
+  for (LocalIndex i = 0; i < n; ++i) {
+    const std::size_t begin = A.graph.row_map(size * i), start = begin / (size * size);
+    const std::size_t length = (A.graph.row_map(size * i + 1) - begin) / size;
+    result.graph.start(i + 1) = start + length;
+    for (std::size_t k = 0; k < length; ++k) result.graph.column(start + k) = A.graph.entries(begin + size * k) / size;
+  }
+  return result;
+}
+
+template <class Local>
+NodeMatrix copied(const Local& A, const ColumnNodes& columns, const Map& map, int size) {
+  NodeMatrix result{size, size, {}, {}};
+  const LocalIndex n = A.numRows() / size;
+  result.graph.start = View<std::size_t*>("start", n + 1);
+  std::vector<LocalIndex> found, last(columns.halo->n_all(), -1);
+  for (LocalIndex i = 0; i < n; ++i) {
+    for (auto k = A.graph.row_map(size * i); k < A.graph.row_map(size * (i + 1)); ++k) {
+      const LocalIndex node = columns.node[A.graph.entries(k)];
+      if (std::exchange(last[node], i) != i) found.push_back(node);
+    }
+    std::sort(found.begin() + result.graph.start(i), found.end());
+    result.graph.start(i + 1) = found.size();
+  }
+  result.graph.column = View<LocalIndex*>("column", found.size());
+  std::copy(found.begin(), found.end(), result.graph.column.data());
+  result.value = View<Real*>("value", size * size * found.size());
+  for (LocalIndex row = 0; row < n * size; ++row) {
+    const std::size_t begin = result.graph.start(row / size), end = result.graph.start(row / size + 1);
+    Real* const values = result.value.data() + size * (size * begin + (row % size) * (end - begin));
+    for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
+      const LocalIndex column = A.graph.entries(k);
+      const auto at = std::lower_bound(found.begin() + begin, found.begin() + end, columns.node[column]);
+      values[size * (at - found.begin() - begin) + map.getGlobalElement(column) % size] = A.values(k);
+    }
+  }
+  return result;
+}
+
+/// out(i, sums, height) for every row node i, with the numbers of (A x) there. Exchanges the ghosts of x first.
+/// Collective.
+template <class Out>
+void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
+  const auto& graph = A.graph;
+  graph.columns->exchange(x, A.width);
+  with_sizes(A.height, A.width, [&](auto height, auto width) {
+    constexpr int h = height(), w = width();
+    constexpr int n_sums = h < 6 && w >= 3 ? 3 : 1;  // of a row, so that an addition need not wait for the one before
+    const auto start = graph.start;
+    const auto column = graph.column;
+    const auto value = A.value;
+    Kokkos::parallel_for(
+        "product of nodes", Kokkos::RangePolicy<Execution>(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const std::size_t begin = start(i), n = start(i + 1) - begin;
+          const Real* row[h];
+          for (int r = 0; r < h; ++r) row[r] = value.data() + w * (h * begin + r * n);
+          Real sums[n_sums][h] = {};
+          for (std::size_t k = 0; k < n; ++k) {
+            const Real* const from = x.data() + static_cast<std::size_t>(column(begin + k)) * w;
+            for (int r = 0; r < h; ++r)
+              for (int c = 0; c < w; ++c) sums[c % n_sums][r] += row[r][k * w + c] * from[c];
+          }
+          for (int k = 1; k < n_sums; ++k)
+            for (int r = 0; r < h; ++r) sums[0][r] += sums[k][r];
+          out(i, sums[0], height);
+        });
+  });
+}
+
+}  // namespace
+
+NodeMatrix node_matrix(const CrsMatrix& A, int size) {
+  const auto columns = column_nodes(A, size);
+  const auto local = A.getLocalMatrixHost();
+  const auto& map = *A.getColMap();
+  auto result = in_blocks(local.graph, columns, map, size) ? shared(local, size) : copied(local, columns, map, size);
+  result.graph.columns = columns.halo;
+  return result;
+}
+
+RCP<CrsMatrix> crs_matrix(const NodeMatrix& A) {
+  const int size = A.height;
+  const auto unknowns = [&](const Map& nodes) {
+    std::vector<GlobalIndex> all;
+    for (const GlobalIndex node : nodes.getNodeElementList())
+      for (int c = 0; c < size; ++c) all.push_back(size * node + c);
+    const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+    return rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, nodes.getComm()));
+  };
+  const auto rows = unknowns(*A.graph.columns->owned()), columns = unknowns(*A.graph.columns->all());
+  const std::size_t n = A.graph.n_rows();
+  Teuchos::ArrayRCP<std::size_t> start(n * size + 1);
+  Teuchos::ArrayRCP<LocalIndex> column(A.value.extent(0));
+  Teuchos::ArrayRCP<Real> value(A.value.extent(0));
+  for (std::size_t i = 0, at = 0; i < n * size; ++i) {
+    const std::size_t begin = A.graph.start(i / size), end = A.graph.start(i / size + 1);
+    const Real* const values = A.value.data() + size * (size * begin + (i % size) * (end - begin));
+    start[i] = at;
+    for (std::size_t k = begin; k < end; ++k)
+      for (int c = 0; c < size; ++c, ++at) {
+        column[at] = size * A.graph.column(k) + c;
+        value[at] = values[size * (k - begin) + c];
+      }
+    start[i + 1] = at;
+  }
+  const auto result = rcp(new CrsMatrix(rows, columns, 0));
+  result->setAllValues(start, column, value);
+  result->expertStaticFillComplete(rows, rows);
+  return result;
+}
+
+void product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y) {
+  for_rows(A, x, [y](LocalIndex i, const Real* sum, auto height) {
+    for (int k = 0; k < height(); ++k) y(i * height() + k) = sum[k];
+  });
+}
+
+void add_product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y) {
+  for_rows(A, x, [y](LocalIndex i, const Real* sum, auto height) {
+    for (int k = 0; k < height(); ++k) y(i * height() + k) += sum[k];
+  });
+}
+
+void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r) {
+  for_rows(A, x, [b, r](LocalIndex i, const Real* sum, auto height) {
+    for (int k = 0; k < height(); ++k) r(i * height() + k) = b(i * height() + k) - sum[k];
+  });
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,42 @@
+// Sparse matrices of dense blocks, one for each pair of nodes that couple.
+#pragma once
+
+#include <memory>
+
+#include "solve/halo.hpp"
+
+namespace sprekk::solve {
+
+/// Which nodes couple: row i has the columns column(start(i)) ... column(start(i + 1) - 1), local numbers of `columns`.
+struct NodeGraph {
+  std::shared_ptr<const Halo> columns;
+  View<std::size_t*> start;
+  View<LocalIndex*> column;
+
+  LocalIndex n_rows() const { return static_cast<LocalIndex>(start.extent(0)) - 1; }
+  std::size_t n_entries() const { return column.extent(0); }
+};
+
+/// Blocks [height, width] on a graph of nodes. Those of row i make `height` rows of numbers, one after another, from
+/// value(height * width * start(i)) on: as Tpetra stores them where the unknowns of a node follow one another.
+struct NodeMatrix {
+  int height = 0, width = 0;
+  NodeGraph graph;
+  View<Real*> value;
+};
+
+/// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
+/// the values of A where A's rows and columns allow that. Collective.
+NodeMatrix node_matrix(const fields::CrsMatrix& A, int size);
+
+/// A square matrix number by number, the unknowns of node n as above. Collective.
+RCP<fields::CrsMatrix> crs_matrix(const NodeMatrix& A);
+
+/// y <- A x with x [all columns], whose ghosts it exchanges first; y [rows]. Collective.
+void product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
+/// y += A x.
+void add_product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
+/// r <- b - A x.
+void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r);
+
+}  // namespace sprekk::solve

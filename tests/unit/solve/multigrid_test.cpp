@@ -1,0 +1,358 @@
+#include "solve/multigrid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <TpetraExt_MatrixMatrix.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_RowMatrixTransposer.hpp>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "base/check.hpp"
+
+namespace sprekk::test {
+namespace {
+
+using fields::CrsMatrix;
+using fields::Map;
+using fields::MultiVector;
+using fields::Vector;
+using solve::NodeMatrix;
+
+/// Bars between all nodes of a cubic lattice [n, n, n] that are at most sqrt(3) apart, each with a stiffness of its
+/// own: rigid motions cost nothing. `held` nodes with x = 0 are prescribed; `skew` makes it unsymmetric and keeps the
+/// translations.
+struct Truss {
+  explicit Truss(int n_, bool held = false, Real skew = 0) : n(n_) {
+    const auto comm = Tpetra::getDefaultComm();
+    const int n_nodes = n * n * n, rank = comm->getRank(), size = comm->getSize();
+    std::vector<GlobalIndex> unknowns;  // uneven parts
+    for (GlobalIndex i = 3 * (GlobalIndex(n_nodes) * rank * rank / (size * size)),
+                     end = 3 * (GlobalIndex(n_nodes) * (rank + 1) * (rank + 1) / (size * size));
+         i < end; ++i)
+      unknowns.push_back(i);
+    map = rcp(new Map(3 * n_nodes, Teuchos::arrayViewFromVector(unknowns), 0, comm));
+    matrix = rcp(new CrsMatrix(map, 81));
+    modes = rcp(new MultiVector(map, 6));
+    for (LocalIndex i = 0; i < static_cast<LocalIndex>(unknowns.size()); i += 3) add(unknowns[i] / 3, i, held, skew);
+    matrix->fillComplete();
+  }
+
+  std::array<int, 3> place(GlobalIndex node) const { return {int(node % n), int(node / n % n), int(node / n / n)}; }
+
+  void add(GlobalIndex node, LocalIndex row, bool held, Real skew) {
+    const auto p = place(node);
+    Real diagonal[3][3] = {};
+    for (int k = 0; k < 27; ++k) {
+      const std::array<int, 3> d = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, q = {p[0] + d[0], p[1] + d[1], p[2] + d[2]};
+      const int square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      if (square == 0 || *std::min_element(q.begin(), q.end()) < 0 || *std::max_element(q.begin(), q.end()) >= n)
+        continue;
+      const GlobalIndex other = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
+      const Real stiffness = (1.5 + std::sin(Real(std::min(node, other) * 7 + std::max(node, other)))) / square;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          const bool prescribed = held && (p[0] == 0 || q[0] == 0);
+          const Real value = stiffness * d[a] * d[b] + (a == b ? skew * (node < other ? 1 : -1) : 0);
+          diagonal[a][b] += value;
+          const Real entry = prescribed ? 0 : -value;
+          const GlobalIndex column = 3 * other + b;
+          matrix->insertGlobalValues(3 * node + a, 1, &entry, &column);
+        }
+    }
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        const Real entry = held && p[0] == 0 ? Real(a == b) : diagonal[a][b];
+        const GlobalIndex column = 3 * node + b;
+        matrix->insertGlobalValues(3 * node + a, 1, &entry, &column);
+      }
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;  // rotation a: x_b -> x_c
+      modes->replaceLocalValue(row + a, a, 1.0);
+      modes->replaceLocalValue(row + c, 3 + a, Real(p[b]));
+      modes->replaceLocalValue(row + b, 3 + a, -Real(p[c]));
+    }
+  }
+
+  int n;
+  RCP<Map> map;
+  RCP<CrsMatrix> matrix;
+  RCP<MultiVector> modes;
+};
+
+View<Real*> random_vector(LocalIndex n_all, int width, unsigned seed) {
+  std::mt19937 generator(seed + 100 * Tpetra::getDefaultComm()->getRank());
+  std::uniform_real_distribution<Real> uniform(-1, 1);
+  const View<Real*> x("x", static_cast<std::size_t>(n_all) * width);
+  for (std::size_t i = 0; i < x.extent(0); ++i) x(i) = uniform(generator);
+  return x;
+}
+
+View<Real*> zeros(LocalIndex n, int width) { return View<Real*>("zeros", static_cast<std::size_t>(n) * width); }
+
+Real dot(const View<Real*>& x, const View<Real*>& y, std::size_t n) {
+  Real here = 0, all = 0;
+  for (std::size_t i = 0; i < n; ++i) here += x(i) * y(i);
+  Teuchos::reduceAll(*Tpetra::getDefaultComm(), Teuchos::REDUCE_SUM, 1, &here, &all);
+  return all;
+}
+
+/// One step from a level to the next, with all that it needs.
+struct Step {
+  explicit Step(const CrsMatrix& matrix, const RCP<MultiVector>& modes, bool symmetric = true)
+      : A(solve::node_matrix(matrix, 3)), nodes(solve::nodes_of(A, modes)), aggregates(solve::aggregate(nodes)) {
+    tentative = solve::tentative_prolongator(nodes, aggregates, coarse_nodes);
+    galerkin = std::make_unique<solve::Galerkin>(A, aggregates, nodes.n_modes, tentative);
+    Vector diagonal(matrix.getRowMap());
+    matrix.getLocalDiagCopy(diagonal);
+    const auto damping = zeros(A.graph.columns->n_all(), 3);
+    for (std::size_t i = 0; i < diagonal.getLocalLength(); ++i) damping(i) = 0.4 / diagonal.getData()[i];
+    A.graph.columns->exchange(damping, 3);
+    galerkin->update(A, damping, symmetric);
+  }
+  NodeMatrix A;
+  solve::Nodes nodes, coarse_nodes;
+  solve::Aggregates aggregates;
+  std::vector<Real> tentative;
+  std::unique_ptr<solve::Galerkin> galerkin;
+};
+
+TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
+  const Truss truss(6, true, 0.1);
+  const auto transposed = Tpetra::RowMatrixTransposer<Real, LocalIndex, GlobalIndex>(truss.matrix).createTranspose();
+  const auto square = rcp(new CrsMatrix(truss.map, 0));  // its columns are in another order
+  Tpetra::MatrixMatrix::Multiply(*truss.matrix, false, *truss.matrix, false, *square);
+  for (const RCP<const CrsMatrix>& matrix :
+       {RCP<const CrsMatrix>(truss.matrix), RCP<const CrsMatrix>(transposed), RCP<const CrsMatrix>(square)}) {
+    const auto A = solve::node_matrix(*matrix, 3);
+    const auto again = solve::crs_matrix(A);
+    const auto& halo = *A.graph.columns;
+    const auto x = random_vector(halo.n_all(), 3, 1), y = zeros(halo.n_owned(), 3), r = zeros(halo.n_all(), 3);
+    Vector from(truss.map), to(truss.map), as_before(truss.map);
+    for (std::size_t i = 0; i < from.getLocalLength(); ++i) from.replaceLocalValue(i, x(i));
+    matrix->apply(from, to);
+    again->apply(from, as_before);
+    solve::product(A, x, y);
+    solve::residual(A, x, y, r);
+    for (std::size_t i = 0; i < from.getLocalLength(); ++i) {
+      EXPECT_NEAR(y(i), to.getData()[i], 1e-12);
+      EXPECT_NEAR(as_before.getData()[i], to.getData()[i], 1e-12);
+      EXPECT_EQ(r(i), 0);
+    }
+  }
+}
+
+TEST(Aggregates, HoldEveryFreeNodeOnceAndNoOther) {
+  const Truss truss(7, true);
+  const auto A = solve::node_matrix(*truss.matrix, 3);
+  const auto nodes = solve::nodes_of(A, truss.modes);
+  const auto aggregates = solve::aggregate(nodes);
+  std::vector<int> members(aggregates.n, 0);
+  for (std::size_t i = 0; i < nodes.free.size(); ++i) {
+    const bool held = truss.place(truss.map->getGlobalElement(3 * i) / 3)[0] == 0;
+    EXPECT_EQ(nodes.free[i], !held);
+    EXPECT_EQ(aggregates.of[i] >= 0, !held);
+    if (!held) ++members.at(aggregates.of[i]);
+    for (int k = 0; k < 18 && held; ++k) EXPECT_EQ(nodes.motion[18 * i + k], 0);
+  }
+  for (const int n : members) EXPECT_GT(n, 0);
+  EXPECT_LT(8 * aggregates.n, static_cast<LocalIndex>(nodes.free.size()) + 64);
+}
+
+/// The basis of each aggregate is orthonormal, and with the coarse motions gives the fine ones.
+TEST(Aggregates, KeepRigidMotions) {
+  const Truss truss(7);
+  const Step step(*truss.matrix, truss.modes);
+  const int m = 6;
+  std::vector<Real> squares(step.aggregates.n * m, 0);
+  for (std::size_t row = 0; row < step.tentative.size() / m; ++row) {
+    const auto I = static_cast<std::size_t>(step.aggregates.of[row / 3]);
+    for (int c = 0; c < m; ++c) {
+      squares[I * m + c] += step.tentative[row * m + c] * step.tentative[row * m + c];
+      Real motion = 0;
+      for (int a = 0; a < m; ++a) motion += step.tentative[row * m + a] * step.coarse_nodes.motion[(I * m + a) * m + c];
+      EXPECT_NEAR(motion, step.nodes.motion[row * m + c], 1e-10);
+    }
+  }
+  for (const Real square : squares) EXPECT_TRUE(square == 0 || std::fabs(square - 1) < 1e-12) << square;
+}
+
+/// A matrix without stiffness against rigid motions: they are interpolated exactly, and cost nothing on the next level.
+TEST(Galerkin, InterpolatesRigidMotions) {
+  const Truss truss(7);
+  const Step step(*truss.matrix, truss.modes);
+  const auto &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+  for (int mode = 0; mode < 6; ++mode) {
+    const auto c = zeros(P.graph.columns->n_all(), 6), fine = zeros(P.graph.n_rows(), 3);
+    for (std::size_t i = 0; i < step.coarse_nodes.motion.size() / 6; ++i) c(i) = step.coarse_nodes.motion[6 * i + mode];
+    solve::product(P, c, fine);
+    for (std::size_t i = 0; i < fine.extent(0); ++i)
+      EXPECT_NEAR(fine(i), step.nodes.motion[6 * i + mode], 1e-10) << mode;
+    const auto force = zeros(coarse.graph.n_rows(), 6);
+    solve::product(coarse, c, force);
+    EXPECT_LT(dot(c, force, force.extent(0)), 1e-10);
+  }
+}
+
+/// coarse = R A P, with R the transpose of P, or of the P that the transpose of the matrix has.
+TEST(Galerkin, MultipliesAndTransposes) {
+  for (const Real skew : {0.0, 0.2}) {
+    const Truss truss(7, true, skew);
+    const bool symmetric = skew == 0;
+    const Step step(*truss.matrix, truss.modes, symmetric);
+    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+    const LocalIndex n_fine = step.A.graph.columns->n_all(), n_coarse = coarse.graph.columns->n_all();
+    const auto c = random_vector(n_coarse, 6, 2), f = random_vector(n_fine, 3, 3);
+
+    const auto fine = zeros(n_fine, 3), product = zeros(n_fine, 3);
+    const auto by_parts = zeros(coarse.graph.n_rows(), 6), at_once = zeros(coarse.graph.n_rows(), 6);
+    solve::product(P, c, fine);
+    solve::product(step.A, fine, product);
+    solve::product(R, product, by_parts);
+    solve::product(coarse, c, at_once);
+    const auto& column = coarse.graph.column;
+    for (LocalIndex I = 0; I < coarse.graph.n_rows(); ++I)
+      for (int q = 0; q < 6; ++q) {
+        Real alone = 0;  // what a mode that the aggregate does not have adds: an entry on the diagonal
+        Real mode = 0;
+        for (std::size_t i = 0; i < step.aggregates.of.size(); ++i)
+          for (int k = 0; k < 3 && step.aggregates.of[i] == I; ++k)
+            mode += std::fabs(step.tentative[(3 * i + k) * 6 + q]);
+        if (mode == 0) alone = c(6 * I + q);
+        EXPECT_NEAR(at_once(6 * I + q), by_parts(6 * I + q) + alone, 1e-10);
+      }
+    EXPECT_GE(column.extent(0), static_cast<std::size_t>(coarse.graph.n_rows()));
+
+    const auto transposed = Tpetra::RowMatrixTransposer<Real, LocalIndex, GlobalIndex>(truss.matrix).createTranspose();
+    const Step other(*transposed, truss.modes, symmetric);
+    const auto restricted = zeros(coarse.graph.n_rows(), 6), interpolated = zeros(n_fine, 3);
+    const auto c_there = zeros(other.galerkin->coarse().graph.columns->n_all(), 6);
+    for (std::size_t i = 0; i < restricted.extent(0); ++i) c_there(i) = c(i);
+    solve::product(R, f, restricted);
+    solve::product(other.galerkin->prolongation(), c_there, interpolated);
+    EXPECT_NEAR(dot(c, restricted, restricted.extent(0)), dot(f, interpolated, 3 * step.A.graph.n_rows()), 1e-10);
+  }
+}
+
+TEST(Galerkin, RefusesGraphsThatAreNotSymmetric) {
+  const auto comm = Tpetra::getDefaultComm();
+  const auto map = rcp(new Map(30, 0, comm));
+  CrsMatrix matrix(map, 2);
+  for (const GlobalIndex row : map->getNodeElementList()) {
+    const Real values[] = {2, -1};
+    const GlobalIndex columns[] = {row, (row + 1) % 30};
+    matrix.insertGlobalValues(row, row < 29 ? 2 : 1, values, columns);
+  }
+  matrix.fillComplete();
+  const auto A = solve::node_matrix(matrix, 1);
+  solve::Nodes coarse, nodes = solve::nodes_of(A, Teuchos::null);
+  solve::Aggregates apart;  // every node alone
+  for (LocalIndex i = 0; i < A.graph.n_rows(); ++i) apart.of.push_back(apart.n++);
+  const auto tentative = solve::tentative_prolongator(nodes, apart, coarse);
+  EXPECT_THROW(base::collectively(*comm, [&] { solve::Galerkin(A, apart, 1, tentative); }), Error);
+}
+
+/// S = S^T, and S damps what multigrid cannot: on the upper part of the spectrum 1 - S A is small.
+TEST(Chebyshev, IsSymmetricAndSmooths) {
+  const Truss truss(8, true);
+  const auto A = solve::node_matrix(*truss.matrix, 3);
+  solve::Chebyshev smoother(A);
+  smoother.update(A);
+  const LocalIndex n_all = A.graph.columns->n_all();
+  const auto x = random_vector(n_all, 3, 4), y = random_vector(n_all, 3, 5), Sx = zeros(n_all, 3), Sy = zeros(n_all, 3);
+  smoother.apply(x, Sx, false);
+  smoother.apply(y, Sy, false);
+  const std::size_t n = 3 * A.graph.n_rows();
+  EXPECT_NEAR(dot(Sx, y, n), dot(x, Sy, n), 1e-6 * std::fabs(dot(x, Sy, n)));  // A is stored in single precision
+
+  const auto e = zeros(n_all, 3), r = zeros(n_all, 3);  // neighbours move against each other
+  for (LocalIndex i = 0; i < A.graph.n_rows(); ++i) {
+    const auto p = truss.place(A.graph.columns->owned()->getGlobalElement(i));
+    for (int k = 0; k < 3 && p[0] > 0; ++k) e(3 * i + k) = (p[0] + p[1] + p[2]) % 2 ? 1 : -1;
+  }
+  const Real before = dot(e, e, n);
+  solve::product(A, e, r);
+  const auto correction = zeros(n_all, 3);
+  smoother.apply(r, correction, false);
+  for (std::size_t i = 0; i < n; ++i) e(i) -= correction(i);
+  EXPECT_LT(std::sqrt(dot(e, e, n) / before), 0.15);
+}
+
+/// The error's factor in an iteration x += M (b - A x), by the power method.
+Real contraction(const Truss& truss, solve::Multigrid& M) {
+  Vector e(truss.map), r(truss.map), correction(truss.map);
+  e.randomize(-1, 1);
+  Real factor = 0;
+  for (int k = 0; k < 30; ++k) {
+    const Real before = e.norm2();
+    truss.matrix->apply(e, r);
+    M.apply(r, correction, Teuchos::NO_TRANS, 1, 0);
+    e.update(-1, correction, 1);
+    factor = e.norm2() / before;
+    e.scale(1 / e.norm2());
+  }
+  return factor;
+}
+
+TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
+  for (const int n : {9, 15}) {
+    const Truss truss(n, true);
+    solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
+    M.setup(truss.matrix, true);
+    EXPECT_LT(contraction(truss, M), 0.35) << n;
+    EXPECT_GT(M.operator_complexity(), n == 9 ? 1.0 : 1.02);
+    EXPECT_LT(M.operator_complexity(), 1.6);
+  }
+}
+
+/// The way of matrices that are not symmetric leads to the same for those that are.
+TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
+  const Truss truss(13, true);
+  Vector b(truss.map), y(truss.map), z(truss.map);
+  b.randomize();
+  solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
+  M.setup(truss.matrix, true);
+  M.apply(b, y, Teuchos::NO_TRANS, 1, 0);
+  M.setup(truss.matrix, false);
+  M.apply(b, z, Teuchos::NO_TRANS, 1, 0);
+  z.update(-1, y, 1);
+  EXPECT_LT(z.normInf(), 1e-9 * y.normInf());
+}
+
+/// alpha M b + beta y of two vectors at once, linear to rounding; other values on the same graph.
+TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
+  const Truss truss(9, true);
+  solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
+  M.setup(truss.matrix, true);
+  MultiVector b(truss.map, 2), Mb(truss.map, 2), y(truss.map, 2);
+  b.randomize();
+  y.putScalar(3);
+  M.apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
+  M.apply(b, y, Teuchos::NO_TRANS, 2, 0.5);
+  y.update(-2, Mb, 1);
+  Vector sum(truss.map), M_sum(truss.map);
+  sum.update(1, *b.getVector(0), 1, *b.getVector(1), 0);
+  M.apply(sum, M_sum, Teuchos::NO_TRANS, 1, 0);
+  M_sum.update(-1, *Mb.getVector(0), -1, *Mb.getVector(1), 1);
+  const Real size = Mb.getVector(0)->normInf();
+  EXPECT_LT(M_sum.normInf(), 1e-12 * size);
+  for (int v = 0; v < 2; ++v) {
+    Vector rest(*y.getVector(v), Teuchos::Copy), ones(truss.map);
+    ones.putScalar(1);
+    rest.update(-1.5, ones, 1);
+    EXPECT_LT(rest.normInf(), 1e-12 * std::max(1.0, size));
+  }
+  truss.matrix->resumeFill();
+  truss.matrix->scale(4);
+  truss.matrix->fillComplete();
+  M.setup(truss.matrix, true);
+  MultiVector quarter(truss.map, 2);
+  M.apply(b, quarter, Teuchos::NO_TRANS, 4, 0);
+  quarter.update(-1, Mb, 1);
+  EXPECT_LT(quarter.getVector(0)->normInf(), 1e-10 * size);
+}
+
+}  // namespace
+}  // namespace sprekk::test
