@@ -171,27 +171,65 @@ Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
   return face_stencil(mesh, loop, field.n_components);
 }
 
+namespace {
+
+auto to_host(const ConstView<LocalIndex**>& table) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), table);
+}
+using HostTable = decltype(to_host({}));
+
+/// Which entities of a stencil write an owned row, by the first row of a group.
+class Writers {
+ public:
+  Writers(const Stencil& rows, LocalIndex n_rows) : start_(n_rows + 2, 0) {
+    const auto first = to_host(rows.first);
+    const auto for_owned = [&](const auto& visit) {
+      for (std::size_t e = 0; e < first.extent(0); ++e)
+        for (std::size_t r = 0; r < first.extent(1); ++r)
+          if (const LocalIndex row = first(e, r); row >= 0 && row < n_rows)
+            visit(row, std::array<LocalIndex, 2>{static_cast<LocalIndex>(e), static_cast<LocalIndex>(r)});
+    };
+    for_owned([&](LocalIndex row, const auto&) { ++start_[row + 2]; });
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    entries_.resize(start_.back());
+    for_owned([&](LocalIndex row, const auto& entry) { entries_[start_[row + 1]++] = entry; });
+  }
+
+  /// Calls visit(entity, group of the entity) for all that write a group of rows.
+  template <class Visit>
+  void for_each(LocalIndex first_row, const Visit& visit) const {
+    for (LocalIndex k = start_[first_row]; k < start_[first_row + 1]; ++k) visit(entries_[k][0], entries_[k][1]);
+  }
+
+ private:
+  std::vector<LocalIndex> start_;  // [row + 1]
+  std::vector<std::array<LocalIndex, 2>> entries_;
+};
+
+}  // namespace
+
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns) {
   const auto graph = matrix.getCrsGraph()->getLocalGraphHost();
-  const auto row_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows.first);
-  const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), columns.first);
-  const auto n_owned = static_cast<LocalIndex>(graph.numRows());
-  View<LocalIndex***> positions("positions", row_first.extent(0), row_first.extent(1), column_first.extent(1));
+  const Writers writers(rows, graph.numRows());
+  const auto column_first = to_host(columns.first);
+  View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
   auto host = Kokkos::create_mirror_view(positions);
-  for (std::size_t e = 0; e < host.extent(0); ++e)
-    for (std::size_t r = 0; r < host.extent(1); ++r) {
-      const LocalIndex row = row_first(e, r);
+  Kokkos::deep_copy(host, -1);
+  std::vector<LocalIndex> position_of(matrix.getColMap()->getNodeNumElements(), 0);  // in the row; else anything
+  for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
+    const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;
+    for (std::size_t k = 0; k < length; ++k) position_of[graph.entries(begin + k)] = static_cast<LocalIndex>(k);
+    writers.for_each(row, [&](LocalIndex e, LocalIndex r) {
       for (std::size_t c = 0; c < host.extent(2); ++c) {
-        host(e, r, c) = -1;
-        if (row < 0 || row >= n_owned || column_first(e, c) < 0) continue;
-        const auto* begin = &graph.entries(graph.row_map(row));
-        const auto* end = begin + (graph.row_map(row + 1) - graph.row_map(row));
-        const auto* found = std::lower_bound(begin, end, column_first(e, c));
-        SPREKK_CHECK(found != end && *found == column_first(e, c), "row {} has no entry for column {}", row,
-                     column_first(e, c));
-        host(e, r, c) = static_cast<LocalIndex>(found - begin);
+        const LocalIndex column = column_first(e, c);
+        if (column < 0) continue;
+        const LocalIndex k = position_of[column];
+        SPREKK_CHECK(static_cast<std::size_t>(k) < length && graph.entries(begin + k) == column,
+                     "row {} has no entry for column {}", row, column);
+        host(e, r, c) = k;
       }
-    }
+    });
+  }
   Kokkos::deep_copy(positions, host);
   return positions;
 }
@@ -199,39 +237,55 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
 RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& column_layout,
                                    const std::vector<std::pair<Stencil, Stencil>>& couplings) {
   const int row_width = couplings.front().first.width;
-  const LocalIndex n_groups = row_layout.n_owned() / row_width;
-  std::vector<std::vector<LocalIndex>> columns(n_groups);
-  for (const auto& [rows, cols] : couplings) {
+  const LocalIndex n_rows = row_layout.n_owned();
+  std::vector<Writers> writers;
+  std::vector<HostTable> column_first;
+  for (const auto& [rows, columns] : couplings) {
     SPREKK_CHECK(rows.width == row_width, "rows of {} are written in groups of {} and of {}", row_layout.field().name,
                  row_width, rows.width);
-    const auto row_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows.first);
-    const auto column_first = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cols.first);
-    for (std::size_t e = 0; e < row_first.extent(0); ++e)
-      for (std::size_t r = 0; r < row_first.extent(1); ++r) {
-        if (row_first(e, r) < 0 || row_first(e, r) >= row_layout.n_owned()) continue;
-        auto& list = columns[row_first(e, r) / row_width];
-        for (std::size_t c = 0; c < column_first.extent(1); ++c)
-          for (int j = 0; j < cols.width && column_first(e, c) >= 0; ++j) list.push_back(column_first(e, c) + j);
-        if (list.size() > 512) {  // keep the duplicates of shared nodes in bounds
-          std::sort(list.begin(), list.end());
-          list.erase(std::unique(list.begin(), list.end()), list.end());
+    writers.emplace_back(rows, n_rows);
+    column_first.push_back(to_host(columns.first));
+  }
+  std::vector<LocalIndex> end_of(column_layout.ghosted()->getNodeNumElements(), 0);  // of groups that a row has; else 0
+  std::vector<LocalIndex> groups, columns;                                           // of a row; of all groups of rows
+  using Graph = fields::CrsGraph::local_graph_device_type;
+  const Graph::row_map_type::non_const_type row_start("row start", n_rows + 1);
+  const auto start = Kokkos::create_mirror_view(row_start);
+  for (LocalIndex row = 0; row < n_rows; row += row_width) {
+    for (std::size_t k = 0; k < couplings.size(); ++k)
+      writers[k].for_each(row, [&](LocalIndex e, LocalIndex) {
+        for (std::size_t c = 0; c < column_first[k].extent(1); ++c) {
+          const LocalIndex first = column_first[k](e, c);
+          if (first < 0) continue;
+          if (end_of[first] == 0) groups.push_back(first);
+          end_of[first] = std::max(end_of[first], first + couplings[k].second.width);
         }
-      }
+      });
+    std::sort(groups.begin(), groups.end());
+    const std::size_t before = columns.size();
+    LocalIndex next = 0;  // groups may overlap
+    for (LocalIndex first : groups) {
+      for (next = std::max(next, first); next < end_of[first]; ++next) columns.push_back(next);
+      end_of[first] = 0;
+    }
+    groups.clear();
+    for (int i = 0; i < row_width; ++i) start(row + i + 1) = start(row + i) + columns.size() - before;
   }
-  Teuchos::ArrayRCP<std::size_t> counts(row_layout.n_owned());
-  for (LocalIndex g = 0; g < n_groups; ++g) {
-    auto& list = columns[g];
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    for (int i = 0; i < row_width; ++i) counts[g * row_width + i] = list.size();
+  const Graph::entries_type::non_const_type row_columns("columns", start(n_rows));
+  const auto entries = Kokkos::create_mirror_view(row_columns);
+  auto from = columns.begin();
+  for (LocalIndex row = 0; row < n_rows; row += row_width) {
+    const auto length = static_cast<std::ptrdiff_t>(start(row + 1) - start(row));
+    for (int i = 0; i < row_width; ++i) std::copy_n(from, length, entries.data() + start(row + i));
+    from += length;
   }
-  auto graph = rcp(new fields::CrsGraph(row_layout.owned(), column_layout.ghosted(), counts()));
-  for (LocalIndex g = 0; g < n_groups; ++g)
-    for (int i = 0; i < row_width; ++i)
-      graph->insertLocalIndices(g * row_width + i,
-                                Teuchos::ArrayView<const LocalIndex>(columns[g].data(), columns[g].size()));
-  graph->fillComplete(column_layout.owned(), row_layout.owned());
-  auto matrix = rcp(new fields::CrsMatrix(graph));
+  Kokkos::deep_copy(row_start, start);
+  Kokkos::deep_copy(row_columns, entries);
+  const auto graph = rcp(new fields::CrsGraph(row_layout.owned(), column_layout.ghosted(), row_start, row_columns));
+  const bool no_ghosts = column_layout.owned()->isSameAs(*column_layout.ghosted());
+  graph->expertStaticFillComplete(column_layout.owned(), row_layout.owned(),
+                                  no_ghosts ? Teuchos::null : column_layout.import());
+  const auto matrix = rcp(new fields::CrsMatrix(graph));
   matrix->fillComplete(column_layout.owned(), row_layout.owned());
   return matrix;
 }

@@ -22,6 +22,7 @@ namespace {
 /// | geometry | see Geometry     | m    |                                   |
 /// | law      | [cell]           | -    | number of the cell's material     |
 /// | material | [number]         | Pa   | Lame's constants                  |
+/// | reference | [node, node, dim, dim] | - | see reference_products()        |
 template <Shape shape>
 struct ElasticCell {
   using Cell = assembly::ReferenceCell<shape>;
@@ -32,6 +33,7 @@ struct ElasticCell {
   assembly::Geometry geometry;
   ConstView<laws::Elasticity*> material;
   ConstView<int*> law;
+  ConstView<Real[n][n][dim][dim]> reference = reference_products();
 
   /// Calls add(volume, g) at the quadrature points of a cell: the volume that the point stands for and the gradients in
   /// space of the shape functions.
@@ -71,28 +73,91 @@ struct ElasticCell {
     });
   }
 
-  /// The integrals of products of gradients come first, then what the law makes of them.
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
     const laws::Elasticity elasticity = material(law(cell));
-    for (auto& row : K)
-      for (Real& value : row) value = 0;
-    for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
-      for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i) {
-          const Real factor = volume * g[a][i];
-          for (int b = a; b < n; ++b)
-            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += factor * g[b][j];
-        }
+    for_each_product(cell, K, [&](int a, int b, const Real(&M)[dim][dim]) {
+      Real block[dim][dim];
+      elasticity.stiffness(M, block);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] = K[b * dim + j][a * dim + i] = block[i][j];
     });
+  }
+
+  /// Calls use(a, b, M) for b >= a with M_ij = integral d_i N_a d_j N_b; blocks (a, b) of `work` are free after it.
+  template <class Use>
+  KOKKOS_INLINE_FUNCTION void for_each_product(int cell, Real (&work)[n * dim][n * dim], const Use& use) const {
+    Real X[n][dim], M[dim][dim];
+    geometry.gather(cell, X);
+    if constexpr (assembly::StiffnessQuadrature<shape>::n == 1) {
+      for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
+        for (int a = 0; a < n; ++a)
+          for (int b = a; b < n; ++b) {
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j < dim; ++j) M[i][j] = volume * g[a][i] * g[b][j];
+            use(a, b, M);
+          }
+      });
+    } else if (Cell::is_affine(X)) {
+      for_each_affine_product(X, use);
+    } else {
+      for (auto& row : work)
+        for (Real& value : row) value = 0;
+      for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < dim; ++i) {
+            const Real factor = volume * g[a][i];
+            for (int b = a; b < n; ++b)
+              for (int j = 0; j < dim; ++j) work[a * dim + i][b * dim + j] += factor * g[b][j];
+          }
+      });
+      for (int a = 0; a < n; ++a)
+        for (int b = a; b < n; ++b) {
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) M[i][j] = work[a * dim + i][b * dim + j];
+          use(a, b, M);
+        }
+    }
+  }
+
+  /// The same for an affine map of the reference cell.
+  template <class Use>
+  KOKKOS_INLINE_FUNCTION void for_each_affine_product(const Real (&X)[n][dim], const Use& use) const {
+    Real xi[dim], dN[n][dim], half[dim][dim], M[dim][dim];
+    Cell::centre(xi);
+    Cell::gradients(xi, dN);
+    const assembly::CellPoint<shape> point(X, dN);
     for (int a = 0; a < n; ++a)
       for (int b = a; b < n; ++b) {
-        Real M[dim][dim];
+        for (int k = 0; k < dim; ++k)
+          for (int j = 0; j < dim; ++j) {
+            half[k][j] = 0;
+            for (int l = 0; l < dim; ++l) half[k][j] += point.volume * reference(a, b, k, l) * point.inverse[l][j];
+          }
         for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) M[i][j] = K[a * dim + i][b * dim + j];
-        for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j)
-            K[a * dim + i][b * dim + j] = K[b * dim + j][a * dim + i] = elasticity.stiffness(M, i, j);
+          for (int j = 0; j < dim; ++j) {
+            M[i][j] = 0;
+            for (int k = 0; k < dim; ++k) M[i][j] += point.inverse[k][i] * half[k][j];
+          }
+        use(a, b, M);
       }
+  }
+
+  /// [node, node, component, component] integral of dN_a/dxi_k dN_b/dxi_l over the reference cell.
+  static View<Real[n][n][dim][dim]> reference_products() {
+    const View<Real[n][n][dim][dim]> products("reference products");
+    const auto host = Kokkos::create_mirror_view(products);
+    using Rule = assembly::StiffnessQuadrature<shape>;
+    Real xi[dim], dN[n][dim];
+    for (int q = 0; q < Rule::n; ++q) {
+      const Real weight = Rule::at(q, xi);
+      Cell::gradients(xi, dN);
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b)
+          for (int k = 0; k < dim; ++k)
+            for (int l = 0; l < dim; ++l) host(a, b, k, l) += weight * dN[a][k] * dN[b][l];
+    }
+    Kokkos::deep_copy(products, host);
+    return products;
   }
 };
 
