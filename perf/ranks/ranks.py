@@ -2,7 +2,6 @@
 """The same scene on more ranks, and scenes that grow with the number of ranks: iterations, halo and memory on 1 to 16 ranks, seconds on 1 and 2.
 
 More ranks than cores say nothing about time, but the counts are those of a cluster."""
-import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,10 +83,9 @@ def main(words):
     parser = linear.parser("ranks", __doc__)
     parser.add_argument("--edge", type=linear.count, default=TIMED, metavar="N", help=f"cells along an edge of the box of the timed scene ({TIMED}, 280 thousand unknowns)")
     options = parser.parse_args(words)
+    runs = QUICK if options.quick else [("timed", options.edge, ranks) for ranks in (1, 2)] + STRONG + WEAK
+    chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[2]}")
     options.output.mkdir(parents=True, exist_ok=True)
-    chosen = [row for row in (QUICK if options.quick else [("timed", options.edge, ranks) for ranks in (1, 2)] + STRONG + WEAK) if re.search(options.only, f"{row[0]}, {row[2]}")]
-    if not chosen:
-        sys.exit(f'ranks: no row matches "{options.only}"')
     table, rows, failed = linear.Table(COLUMNS, 12), [], []
     for kind, edge, ranks in chosen:
         run = linear.run(options, (*linear.cells(edge), "Mesh.cell=tetrahedron", *STATES[STATE]), f"{kind}_{edge}_{ranks}", ranks)
