@@ -4,6 +4,8 @@
 
 #include "assembly/module.hpp"
 
+#include <utility>
+
 namespace sprekk::assembly {
 
 /// `Count` groups of `Width` adjacent unknowns of one field.
@@ -86,10 +88,11 @@ class Assembler {
 
   /// J(row field, column field) += op.jacobian over all entities, owned rows only; absent blocks are skipped.
   void add_jacobian(const Op& op, const State& state, fields::BlockMatrix& J) {
-    JacobianKernel kernel{gather(op, state), {}, {}, {}, {}};
+    JacobianKernel kernel{gather(op, state), {}, {}, {}, {}, {}};
     if (positions_.empty()) find_all_positions(J);
     for (int i = 0; i < OpRows::n; ++i) {
       kernel.first[i] = rows_[i].first;
+      kernel.n_owned[i] = n_owned_[i];
       for (int k = 0; k < Columns::n; ++k) {
         const auto& block = J(row_fields_[i], column_fields_[k]);
         if (block.is_null()) continue;
@@ -150,28 +153,39 @@ class Assembler {
     PerRow<PerColumn<ConstView<LocalIndex***>>> positions;            // [entity, row group, column group]
     PerRow<PerColumn<typename LocalMatrix::row_map_type>> row_begin;  // [row]
     PerRow<PerColumn<typename LocalMatrix::values_type>> values;      // [entry]
+    PerRow<LocalIndex> n_owned;
 
     KOKKOS_INLINE_FUNCTION void operator()(int e) const {
       Real x[Columns::size], local[OpRows::size][Columns::size];
       gather(e, x);
       gather.op.jacobian(e, x, local);
-      for (int i = 0; i < OpRows::n; ++i)
-        for (int k = 0; k < Columns::n; ++k)
-          if (values[i][k].extent(0) > 0) scatter(e, i, k, local);
+      scatter(e, local, std::make_integer_sequence<int, OpRows::n * Columns::n>());
     }
 
-    KOKKOS_INLINE_FUNCTION void scatter(int e, int i, int k, const Real (&local)[OpRows::size][Columns::size]) const {
-      for (int g = 0; g < OpRows::count(i); ++g)
+    template <int... block>
+    KOKKOS_INLINE_FUNCTION void scatter(int e, const Real (&local)[OpRows::size][Columns::size],
+                                        std::integer_sequence<int, block...>) const {
+      (add<block / Columns::n, block % Columns::n>(e, local), ...);
+    }
+
+    template <int i, int k>
+    KOKKOS_INLINE_FUNCTION void add(int e, const Real (&local)[OpRows::size][Columns::size]) const {
+      constexpr int height = OpRows::width(i), width = Columns::width(k);
+      if (values[i][k].extent(0) == 0) return;
+      for (int g = 0; g < OpRows::count(i); ++g) {
+        const LocalIndex row = first[i](e, g);
+        if (row < 0 || row >= n_owned[i]) continue;  // absent, or another rank's
+        std::size_t begin[height];
+        for (int c = 0; c < height; ++c) begin[c] = row_begin[i][k](row + c);
         for (int h = 0; h < Columns::count(k); ++h) {
           const LocalIndex position = positions[i][k](e, g, h);
-          if (position < 0) continue;
-          for (int c = 0; c < OpRows::width(i); ++c) {
-            const auto begin = row_begin[i][k](first[i](e, g) + c) + position;
-            const auto& from = local[OpRows::offset(i) + g * OpRows::width(i) + c];
-            for (int d = 0; d < Columns::width(k); ++d)
-              Kokkos::atomic_add(&values[i][k](begin + d), from[Columns::offset(k) + h * Columns::width(k) + d]);
-          }
+          if (position < 0) continue;  // the column is absent
+          for (int c = 0; c < height; ++c)
+            for (int d = 0; d < width; ++d)
+              Kokkos::atomic_add(&values[i][k](begin[c] + position + d),
+                                 local[OpRows::offset(i) + g * height + c][Columns::offset(k) + h * width + d]);
         }
+      }
     }
   };
 

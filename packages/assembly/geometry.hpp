@@ -42,13 +42,14 @@ KOKKOS_INLINE_FUNCTION void with_rule(const Real (&X)[mesh::n_nodes(shape)][mesh
     use(CurvedQuadrature<shape>(X));
 }
 
-/// Calls visit(xi, volume, x) at the points of a rule for bubbles: reference point, volume that it stands for, place.
-template <Shape shape, class Visit>
+/// Calls visit(xi, volume, x) at the points of a rule, by default one for bubbles: reference point, volume that it
+/// stands for, place.
+template <Shape shape, class Straight = BubbleQuadrature<shape>, class Visit>
 void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& visit) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   Real X[n][dim], N[n], dN[n][dim], xi[dim];
   gather_host<shape>(mesh, cell, X);
-  with_rule<shape, BubbleQuadrature<shape>>(X, [&](const auto& rule) {
+  with_rule<shape, Straight>(X, [&](const auto& rule) {
     for (int q = 0; q < rule.n; ++q) {
       const Real weight = rule.at(q, xi);
       ReferenceCell<shape>::shape_functions(xi, N);

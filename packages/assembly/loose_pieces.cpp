@@ -88,7 +88,8 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
     if (c < mesh_->n_owned_cells) ++n_cells_[piece];
     Real volume = 0;
     mesh::for_shape(mesh_->shape, [&](auto shape) {
-      for_each_cell_point<shape()>(*mesh_, c, [&](const auto&, Real share, const auto&) { volume += share; });
+      for_each_cell_point<shape(), StiffnessQuadrature<shape()>>(
+          *mesh_, c, [&](const auto&, Real share, const auto&) { volume += share; });
     });
     for (int k = 0; k < n; ++k) {
       const LocalIndex here = mesh_->cells[c * n + k], owned = mesh_->free_node(here);

@@ -173,6 +173,22 @@ struct ReferenceCell {
     return true;
   }
 
+  /// Whether the cell is an affine map of the reference cell (to 1e-10 of an edge).
+  KOKKOS_INLINE_FUNCTION static bool is_affine(const Real (&X)[n_nodes][dim]) {
+    Real size = 0;
+    for (int i = 0; i < dim; ++i) size += (X[1][i] - X[0][i]) * (X[1][i] - X[0][i]);
+    for (int a = 2; a < n_nodes; ++a) {
+      Real square = 0;
+      for (int i = 0; i < dim; ++i) {
+        Real off = X[a][i] - X[0][i];
+        for (int k = 0; k < dim; ++k) off -= axis_share(a, k) * (X[axis(k)][i] - X[0][i]);
+        square += off * off;
+      }
+      if (square > 1e-20 * size) return false;
+    }
+    return true;
+  }
+
   /// Component i of a corner of the reference cell.
   KOKKOS_INLINE_FUNCTION static int corner(int a, int i) { return is_simplex(shape) ? a == i + 1 : node_place(a, i); }
 
@@ -197,19 +213,27 @@ struct ReferenceCell {
 
   /// Corner `end` (0, 1) of the edge of a simplex that node n_corners + e is on.
   KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
-    constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
-    constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    static constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
+    static constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
   }
 
   /// Component i of a node of the square or cube: -1, 0 or 1.
   KOKKOS_INLINE_FUNCTION static int node_place(int a, int i) {
-    constexpr int square[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
-    constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
-                               {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
-                               {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0}, {-1, 0, 0},
-                               {1, 0, 0},    {0, -1, 0},  {0, 1, 0},   {0, 0, -1},  {0, 0, 1},   {0, 0, 0}};
+    static constexpr int square[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+    static constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1},
+                                      {1, 1, 1},    {-1, 1, 1},  {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1},
+                                      {0, -1, 1},   {1, 0, 1},   {0, 1, 1},   {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},
+                                      {1, 1, 0},    {-1, 1, 0},  {-1, 0, 0},  {1, 0, 0},   {0, -1, 0},  {0, 1, 0},
+                                      {0, 0, -1},   {0, 0, 1},   {0, 0, 0}};
     return dim == 2 ? square[a][i] : cube[a][i];
+  }
+
+  /// The corner that is next to corner 0 along axis k, and how far along that edge node a is: 0, 1/2 or 1.
+  KOKKOS_INLINE_FUNCTION static int axis(int k) { return is_simplex(shape) || k == 0 ? k + 1 : k + 2; }
+  KOKKOS_INLINE_FUNCTION static Real axis_share(int a, int k) {
+    if (!is_simplex(shape)) return (1 + node_place(a, k)) / 2.0;
+    return a < n_corners ? a == k + 1 : corner_share(a, k + 1);
   }
 
   /// The function on [-1, 1] that is 1 at `place` and 0 at the other nodes.

@@ -1,5 +1,7 @@
 #include "fields/layout.hpp"
 
+#include <Tpetra_Distributor.hpp>
+
 namespace sprekk::fields {
 
 std::string name_of(Entity entity) {
@@ -65,5 +67,7 @@ Layout::Layout(const Field& field, const mesh::Mesh& mesh)
       owned_(make_map(field, mesh, n_owned_entities_)),
       ghosted_(make_map(field, mesh, n_entities(mesh, field.entity, true))),
       import_(rcp(new const Import(owned_, ghosted_))) {}
+
+std::size_t Layout::halo_messages() const { return import_->getDistributor().getNumReceives(); }
 
 }  // namespace sprekk::fields

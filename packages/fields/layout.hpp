@@ -38,6 +38,8 @@ class Layout {
   LocalIndex n_owned() const { return n_owned_entities_ * field_.n_components; }
   /// Bytes that this rank receives when the field's ghosts are updated once.
   std::size_t halo_bytes() const { return import_->getNumRemoteIDs() * sizeof(Real); }
+  /// In how many messages they come: the other ranks that own some of them.
+  std::size_t halo_messages() const;
 
  private:
   Field field_;

@@ -35,13 +35,15 @@ struct Elasticity {
       for (int k = 0; k < dim; ++k) dot += a[k] * b[k];
     return lambda * a[i] * b[j] + G * (a[j] * b[i] + dot);
   }
-  /// The same for integrals M_ij of a_i b_j.
+  /// The same for integrals M_ij of a_i b_j, for all i, j.
   template <int dim>
-  KOKKOS_INLINE_FUNCTION Real stiffness(const Real (&M)[dim][dim], int i, int j) const {
+  KOKKOS_INLINE_FUNCTION void stiffness(const Real (&M)[dim][dim], Real (&K)[dim][dim]) const {
     Real trace = 0;
-    if (i == j)
-      for (int k = 0; k < dim; ++k) trace += M[k][k];
-    return lambda * M[i][j] + G * (M[j][i] + trace);
+    for (int k = 0; k < dim; ++k) trace += M[k][k];
+    for (int i = 0; i < dim; ++i) {
+      for (int j = 0; j < dim; ++j) K[i][j] = lambda * M[i][j] + G * M[j][i];
+      K[i][i] += G * trace;
+    }
   }
 };
 

@@ -143,13 +143,18 @@ json block_summary(const assembly::System& system) {
   const auto& comm = *system.comm();
   for (std::size_t b = 0; b < system.blocks().size(); ++b) {
     const auto& layout = system.layouts()[b];
-    const long long halo = system.exchanged(static_cast<int>(b)) ? layout.halo_bytes() : 0;
+    const auto halo = system.exchanged(static_cast<int>(b))
+                          ? reduce<long long>(comm, Teuchos::REDUCE_SUM,
+                                              {static_cast<long long>(layout.halo_bytes()),
+                                               static_cast<long long>(layout.halo_messages())})
+                          : std::vector<long long>{0, 0};
     summary["fields"].push_back({{"name", layout.field().name},
                                  {"entity", fields::name_of(layout.field().entity)},
                                  {"components", layout.field().n_components},
                                  {"unit", layout.field().unit},
                                  {"unknowns", layout.owned()->getGlobalNumElements()},
-                                 {"halo_bytes", reduce<long long>(comm, Teuchos::REDUCE_SUM, {halo})[0]}});
+                                 {"halo_bytes", halo[0]},
+                                 {"halo_messages", halo[1]}});
   }
   const auto& A = system.matrix();
   for (int i = 0; i < A.n_blocks(); ++i)

@@ -3,6 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
+#include "physics/elastic_cell.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,88 +14,6 @@ using assembly::Loop;
 using mesh::Shape;
 
 namespace {
-
-/// r = integral sigma(u) : grad N over one cell.
-///
-/// | symbol   | shape            | unit |                                   |
-/// | x        | [node, dim]      | m    | displacement of the cell's nodes  |
-/// | r        | [node, dim]      | N    | forces                            |
-/// | geometry | see Geometry     | m    |                                   |
-/// | law      | [cell]           | -    | number of the cell's material     |
-/// | material | [number]         | Pa   | Lame's constants                  |
-template <Shape shape>
-struct ElasticCell {
-  using Cell = assembly::ReferenceCell<shape>;
-  static constexpr int dim = Cell::dim, n = Cell::n_nodes;
-  using Columns = assembly::Slots<assembly::Slot<n, dim>>;
-  using Rows = Columns;
-
-  assembly::Geometry geometry;
-  ConstView<laws::Elasticity*> material;
-  ConstView<int*> law;
-
-  /// Calls add(volume, g) at the quadrature points of a cell: the volume that the point stands for and the gradients in
-  /// space of the shape functions.
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION void for_each_point(int cell, const Add& add) const {
-    Real X[n][dim];
-    geometry.gather(cell, X);
-    assembly::with_rule<shape, assembly::StiffnessQuadrature<shape>>(X, [&](const auto& rule) {
-      Real xi[dim], dN[n][dim], g[n][dim];
-      for (int q = 0; q < rule.n; ++q) {
-        const Real weight = rule.at(q, xi);
-        Cell::gradients(xi, dN);
-        const assembly::CellPoint<shape> point(X, dN);
-        for (int a = 0; a < n; ++a) point.gradient(dN[a], g[a]);
-        add(weight * point.volume, g);
-      }
-    });
-  }
-
-  KOKKOS_INLINE_FUNCTION void stress(const Real (&g)[n][dim], const Real (&x)[n * dim], int number,
-                                     Real (&sigma)[dim][dim]) const {
-    Real H[dim][dim] = {};
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) H[i][j] += x[a * dim + i] * g[a][j];
-    material(number).stress(H, sigma);
-  }
-
-  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[n * dim], Real (&r)[n * dim]) const {
-    for (Real& value : r) value = 0;
-    for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
-      Real sigma[dim][dim];
-      stress(g, x, law(cell), sigma);
-      for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) r[a * dim + i] += volume * sigma[i][j] * g[a][j];
-    });
-  }
-
-  /// The integrals of products of gradients come first, then what the law makes of them.
-  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[n * dim], Real (&K)[n * dim][n * dim]) const {
-    const laws::Elasticity elasticity = material(law(cell));
-    for (auto& row : K)
-      for (Real& value : row) value = 0;
-    for_each_point(cell, [&](Real volume, const Real(&g)[n][dim]) {
-      for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i) {
-          const Real factor = volume * g[a][i];
-          for (int b = a; b < n; ++b)
-            for (int j = 0; j < dim; ++j) K[a * dim + i][b * dim + j] += factor * g[b][j];
-        }
-    });
-    for (int a = 0; a < n; ++a)
-      for (int b = a; b < n; ++b) {
-        Real M[dim][dim];
-        for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) M[i][j] = K[a * dim + i][b * dim + j];
-        for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j)
-            K[a * dim + i][b * dim + j] = K[b * dim + j][a * dim + i] = elasticity.stiffness(M, i, j);
-      }
-  }
-};
 
 template <Shape shape>
 class BulkMomentum final : public assembly::Module {

@@ -48,12 +48,6 @@ struct Coupling {
   View<Real*> coefficient;      ///< [pair * m]
 };
 
-/// Where coefficient(pair) . response(slot of pair) is added in J_ab.
-struct Product {
-  View<LocalIndex*> start;     ///< [pair]
-  View<LocalIndex*> position;  ///< [start + column of the slot] -> value of J_ab
-};
-
 /// One local group. [r] counts remaining blocks.
 struct GroupPlan {
   std::string name;
@@ -68,14 +62,16 @@ struct GroupPlan {
   View<Real*> work;                ///< [entity * m]
   std::vector<Response> response;  ///< [r]
   std::vector<Coupling> coupling;  ///< [r]
-  std::vector<Product> product;    ///< [r * n_r + r']
+  /// [r * n_r + r'](column of response r') its column in J, -1 where no row here needs it.
+  std::vector<View<LocalIndex*>> column;
 };
 
 /// J_ab; matrix is null where nothing couples a and b.
 struct CondensedBlock {
   RCP<CrsMatrix> matrix;
-  Scatter copy;             ///< A_ab -> J_ab; its matrix is null where A_ab is absent
-  RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
+  RCP<const CrsMatrix> bulk;      ///< A_ab, or null
+  View<LocalIndex*> bulk_column;  ///< [column of A_ab] its column in J_ab
+  RCP<Vector> constrained;        ///< [column] 1 where the unknown is prescribed
 };
 
 struct EliminationPlan {

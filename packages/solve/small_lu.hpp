@@ -56,14 +56,18 @@ KOKKOS_INLINE_FUNCTION bool lu_factor(int m, Real* a, int* pivot, const Real* co
   return true;
 }
 
-/// b <- A^-1 b. [m]
-KOKKOS_INLINE_FUNCTION void lu_solve(int m, const Real* lu, const int* pivot, Real* b) {
-  for (int k = 0; k < m; ++k) exchange(b[k], b[pivot[k]]);
+/// b <- A^-1 b for n columns. [m, n]
+KOKKOS_INLINE_FUNCTION void lu_solve(int m, const Real* lu, const int* pivot, Real* b, int n = 1) {
+  const auto subtract = [=](int i, int j) {
+    for (int c = 0; c < n; ++c) b[i * n + c] -= lu[i * m + j] * b[j * n + c];
+  };
+  for (int k = 0; k < m; ++k)
+    for (int c = 0; c < n && pivot[k] != k; ++c) exchange(b[k * n + c], b[pivot[k] * n + c]);
   for (int i = 1; i < m; ++i)
-    for (int j = 0; j < i; ++j) b[i] -= lu[i * m + j] * b[j];
+    for (int j = 0; j < i; ++j) subtract(i, j);
   for (int i = m - 1; i >= 0; --i) {
-    for (int j = i + 1; j < m; ++j) b[i] -= lu[i * m + j] * b[j];
-    b[i] /= lu[i * m + i];
+    for (int j = i + 1; j < m; ++j) subtract(i, j);
+    for (int c = 0; c < n; ++c) b[i * n + c] /= lu[i * m + i];
   }
 }
 

@@ -1,20 +1,14 @@
 // bandwidth SCENE [PATH=VALUE...]: times the parts of the scene's first step, and the memory bandwidth that the same
 // ranks have, and prints them as JSON. The linear system that is solved again and again is that of the step's end.
 #include "model/model.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
-#include <Tpetra_Core.hpp>
-#include <nlohmann/json.hpp>
+#include "perf/program.hpp"
 
 #include <algorithm>
-#include <ctime>
-#include <functional>
-#include <iostream>
 
 namespace {
 
 using namespace sprekk;
-using nlohmann::json;
+using perf::json, perf::time_of;
 
 constexpr std::size_t triad_length = 8u << 20;  // of each array on each rank: together several times the largest caches
 constexpr int n_rounds = 25, n_solves = 3;
@@ -29,17 +23,6 @@ Real sum(const Comm& comm, Real here) {
   Real all = 0;
   Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &all);
   return all;
-}
-
-/// CPU seconds of the work on the rank that takes most: what else the machine does hardly counts. Collective.
-Real time_of(const Comm& comm, const std::function<void()>& work) {
-  comm.barrier();
-  const auto begin = std::clock();
-  work();
-  const Real here = static_cast<Real>(std::clock() - begin) / CLOCKS_PER_SEC;
-  Real most = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &most);
-  return most;
 }
 
 Real median(std::vector<Real> values) {
@@ -89,8 +72,7 @@ Real bytes(const fields::CrsMatrix& A) {
 
 json to_json(const base::Timers& timers) {
   json phases = json::object();
-  for (const auto& phase : timers.phases())
-    phases[phase.name] = {{"seconds", phase.cpu_seconds}, {"count", phase.count}};
+  for (const auto& phase : timers.phases()) phases[phase.name] = {{"seconds", phase.seconds}, {"count", phase.count}};
   return phases;
 }
 
@@ -172,16 +154,4 @@ json measure(const model::Scene& scene, RCP<const Comm> comm) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Tpetra::ScopeGuard guard(&argc, &argv);
-  const auto comm = Tpetra::getDefaultComm();
-  try {
-    SPREKK_CHECK(argc > 1, "usage: bandwidth SCENE [PATH=VALUE...]");
-    const auto result = measure(model::read_scene(*comm, argv[1], {argv + 2, argv + argc}), comm);
-    if (comm->getRank() == 0) std::cout << result.dump(2) << '\n';
-  } catch (const Error& error) {  // the same on every rank
-    if (comm->getRank() == 0) std::cerr << "bandwidth: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
-}
+int main(int argc, char** argv) { return perf::run("bandwidth", argc, argv, measure); }

@@ -3,9 +3,6 @@
 
 The scene is a network of fractures in all states; bandwidth.cpp does the timing."""
 import json
-import os
-import re
-import subprocess
 import sys
 
 from pathlib import Path
@@ -73,15 +70,10 @@ def asked(key):
 
 
 def run(options, cells, edge):
-    sets = (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE], *options.set)
-    command = [str(options.program), str(ROOT / "xml" / linear.SCENE), *sets]
-    if options.ranks > 1:
-        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(options.ranks), *command]
-    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        sys.exit(f"bandwidth: {done.stderr.strip()}")
-    (options.output / f"{cells}.json").write_text(done.stdout)
-    return Measured(json.loads(done.stdout))
+    sets = (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE])
+    found = linear.measured(options, linear.SCENE, sets, options.ranks)
+    (options.output / f"{cells}.json").write_text(json.dumps(found, indent=2))
+    return Measured(found)
 
 
 def draw(measured, file):
@@ -110,22 +102,18 @@ def draw(measured, file):
 
 
 def main(words):
-    parser = linear.parser("bandwidth", __doc__)
-    parser.add_argument("--edge", type=int, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
+    parser = linear.parser("bandwidth", __doc__, program=True)
+    parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
     parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="ranks (1)")
-    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/bandwidth/bandwidth", help="what bandwidth.cpp became")
     options = parser.parse_args(words)
+    chosen = linear.matching(options, CELLS)
     options.output.mkdir(parents=True, exist_ok=True)
     edge = options.edge or (QUICK if options.quick else EDGE)
     table, measured = linear.Table(COLUMNS, 42), {}
-    for cells in CELLS:
-        if not re.search(options.only, cells):
-            continue
+    for cells in chosen:
         measured[cells] = one = run(options, cells, edge)
         for name, count, seconds, of_triad, of_time, key in one.parts():
             table.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, asked(key)])
-    if not measured:
-        sys.exit(f'bandwidth: no cells match "{options.only}"')
     table.write(options.output / "bandwidth.csv")
     draw(measured, options.output / "bandwidth.png")
     worst = {key: (min if key == "triad" or ASKED[key][0] > 0 else max)(one.summary()[key] for one in measured.values()) for key in ("triad", *ASKED)}

@@ -2,7 +2,6 @@
 """A block of rock without fractures, solved here and by DOLFINx with PETSc on the same mesh: CPU seconds of assembly, set-up and solution on one rank."""
 import json
 import os
-import re
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -66,12 +65,9 @@ def run_ours(options, edge):
                 on_lattice(read.vtk_to_numpy(grid.GetPoints().GetData()), displacement, edge))]
 
 
-def run_peers(options, edge):
+def run_peers(options, edge, names):
     directory = options.output / f"peer_{edge}"
     directory.mkdir(exist_ok=True)
-    names = [name for name in PEERS if re.search(options.only, name)]
-    if not names:
-        sys.exit(f'bulk: no peer matches "{options.only}"; there are {", ".join(PEERS)}')
     words = [sys.executable, "-B", str(Path(__file__).with_name("peer.py")), directory, edge, YOUNG, POISSON, ",".join(map(str, TRACTION)), linear.RESIDUAL, *names]
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
     if done.returncode:
@@ -117,10 +113,11 @@ def main(words):
     parser = linear.parser("bulk", __doc__)
     parser.add_argument("--repeat", type=int, default=3, metavar="N", help="runs of each, of which the fastest counts (3)")
     options = parser.parse_args(words)
+    names = linear.matching(options, PEERS)
     options.output.mkdir(parents=True, exist_ok=True)
     table, all_rows, ratios, wrong = linear.Table(COLUMNS, 14), [], [], []
     for edge in QUICK if options.quick else EDGES:
-        rows = fastest([row for _ in range(options.repeat) for run in (run_ours, run_peers) for row in run(options, edge)])
+        rows = fastest([row for _ in range(options.repeat) for row in run_ours(options, edge) + run_peers(options, edge, names)])
         ours = rows[0]
         for row in rows:
             table.add(row.values(ours))

@@ -201,7 +201,7 @@ def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf contact", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a third of the scenes; the status is 1 above a stated bound, too, without --only")
     parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
-    parser.add_argument("--only", type=linear.pattern, metavar="PATTERN", help="scenes whose name matches this regular expression")
+    linear.add_only(parser, "scenes")
     parser.add_argument("--output", type=Path, default=Path("output/perf/contact"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
     return parser.parse_args(words)
@@ -209,9 +209,7 @@ def arguments(words):
 
 def main(words):
     options = arguments(words)
-    chosen = [s for s in scenes() if (s.quick or not options.quick) and re.search(options.only or "", s.name)]
-    if not chosen:
-        sys.exit(f'contact: no scene matches "{options.only}"')
+    chosen = linear.matching(options, [s for s in scenes() if s.quick or not options.quick], lambda scene: scene.name)
     options.output.mkdir(parents=True, exist_ok=True)
     print(line(COLUMNS))
     runs = []

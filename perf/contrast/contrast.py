@@ -123,11 +123,9 @@ def draw(rows, file):
 
 def main(words):
     options = linear.parser("contrast", __doc__).parse_args(words)
+    runs = [(case, cell) for case in cases() for cell in (["tetrahedra"] if options.quick else CELLS) if case.quick or not options.quick]
+    chosen = linear.matching(options, runs, lambda run: f"{run[1]}, {run[0].name}")
     options.output.mkdir(parents=True, exist_ok=True)
-    chosen = [(case, cell) for case in cases() for cell in (["tetrahedra"] if options.quick else CELLS)
-              if (case.quick or not options.quick) and re.search(options.only, f"{cell}, {case.name}")]
-    if not chosen:
-        sys.exit(f'contrast: no case matches "{options.only}"')
     table, rows = linear.Table(COLUMNS, 44), []
     for case, cell in chosen:
         sets = (*linear.cells(EDGE), f"Mesh.cell={CELLS[cell]}", *case.sets)

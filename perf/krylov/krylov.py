@@ -101,22 +101,20 @@ def main(words):
     parser = linear.parser("krylov", __doc__)
     parser.add_argument("--largest", type=float, default=1.2e6, metavar="N", help="no mesh with more unknowns than this (1.2e6)")
     options = parser.parse_args(words)
+    series = {f"{cell}, {state}": (f"Mesh.cell={shape}", *sets) for cell, shape in (("hexahedra", "hexahedron"), ("tetrahedra", "tetrahedron"))
+              for state, sets in STATES.items()}
+    runs = [(edge, name) for edge in (QUICK if options.quick else EDGES) for name in series
+            if (re.search(QUICK[edge], name) if options.quick else 3 * (edge + 1)**3 <= options.largest)]
+    chosen = linear.matching(options, runs, lambda run: run[1])
     options.output.mkdir(parents=True, exist_ok=True)
-    series = [(f"{cell}, {state}", (f"Mesh.cell={shape}", *sets)) for cell, shape in (("hexahedra", "hexahedron"), ("tetrahedra", "tetrahedron"))
-              for state, sets in STATES.items() if re.search(options.only, f"{cell}, {state}")]
-    if not series:
-        sys.exit(f'krylov: no series matches "{options.only}"')
     print_table, rows, failed = linear.Table(COLUMNS, 20), [], []
-    for edge in QUICK if options.quick else [edge for edge in EDGES if 3 * (edge + 1)**3 <= options.largest]:
-        for name, sets in series:
-            if options.quick and not re.search(QUICK[edge], name):
-                continue
-            run = linear.run(options, (*linear.cells(edge), *sets), f"{name.replace(', ', '_')}_{edge}")
-            if run.failure:
-                failed.append(f"failed: {name}, {edge}: {run.failure}")
-            if run.steps:
-                rows.append(Row(name, edge, run))
-                print_table.add(rows[-1].values(), failed[-1:] if run.failure else ())
+    for edge, name in chosen:
+        run = linear.run(options, (*linear.cells(edge), *series[name]), f"{name.replace(', ', '_')}_{edge}")
+        if run.failure:
+            failed.append(f"failed: {name}, {edge}: {run.failure}")
+        if run.steps:
+            rows.append(Row(name, edge, run))
+            print_table.add(rows[-1].values(), failed[-1:] if run.failure else ())
     if not rows:
         sys.exit("\n".join(failed))
     print_table.write(options.output / "krylov.csv")

@@ -19,6 +19,7 @@ RESIDUAL = 1e-8  # relative, of every linear solve
 ROUNDING = 10    # the true residual may exceed the one that the Krylov method updates by this factor
 ALWAYS = (f"{SOLVER}.type=iterative", f"{SOLVER}.tolerance={RESIDUAL:g}", f"{SOLVER}.forcing=false")
 STATES = ("stick", "slip", "open")
+LISTED = 12  # names in a message
 TIMERS = {"set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
           "assembly": ("assembly_of_the_linear_part", "loads", "residual", "Jacobian", "local_elimination"),
           "solve": ("linear_solve",)}
@@ -95,10 +96,7 @@ def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE):
     shutil.rmtree(directory, ignore_errors=True)
     command = [str(options.binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
     command += [word for entry in (*ALWAYS, *sets, *options.set) for word in ("--set", entry)]
-    if ranks > 1:
-        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
-    done = subprocess.run(["timeout", "--kill-after=5", str(time_limit), *command], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    done = started(["timeout", "--kill-after=5", str(time_limit), *on_ranks(ranks, command)])
     file = directory / "results.json"
     found = Run(json.loads(file.read_text()) if file.is_file() else {})
     if done.returncode in (124, 137, -9):  # timeout ends itself as it ended the program
@@ -109,6 +107,22 @@ def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE):
     elif (found.residual or 0) > ROUNDING * RESIDUAL:
         found.failure = f"true residual {found.residual:.1e} after a linear solve"
     return found
+
+
+def on_ranks(ranks, command):
+    return ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), *command] if ranks > 1 else command
+
+
+def started(command):
+    return subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+
+
+def measured(options, scene, sets, ranks):
+    """What the program of a measurement prints of a scene with these entries, then those of the command line."""
+    done = started(on_ranks(ranks, [str(options.program), str(ROOT / "xml" / scene), *sets, *options.set]))
+    if done.returncode:
+        sys.exit(done.stderr.strip())
+    return json.loads(done.stdout)
 
 
 def table(**values):
@@ -142,14 +156,32 @@ def count(words):
     return int(words)
 
 
-def parser(name, text):
-    """The options that all programs have."""
+def matching(options, rows, name=str):
+    """The rows whose name matches --only; without any the program ends as for any wrong option."""
+    found = [row for row in rows if re.search(options.only, name(row))]
+    if not found:
+        names = [f'"{each}"' for each in dict.fromkeys(map(name, rows))]
+        options.refuse(f'argument --only: "{options.only}" matches none of {", ".join(names[:LISTED])}{" ..." if len(names) > LISTED else ""}')
+    return found
+
+
+def add_only(parser, what="rows"):
+    parser.add_argument("--only", type=pattern, metavar="PATTERN", default="", help=f"{what} whose name matches this regular expression")
+    parser.set_defaults(refuse=parser.error)
+
+
+def parser(name, text, program=False, only=True):
+    """The options that all programs have; --program instead of --binary where the measurement has a program of its own."""
     made = argparse.ArgumentParser(prog=f"sprekk perf {name}", description=text)
     made.add_argument("--quick", action="store_true", help="a small version, for a test; the status is 1 if a bound on counts is missed")
-    made.add_argument("--only", type=pattern, metavar="PATTERN", default="", help="rows whose name matches this regular expression")
+    if only:
+        add_only(made)
     made.add_argument("--set", metavar="PATH=VALUE", action="append", default=[], help="an entry of every scene, as for `sprekk run`; may be repeated")
     made.add_argument("--output", type=Path, default=Path(f"output/perf/{name}"), metavar="DIR")
-    made.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    if program:
+        made.add_argument("--program", type=Path, default=ROOT / f"build/perf/{name}/{name}", help=f"what {name}.cpp became")
+    else:
+        made.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
     return made
 
 

@@ -2,29 +2,12 @@
 // JSON.
 #include "base/timer.hpp"
 #include "mesh/distribute.hpp"
-#include "model/scene.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
-#include <Tpetra_Core.hpp>
-#include <nlohmann/json.hpp>
-
-#include <chrono>
-#include <functional>
-#include <iostream>
+#include "perf/program.hpp"
 
 namespace {
 
 using namespace sprekk;
-using nlohmann::json;
-
-/// Seconds on the clock until all ranks are done. Collective.
-Real time_of(const Comm& comm, const std::function<void()>& work) {
-  comm.barrier();
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  comm.barrier();
-  return std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
-}
+using perf::json, perf::time_of;
 
 /// A number of each rank. Collective.
 std::vector<Real> of_ranks(const Comm& comm, Real here) {
@@ -52,16 +35,4 @@ json measure(const model::Scene& given, RCP<const Comm> comm) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Tpetra::ScopeGuard guard(&argc, &argv);
-  const auto comm = Tpetra::getDefaultComm();
-  try {
-    SPREKK_CHECK(argc > 1, "usage: meshing SCENE [PATH=VALUE...]");
-    const auto result = measure(model::read_scene(*comm, argv[1], {argv + 2, argv + argc}), comm);
-    if (comm->getRank() == 0) std::cout << result.dump(2) << '\n';
-  } catch (const Error& error) {  // the same on every rank
-    if (comm->getRank() == 0) std::cerr << "meshing: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
-}
+int main(int argc, char** argv) { return perf::run("meshing", argc, argv, measure); }

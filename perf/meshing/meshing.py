@@ -2,10 +2,6 @@
 """Seconds and memory for meshes that one rank makes and sends out, and for the same meshes refined by all ranks.
 
 meshing.cpp makes the mesh of a scene and nothing else."""
-import json
-import os
-import re
-import subprocess
 import sys
 
 from pathlib import Path
@@ -22,12 +18,7 @@ COLUMNS = {"mesh": "", "million cells": ".3f", "million nodes": ".3f", "of a ran
 
 def run(options, edge, refinements, ranks):
     coarse = edge >> refinements
-    sets = (*linear.cells(coarse), f"Mesh.refinements={refinements}", *options.set)
-    command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), str(options.program), str(ROOT / "xml" / SCENE), *sets]
-    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        sys.exit(f"meshing: {done.stderr.strip()}")
-    return json.loads(done.stdout)
+    return linear.measured(options, SCENE, (*linear.cells(coarse), f"Mesh.refinements={refinements}"), ranks)
 
 
 def row(name, found):
@@ -39,24 +30,20 @@ def row(name, found):
 
 
 def main(words):
-    parser = linear.parser("meshing", __doc__)
+    parser = linear.parser("meshing", __doc__, program=True)
     parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
     parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several (2)")
-    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/meshing/meshing", help="what meshing.cpp became")
     options = parser.parse_args(words)
-    options.output.mkdir(parents=True, exist_ok=True)
     edge = options.edge or (QUICK if options.quick else EDGE)
+    rows = {f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once"): (refinements, ranks)
+            for ranks in sorted({1, options.ranks}) for refinements in ((0, 1, 2) if options.quick else (0, 2, 3))}
+    chosen = linear.matching(options, rows)
+    options.output.mkdir(parents=True, exist_ok=True)
     table, cells = linear.Table(COLUMNS, 32), set()
-    for ranks in sorted({1, options.ranks}):
-        for refinements in (0, 1, 2) if options.quick else (0, 2, 3):
-            name = f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once")
-            if not re.search(options.only, name):
-                continue
-            found = run(options, edge, refinements, ranks)
-            cells.add((found["cells"], found["nodes"], found["fracture_faces"]))
-            table.add(row(name, found))
-    if not cells:
-        sys.exit(f'meshing: no row matches "{options.only}"')
+    for name in chosen:
+        found = run(options, edge, *rows[name])
+        cells.add((found["cells"], found["nodes"], found["fracture_faces"]))
+        table.add(row(name, found))
     table.write(options.output / "meshing.csv")
     print(f"\nmeshing.csv in {options.output}")
     if len(cells) > 1:

@@ -164,7 +164,7 @@ def write(file, same, found):
 
 
 def main(words):
-    parser = linear.parser("peer", __doc__)
+    parser = linear.parser("peer", __doc__, only=False)
     options = parser.parse_args(words)
     options.porepy = os.environ.get("POREPY") and Path(os.environ["POREPY"]).resolve()
     if not options.porepy:

@@ -2,7 +2,6 @@
 """The same scene on more ranks, and scenes that grow with the number of ranks: iterations, halo and memory on 1 to 16 ranks, seconds on 1 and 2.
 
 More ranks than cores say nothing about time, but the counts are those of a cluster."""
-import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,7 @@ STRONG = [("strong", 18, ranks) for ranks in (1, 2, 4, 8, 16)]
 WEAK = [("weak", edge, ranks) for edge, ranks in ((12, 1), (18, 3), (24, 8), (30, 16))]  # about 8000 unknowns per rank
 QUICK = [("strong", 12, ranks) for ranks in (1, 2)]
 BOUNDS = {"speedup2": 1.7, "growth16": 0.2}
-COLUMNS = {"kind, ranks": "", "edge": "d", "unknowns": "d", "per rank": "d", "Newton": ".4g", "mean": ".1f", "max": ".4g", "residual": ".0e", "halo kB": ".1f",
+COLUMNS = {"kind, ranks": "", "edge": "d", "unknowns": "d", "per rank": "d", "Newton": ".4g", "mean": ".1f", "max": ".4g", "residual": ".0e", "halo kB": ".1f", "messages": "d",
            "exchanges": "d", "cut edges": "d", "MB": ".0f", "MB of a rank": ".0f", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f"}
 
 
@@ -37,12 +36,15 @@ class Row:
     @property
     def halo(self):
         """Bytes that all ranks receive when every field is exchanged once."""
-        return sum(field["halo_bytes"] for field in self.run.results["blocks"]["fields"])
+        return self.of_fields("halo_bytes")
+
+    def of_fields(self, what):
+        return sum(field[what] for field in self.run.results["blocks"]["fields"])
 
     def values(self):
         run, results = self.run, self.run.results
         return [f"{self.kind}, {self.ranks}", self.edge, run.unknowns, run.unknowns // self.ranks, run.newton, run.mean, run.most, run.residual,
-                self.halo / 1e3, results.get("timing", {}).get("ghost_exchange", {}).get("count", 0), results["partition"]["cut_edges"],
+                self.halo / 1e3, self.of_fields("halo_messages"), results.get("timing", {}).get("ghost_exchange", {}).get("count", 0), results["partition"]["cut_edges"],
                 run.bytes[0] / 1e6, run.bytes[1] / 1e6, *(run.seconds(what) for what in linear.TIMERS)]
 
 
@@ -84,10 +86,9 @@ def main(words):
     parser = linear.parser("ranks", __doc__)
     parser.add_argument("--edge", type=linear.count, default=TIMED, metavar="N", help=f"cells along an edge of the box of the timed scene ({TIMED}, 280 thousand unknowns)")
     options = parser.parse_args(words)
+    runs = QUICK if options.quick else [("timed", options.edge, ranks) for ranks in (1, 2)] + STRONG + WEAK
+    chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[2]}")
     options.output.mkdir(parents=True, exist_ok=True)
-    chosen = [row for row in (QUICK if options.quick else [("timed", options.edge, ranks) for ranks in (1, 2)] + STRONG + WEAK) if re.search(options.only, f"{row[0]}, {row[2]}")]
-    if not chosen:
-        sys.exit(f'ranks: no row matches "{options.only}"')
     table, rows, failed = linear.Table(COLUMNS, 12), [], []
     for kind, edge, ranks in chosen:
         run = linear.run(options, (*linear.cells(edge), "Mesh.cell=tetrahedron", *STATES[STATE]), f"{kind}_{edge}_{ranks}", ranks)

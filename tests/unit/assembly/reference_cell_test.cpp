@@ -223,6 +223,13 @@ TYPED_TEST(ReferenceCells, CellPointOfAnAffineCell) {
       for (int j = 0; j < dim; ++j) X[a][i] += F[i][j] * xi[j];
     }
   }
+  EXPECT_TRUE(TestFixture::Cell::is_affine(X));
+  for (int a = 1; a < n; ++a)
+    for (int i = 0; i < dim; ++i) {
+      X[a][i] += 1e-8;
+      EXPECT_EQ(TestFixture::Cell::is_affine(X), is_simplex(TestFixture::shape)) << a;
+      X[a][i] -= 1e-8;
+    }
   this->inside(3, xi);
   TestFixture::Cell::gradients(xi, dN);
   const CellPoint<TestFixture::shape> point(X, dN);

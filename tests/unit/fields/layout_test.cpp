@@ -4,6 +4,7 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Core.hpp>
+#include <set>
 
 #include "mesh/distribute.hpp"
 #include "unit/mesh/meshes.hpp"
@@ -84,6 +85,10 @@ TEST(Layout, ImportBringsEveryGhost) {
         EXPECT_EQ(view(i, 0),
                   3.0 * static_cast<Real>(layout.ghosted()->getGlobalElement(static_cast<LocalIndex>(i))) + 1);
       EXPECT_EQ(layout.halo_bytes(), (view.extent(0) - layout.n_owned()) * sizeof(Real));
+      const auto ghosts = layout.ghosted()->getNodeElementList()(layout.n_owned(), view.extent(0) - layout.n_owned());
+      std::vector<int> owners(ghosts.size());
+      layout.owned()->getRemoteIndexList(ghosts, Teuchos::arrayView(owners.data(), owners.size()));
+      EXPECT_EQ(layout.halo_messages(), std::set<int>(owners.begin(), owners.end()).size());
     }
 }
 
@@ -96,6 +101,7 @@ TEST(Layout, RanksWithoutCellsHoldNothing) {
     const Layout layout(field, *mesh);
     EXPECT_EQ(layout.n_owned(), holds_all ? n_global(*mesh, field.entity) * field.n_components : 0);
     EXPECT_EQ(layout.halo_bytes(), 0u);
+    EXPECT_EQ(layout.halo_messages(), 0u);
   }
 }
 

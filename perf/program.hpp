@@ -1,0 +1,44 @@
+// What the programs of measurements share: NAME SCENE [PATH=VALUE...] measures something of a scene and prints JSON.
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <string>
+
+namespace sprekk::perf {
+
+using nlohmann::json;
+
+/// Seconds on the clock until all ranks are done. Collective.
+inline Real time_of(const Comm& comm, const std::function<void()>& work) {
+  comm.barrier();
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  comm.barrier();
+  return std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// The main() of a program: its exit status, 1 after an Error.
+inline int run(const std::string& name, int argc, char** argv,
+               const std::function<json(const model::Scene&, RCP<const Comm>)>& measure) {
+  Tpetra::ScopeGuard guard(&argc, &argv);
+  const auto comm = Tpetra::getDefaultComm();
+  try {
+    SPREKK_CHECK(argc > 1, "usage: {} SCENE [PATH=VALUE...]", name);
+    const auto result = measure(model::read_scene(*comm, argv[1], {argv + 2, argv + argc}), comm);
+    if (comm->getRank() == 0) std::cout << result.dump(2) << '\n';
+  } catch (const Error& error) {  // the same on every rank
+    if (comm->getRank() == 0) std::cerr << name << ": " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace sprekk::perf
