@@ -2,6 +2,8 @@
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <cmath>
+
 namespace sprekk::solve {
 namespace {
 
@@ -9,19 +11,20 @@ using fields::Map;
 using fields::MultiVector;
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Parts of rock that float would make the last matrix singular.
-constexpr Real raised = 1 + 1e-8;
+/// By how much of itself the diagonal of the last matrix is raised: parts of rock that float would make it singular.
+constexpr Real raise = 1e-8, most_raise = 1e-1;
+constexpr Real most_growth = 100;  // of the residual in a cycle
 
 constexpr Real least_coarsening = 0.8;
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
 
-void raise_diagonal(CrsMatrix& matrix) {
+void raise_diagonal(CrsMatrix& matrix, Real by) {
   const auto local = matrix.getLocalMatrixHost();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
   for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
     for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= raised;
+      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= 1 + by;
 }
 
 }  // namespace
@@ -63,8 +66,15 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
     level.smoother->update(level.A);
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
+  for (Real by = raise; by <= most_raise; by *= 100) {
+    factor_last(by, symmetric);
+    if (symmetric || growth() < most_growth) break;
+  }
+}
+
+void Multigrid::factor_last(Real raised_by, bool symmetric) {
   const auto last = crs_matrix(levels_.back().A);
-  raise_diagonal(*last);
+  raise_diagonal(*last, raised_by);
   if (last_.is_null()) {
     last_matrix_ = last;
     last_ = rcp(new DirectInverse(last_matrix_, "the coarsest level of multigrid"));
@@ -72,6 +82,18 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
     Kokkos::deep_copy(last_matrix_->getLocalMatrixDevice().values, last->getLocalMatrixDevice().values);
   }
   last_->setup(symmetric);
+}
+
+/// |b - A M b| / |b| of a vector b that is the same on any number of ranks. R A P of a matrix that is not symmetric can
+/// be singular where the matrix is not; then it is large.
+Real Multigrid::growth() const {
+  Vector b(map_), Mb(map_), r(map_);
+  for (std::size_t i = 0; i < b.getLocalLength(); ++i)
+    b.replaceLocalValue(i, std::cos(static_cast<Real>(map_->getGlobalElement(i))));
+  apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
+  finest_->apply(Mb, r);
+  r.update(1, b, -1);
+  return r.norm2() / b.norm2();
 }
 
 void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const {

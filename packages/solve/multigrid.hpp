@@ -18,7 +18,7 @@ class Multigrid : public fields::Operator {
   Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
             const RCP<const fields::MultiVector>& modes);
 
-  /// Makes ready for the values of a matrix with the graph of the first; it must live until the next set-up.
+  /// Makes ready for the values of a matrix with the graph of the first.
   void setup(const RCP<const CrsMatrix>& matrix, bool symmetric);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
@@ -39,6 +39,8 @@ class Multigrid : public fields::Operator {
   };
 
   void add_level(const NodeMatrix& A);
+  void factor_last(Real raised_by, bool symmetric);
+  Real growth() const;
   void cycle(std::size_t level) const;
   void solve_last() const;
 
