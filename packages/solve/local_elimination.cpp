@@ -205,7 +205,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     const auto start = response.column_start;
     Kokkos::parallel_for(
         "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
-          lu_solve(m, &lu(e * m * m), &pivot(e * m), z.data() + m * start(e), start(e + 1) - start(e));
+          lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
         });
     response.ghost->doImport(*response.owned, *response.import, Tpetra::INSERT);
   }
@@ -235,7 +235,7 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
         RowWalk walk(local.graph, row);
         for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
           const LocalIndex slot = slots(pair), first = column_start(slot), n_columns = column_start(slot + 1) - first;
-          const auto* z = slot < n_owned ? owned.data() + m * first : ghost.data() + (m * first - n_owned_values);
+          const auto* z = slot < n_owned ? &owned(m * first) : &ghost(m * first - n_owned_values);
           for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
             const int n = n_columns - begin < strip ? n_columns - begin : strip;
             for (int k = 0; k < n; ++k) sum[k] = 0;
