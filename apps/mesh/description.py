@@ -36,6 +36,7 @@ class Network:
                         for name, content in self.entries.get("regions", {}).items()]
         self.fractures = self.features("fractures", "fracture")
         self.constraints = self.features("constraints", "constraint")
+        self.check_names()
         self.check_dimensions()
         self.set_sizes()
 
@@ -77,6 +78,15 @@ class Network:
                           for k, x in enumerate(at_random(content["random"], self.domain))]
         return found
 
+    def check_names(self):
+        """Groups of the mesh must be told apart."""
+        sides = {side.group for side in self.domain.sides}
+        for name in self.entries["fractures"]:
+            if name in sides:
+                raise NetworkError(f"{self.place('fractures > ' + name)}: has the name of a side of the domain; choose another")
+        if "bulk" in self.entries["regions"]:
+            raise NetworkError(f"{self.place('regions > bulk')}: is the name of the rest of the rock; choose another")
+
     def check_dimensions(self):
         for body in self.regions:
             if body.dim != self.dim:
@@ -88,7 +98,7 @@ class Network:
     def set_sizes(self):
         e, diagonal = self.entries, self.domain.size
         self.tolerance = e.get("tolerance", 1e-6 * diagonal)
-        self.minimum_distance = max(e.get("minimum distance", 1e-4 * diagonal), self.tolerance)
+        self.minimum_distance = e.get("minimum distance", 1e-4 * diagonal)
         self.minimum_angle = e["minimum angle"]
         self.size = e.get("size", diagonal / 10)
         self.relative_size, self.growth = e["relative size"], e["growth"]

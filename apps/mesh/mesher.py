@@ -1,4 +1,5 @@
 """Hands a plan to gmsh, and takes the cells back."""
+import re
 from dataclasses import dataclass
 
 import gmsh
@@ -23,14 +24,14 @@ def make_mesh(plan, sizes):
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.logger.start()
+        model = Model(plan)
+        set_sizes(sizes)
         try:
-            tags = Model(plan)
-            set_sizes(sizes)
             gmsh.model.mesh.generate(plan.dim)
         except Exception as error:  # what gmsh throws has no type of its own
-            said = [line for line in gmsh.logger.get() if line.startswith("Error")]
-            raise NetworkError(f"gmsh could not make the mesh: {said[-1][7:].strip() if said else error}; a larger \"tolerance\" joins what is too close") from None
-        return tags.mesh(sizes)
+            said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
+            raise NetworkError(model.failure(said or [str(error)])) from None
+        return model.mesh(sizes)
     finally:
         gmsh.finalize()
 
@@ -58,6 +59,13 @@ class Model:
 
     def loop(self, ring):
         return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
+
+    def failure(self, said):
+        """What gmsh says of a mesh that it could not make, with the names of the features that it numbers."""
+        owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
+        names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
+        where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
+        return f"gmsh could not make the mesh{where}: {said[0]}; a larger \"tolerance\" joins what is too close, smaller sizes resolve it"
 
     def mesh(self, sizes):
         dim = self.plan.dim

@@ -4,7 +4,7 @@ from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
 from shapes import Feature, NetworkError, check_line, check_polygon, refuse
-from surfaces import Surface, are_level, check_angles, heights, overlap, shared_sides, traces, without
+from surfaces import Surface, are_level, check_angles, moved_onto, overlap, shared_sides, traces, without
 
 
 class Face:
@@ -99,6 +99,7 @@ class Plan:
                 self.repairs.append(f"left out, outside of the domain: {feature.name}")
             surfaces += parts
         check_same([s.feature for s in surfaces[len(domain.surfaces):]], tolerance)
+        surfaces = self.joined_corners(surfaces, len(domain.surfaces))
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
             check_polygon(feature, tolerance)
             for part in domain.clip_polygon(feature, tolerance):
@@ -119,6 +120,17 @@ class Plan:
                     touches.append((begin, {i, j}))
         self.surfaces = surfaces
         return [s.feature for s in surfaces], np.array(segments), parents, touches
+
+    def joined_corners(self, surfaces, n_sides):
+        """The surfaces with corners of fractures on others that they nearly touch."""
+        found = surfaces[:n_sides]
+        for surface in surfaces[n_sides:]:
+            moved, told = moved_onto(surface, surfaces, self.network.tolerance)
+            for distance, other in told:
+                if distance > 1e-9 * self.network.domain.size:
+                    self.repairs.append(f"joined what was {distance:.3g} m apart: {surface.feature.name} and {other.feature.name}")
+            found.append(moved if told else surface)
+        return found
 
     def meet(self, one, other):
         """Segments in which two surfaces meet; refuses fractures that lie on each other or meet at too small an angle."""

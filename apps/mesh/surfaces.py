@@ -32,6 +32,27 @@ class Surface:
         return self.shape.distance(Point(self.plane.inside(point))) <= tolerance
 
 
+def moved_onto(surface, others, tolerance):
+    """The surface with corners that are closer to one of the others than the tolerance moved onto it, in its own plane;
+    and how far (m) for the sake of which: [(distance, other)]. What would move by much more is left."""
+    rings, told = [ring.copy() for ring in surface.rings], []
+    close = [o for o in others if o is not surface and np.all(o.low <= surface.high + tolerance) and np.all(o.high >= surface.low - tolerance)]
+    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # of the height over the other along both axes
+    for ring in rings:
+        for k, corner in enumerate(ring):
+            near = [(o.plane.height(corner), slope, o) for o, slope in zip(close, slopes)
+                    if abs(o.plane.height(corner)) <= tolerance < 4 * tolerance * np.linalg.norm(slope) and o.holds(corner, tolerance)]
+            near = near[:2]  # two planes fix a corner
+            height = np.array([h for h, _, _ in near])
+            if not near or abs(height).max() < 1e-12 * np.linalg.norm(surface.high - surface.low):
+                continue
+            step = -np.linalg.lstsq(np.array([s for _, s, _ in near]), height, rcond=1e-3)[0]
+            if np.linalg.norm(step) <= 4 * tolerance:
+                ring[k] = corner + step @ surface.plane.axes
+                told += [(abs(h), o) for h, _, o in near]
+    return Surface(surface.feature, surface.plane, rings), told
+
+
 def heights(surface, plane, tolerance):
     """Of the corners of each ring above a plane; what is within the tolerance is on it."""
     all_heights = [plane.height(ring) for ring in surface.rings]
@@ -53,10 +74,7 @@ def chords(surface, height, along, tolerance):
     found = []
     for here, after in zip(hits, hits[1:]):
         if surface.holds(0.5 * (here[1] + after[1]), tolerance):
-            if found and found[-1][1] is here:
-                found[-1] = (found[-1][0], after)
-            else:
-                found.append((here, after))
+            found.append((here, after))
         elif not found or found[-1][1] is not here:
             found.append((here, here))
     if hits and (not found or found[-1][1] is not hits[-1]):

@@ -92,8 +92,7 @@ void Network::describe(base::Section& s) {
   s.entry(tolerance, "tolerance", "m", base::positive(),
           "what is closer is joined, and told; absent: 1e-6 of the domain's diagonal");
   s.entry(minimum_distance, "minimum distance", "m", base::at_least(0),
-          "fractures that are closer without being joined are refused; absent: 1e-4 of the domain's diagonal, or the "
-          "tolerance where that is larger");
+          "fractures that come closer without being joined are refused; absent: 1e-4 of the domain's diagonal");
   s.entry(minimum_angle, "minimum angle", "degree", base::between(0, 60),
           "fractures that meet at a smaller angle are refused");
   if (s.complete() && fractures.empty()) s.fail("fractures", "missing; a network needs a set of fractures");
