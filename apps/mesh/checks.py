@@ -2,7 +2,7 @@
 import numpy as np
 from arrange import closest, near_pairs
 from domain import in_polygon
-from shapes import NetworkError
+from shapes import Errors
 
 
 def names(plan, one, other):
@@ -85,14 +85,11 @@ def lying_on(plan):
             yield f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides"
 
 
-def check(plan, most=20):
+def check(plan):
     """Refuses what is wrong, once for each two features."""
     found = list(lying_on(plan)) + list(small_angles(plan)) if plan.dim == 2 else []
     found = found or list(close_edges(plan)) + (list(close_surfaces(plan)) if plan.dim == 3 else [])
     first = {}
     for line in found:
-        pair = line.split(" are ")[0] if " are " in line else line
-        first.setdefault(pair, line)
-    lines = list(first.values())
-    if lines:
-        raise NetworkError("\n".join(lines[:most] + ([f"and {len(lines) - most} more"] if len(lines) > most else [])))
+        first.setdefault(line.split(" are ")[0], line)
+    Errors(first.values()).throw()

@@ -48,7 +48,9 @@ class Network:
 
     def table(self, content):
         self.files.append(content["file"])
-        kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else None)
+        domain = self.entries.get("domain")
+        of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
+        kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
         return read_table(content["file"], kind)
 
     def domain_entries(self):

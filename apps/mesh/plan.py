@@ -3,7 +3,7 @@ import numpy as np
 from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
-from shapes import Feature, NetworkError, check_line, check_polygon, refuse
+from shapes import Errors, Feature, NetworkError, check_line, check_polygon, refuse
 from surfaces import Surface, are_level, check_angles, moved_onto, overlap, shared_sides, traces, without
 
 
@@ -65,12 +65,14 @@ class Plan:
     def lines(self):
         """Owners, segments and their owners of a network in 2D."""
         network, domain = self.network, self.network.domain
-        owners = list(domain.sides)
+        owners, errors = list(domain.sides), Errors()
         for line in network.fractures + network.constraints + [s for body in network.regions for s in body.sides]:
-            check_line(line, network.tolerance)
-            parts = domain.clip_line(line, network.tolerance)
-            owners += [Feature(line.kind, line.group, line.name, x) for x in self.worth(line, parts)]
-        check_same([owner for owner in owners if owner.kind == "fracture"], network.tolerance)
+            with errors.of_one():
+                check_line(line, network.tolerance)
+                parts = self.worth(line, domain.clip_line(line, network.tolerance))
+                owners += [Feature(line.kind, line.group, line.name, x) for x in parts]
+        errors.throw()
+        check_same(network.fractures, network.tolerance)
         segments, parents = [], []
         for k, owner in enumerate(owners):
             flat = np.column_stack([owner.points, np.zeros(len(owner.points))])
@@ -79,10 +81,10 @@ class Plan:
         return owners, np.array(segments), parents, []
 
     def worth(self, line, parts):
-        """The parts of a line that are longer than what must not be closer; tells of others, and of clipping to nothing."""
+        """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture that has none."""
         length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
-        if not parts and line.kind == "fracture":
-            self.repairs.append(f"left out, outside of the domain: {line.name}")
+        if line.kind == "fracture" and max(length, default=0) < self.network.minimum_distance:
+            refuse(line, "lies outside of the domain")
         for x in length:
             if x < self.network.minimum_distance:
                 self.repairs.append(f"left out a part of {x:.3g} m in the domain: {line.name}")
@@ -91,14 +93,16 @@ class Plan:
     def polygons(self):
         """The same in 3D, and points in which surfaces touch."""
         network, domain, tolerance = self.network, self.network.domain, self.network.tolerance
-        surfaces = list(domain.surfaces)
+        surfaces, errors = list(domain.surfaces), Errors()
         for feature in network.fractures:
-            check_polygon(feature, tolerance)
-            parts = domain.clip_polygon(feature, tolerance)
-            if not parts:
-                self.repairs.append(f"left out, outside of the domain: {feature.name}")
-            surfaces += parts
-        check_same([s.feature for s in surfaces[len(domain.surfaces):]], tolerance)
+            with errors.of_one():
+                check_polygon(feature, tolerance)
+                parts = domain.clip_polygon(feature, tolerance)
+                if not parts:
+                    refuse(feature, "lies outside of the domain")
+                surfaces += parts
+        errors.throw()
+        check_same(network.fractures, tolerance)
         surfaces = self.joined_corners(surfaces, len(domain.surfaces))
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
             check_polygon(feature, tolerance)
@@ -112,12 +116,14 @@ class Plan:
             parents += [frozenset([k])] * len(sides)
         low, high = (np.array([getattr(s, which) for s in surfaces]) for which in ("low", "high"))
         for i, j in zip(*near_pairs(low, high, 2 * tolerance)):
-            for begin, end in self.meet(surfaces[i], surfaces[j]):
-                if np.linalg.norm(end - begin) > tolerance:
-                    segments.append(np.array([begin, end]))
-                    parents.append(frozenset([i, j]))
-                else:
-                    touches.append((begin, {i, j}))
+            with errors.of_one():
+                for begin, end in self.meet(surfaces[i], surfaces[j]):
+                    if np.linalg.norm(end - begin) > tolerance:
+                        segments.append(np.array([begin, end]))
+                        parents.append(frozenset([i, j]))
+                    else:
+                        touches.append((begin, {i, j}))
+        errors.throw()
         self.surfaces = surfaces
         return [s.feature for s in surfaces], np.array(segments), parents, touches
 
@@ -180,13 +186,14 @@ def direction(line, point):
 
 def check_same(fractures, tolerance):
     """Refuses two fractures with the same points."""
-    seen = {}
+    seen, errors = {}, Errors()
     for fracture in fractures:
         grid = np.round(fracture.points / (10 * tolerance)) + 0.0
         key = tuple(sorted(map(tuple, grid)))
-        if key in seen and seen[key] is not fracture and seen[key].name != fracture.name:
-            raise NetworkError(f"{seen[key].name} and {fracture.name} are the same")
+        if key in seen:
+            errors.lines.append(f"{seen[key].name} and {fracture.name} are the same")
         seen[key] = fracture
+    errors.throw()
 
 
 def faces_of(owner, flat, edges, loose, shape, tolerance):

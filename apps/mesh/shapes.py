@@ -1,4 +1,5 @@
 """Fractures, and what else cells keep to, as points in space; the frame of a plane."""
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +15,27 @@ class NetworkError(Exception):
         self.files = files
 
 
+class Errors:
+    """Collects what is wrong with several things, to tell it all at once: a line each."""
+
+    MOST = 20
+
+    def __init__(self, lines=()):
+        self.lines = list(lines)
+
+    @contextmanager
+    def of_one(self):
+        try:
+            yield
+        except NetworkError as error:
+            self.lines.append(str(error))
+
+    def throw(self, files=()):
+        if self.lines:
+            more = [f"and {len(self.lines) - self.MOST} more"] if len(self.lines) > self.MOST else []
+            raise NetworkError("\n".join(self.lines[:self.MOST] + more), [*files, "and "])
+
+
 @dataclass
 class Feature:
     """A polyline in 2D, a plane polygon in 3D."""
@@ -21,10 +43,6 @@ class Feature:
     group: str  # of the mesh: name of the set, the boundary or the region
     name: str  # in messages
     points: np.ndarray = field(repr=False)  # (n, 2) or (n, 3), m
-
-    @property
-    def is_plane(self):
-        return self.points.shape[1] == 2
 
 
 def refuse(feature, what):

@@ -3,9 +3,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from shapes import NetworkError, ellipse
-
-MOST = 20  # errors that are told
+from shapes import Errors, NetworkError, ellipse
 
 
 @dataclass
@@ -15,17 +13,17 @@ class Table:
     errors: list = field(default_factory=list)
 
 
-def numbers(words, place, table):
-    """The words as finite numbers, or None and an error."""
+def numbers(words, place, table, first=1):
+    """The words, from column `first` on, as finite numbers, or None and an error."""
     found = []
-    for k, word in enumerate(words):
+    for k, word in enumerate(words, first):
         try:
             found.append(float(word))
         except ValueError:
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k + 1} is no number")
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no number")
             return None
         if not math.isfinite(found[-1]):
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k + 1} is no finite number")
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no finite number")
             return None
     return np.array(found)
 
@@ -50,7 +48,7 @@ def lines_row(words, place, table):
     if len(words) != 5:
         table.errors.append(f"{place}: has {len(words)} columns, needs 5: id,x0,y0,x1,y1")
         return
-    x = numbers(words[1:], place, table)
+    x = numbers(words[1:], place, table, 2)
     if x is not None:
         table.fractures.append((f"{words[0].strip()} ({place})", x.reshape(2, 2)))
 
@@ -117,9 +115,10 @@ def read_fab(path):
         if len(head) < 2 or not all(word.isdigit() for word in head):
             raise NetworkError(f"{place}: is \"{lines[k - 1].strip()[:40]}\", expected the number of a fracture and that of its corners", [path])
         n = int(head[1])
-        x = [numbers(lines[row].split()[1:4], f"{path}: line {row + 1}", table) for row in range(k, min(k + n, len(lines)))]
-        if len(x) < n or any(p is not None and len(p) != 3 for p in x):
+        corners = [line.split() for line in lines[k:k + n]]
+        if [c[:1] for c in corners] != [[str(row + 1)] for row in range(n)] or any(len(c) < 4 for c in corners):
             raise NetworkError(f"{place}: fracture {head[0]} has {n} corners; their lines, number x y z, do not follow", [path])
+        x = [numbers(c[1:4], f"{path}: line {k + row + 1}", table, 2) for row, c in enumerate(corners)]
         if all(p is not None for p in x):
             table.fractures.append((f"{head[0]} ({place})", np.array(x)))
         k += n + 1
@@ -138,7 +137,5 @@ def read_table(path, kind):
     table = read_fab(path) if kind == "fab" else read_csv(path, {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind])
     if not table.errors and not table.fractures:
         table.errors.append(f"{path}: has no fracture")
-    if table.errors:
-        more = [f"and {len(table.errors) - MOST} more lines that are wrong"] if len(table.errors) > MOST else []
-        raise NetworkError("\n".join(table.errors[:MOST] + more), [path, "and "])
+    Errors(table.errors).throw([path])
     return table
