@@ -3,7 +3,7 @@ import numpy as np
 from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
-from shapes import Errors, Feature, NetworkError, check_line, check_polygon, refuse
+from shapes import Errors, Feature, NetworkError, Plane, check_line, check_polygon, refuse
 from surfaces import Surface, are_level, check_angles, moved_onto, overlap, shared_sides, traces, without
 
 
@@ -22,8 +22,10 @@ class Plan:
     def __init__(self, network):
         self.network, self.dim = network, network.dim
         self.repairs, self.surfaces = [], None
+        # What joins lines would bend surfaces, of which only corners are moved, in their planes; all else is exact.
+        self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
         self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()
-        graph = arrange(segments, parents, network.tolerance)
+        graph = arrange(segments, parents, self.tolerance)
         self.points, self.edges = graph.points, graph.edges
         self.graph = graph
         self.tell_joined(graph)
@@ -92,11 +94,12 @@ class Plan:
 
     def polygons(self):
         """The same in 3D, and points in which surfaces touch."""
-        network, domain, tolerance = self.network, self.network.domain, self.network.tolerance
+        network, domain, tolerance = self.network, self.network.domain, self.tolerance
         surfaces, errors = list(domain.surfaces), Errors()
         for feature in network.fractures:
             with errors.of_one():
-                check_polygon(feature, tolerance)
+                check_polygon(feature, network.tolerance)
+                self.flatten(feature)
                 parts = domain.clip_polygon(feature, tolerance)
                 if not parts:
                     refuse(feature, "lies outside of the domain")
@@ -105,7 +108,8 @@ class Plan:
         check_same(network.fractures, tolerance)
         surfaces = self.joined_corners(surfaces, len(domain.surfaces))
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
-            check_polygon(feature, tolerance)
+            check_polygon(feature, network.tolerance)
+            self.flatten(feature)
             for part in domain.clip_polygon(feature, tolerance):
                 level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
                 surfaces += without(part, level, tolerance) if level else [part]
@@ -127,6 +131,14 @@ class Plan:
         self.surfaces = surfaces
         return [s.feature for s in surfaces], np.array(segments), parents, touches
 
+    def flatten(self, feature):
+        """Moves corners into the plane of a polygon."""
+        plane = Plane(feature.points)
+        height = plane.height(feature.points)
+        if abs(height).max() > 1e-9 * self.network.domain.size:
+            self.repairs.append(f"moved corners by up to {abs(height).max():.3g} m into a plane: {feature.name}")
+        feature.points = feature.points - height[:, None] * plane.normal
+
     def joined_corners(self, surfaces, n_sides):
         """The surfaces with corners of fractures on others that they nearly touch."""
         found = surfaces[:n_sides]
@@ -140,7 +152,7 @@ class Plan:
 
     def meet(self, one, other):
         """Segments in which two surfaces meet; refuses fractures that lie on each other or meet at too small an angle."""
-        tolerance = self.network.tolerance
+        tolerance = self.tolerance
         are_fractures = one.feature.kind == other.feature.kind == "fracture"
         if are_level(one, other, tolerance):
             if are_fractures and overlap(one, other).area > tolerance * self.network.domain.size:
@@ -159,7 +171,7 @@ class Plan:
     def faces(self):
         """All faces, cut along edges; checks that they cover each surface."""
         if self.dim == 2:
-            return faces_of(0, self.points[:, :2], list(self.edges), self.loose, self.network.domain.shape, self.network.tolerance)
+            return faces_of(0, self.points[:, :2], list(self.edges), self.loose, self.network.domain.shape, self.tolerance)
         edges = [[] for _ in self.surfaces]
         for edge, of in self.edges.items():
             for k in of:
@@ -167,9 +179,9 @@ class Plan:
         found = []
         for k, surface in enumerate(self.surfaces):
             loose = [p for p, of in self.loose.items() if k in of]
-            faces = faces_of(k, surface.plane.inside(self.points), edges[k], loose, surface.shape, self.network.tolerance)
+            faces = faces_of(k, surface.plane.inside(self.points), edges[k], loose, surface.shape, self.tolerance)
             area = sum(face.shape.area for face in faces)
-            if abs(area - surface.shape.area) > 4 * self.network.tolerance * surface.shape.length:
+            if abs(area - surface.shape.area) > 4 * self.tolerance * surface.shape.length:
                 refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
                                         f"try another \"tolerance\"")
             found += faces

@@ -4,6 +4,7 @@ from collections import Counter
 import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
+from shapely.geometry import Point
 from shapes import diameter
 
 TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # size at tips / size at the fracture, where none is given
@@ -142,5 +143,4 @@ def is_side(plan, edge, owner):
     """Whether an edge lies on the rim of its surface."""
     surface = plan.surfaces[owner]
     middle = surface.plane.inside(0.5 * (plan.points[edge[0]] + plan.points[edge[1]]))
-    from shapely.geometry import Point
-    return surface.shape.boundary.distance(Point(middle)) <= 10 * plan.network.tolerance
+    return surface.shape.boundary.distance(Point(middle)) <= 10 * plan.tolerance
