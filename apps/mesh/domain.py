@@ -114,9 +114,9 @@ class Body:
         pieces = [p for p in polygonize(unary_union(lines)) if self.holds(plane.outside([p.representative_point().coords[0]]))[0]]
         return unary_union(pieces)
 
-    def clip_polygon(self, polygon, tolerance):
-        """Surfaces of a polygon's parts inside; refuses a fracture on a side."""
-        whole = Surface.whole(polygon)
+    def clip_polygon(self, whole, tolerance):
+        """Surfaces of the parts of a surface inside; refuses a fracture on a side."""
+        polygon = whole.feature
         for s in self.surfaces:
             if are_level(whole, s, tolerance) and overlap(s, whole).area > tolerance * self.size:
                 if polygon.kind == "fracture":

@@ -100,17 +100,17 @@ class Plan:
             with errors.of_one():
                 check_polygon(feature, network.tolerance)
                 self.flatten(feature)
-                parts = domain.clip_polygon(feature, tolerance)
+                parts = domain.clip_polygon(self.joined_corners([Surface.whole(feature)], domain.surfaces)[0], tolerance)
                 if not parts:
                     refuse(feature, "lies outside of the domain")
                 surfaces += parts
         errors.throw()
         check_same(network.fractures, tolerance)
-        surfaces = self.joined_corners(surfaces, len(domain.surfaces))
+        surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
             check_polygon(feature, network.tolerance)
             self.flatten(feature)
-            for part in domain.clip_polygon(feature, tolerance):
+            for part in domain.clip_polygon(Surface.whole(feature), tolerance):
                 level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
                 surfaces += without(part, level, tolerance) if level else [part]
         segments, parents, touches = [], [], []
@@ -139,11 +139,11 @@ class Plan:
             self.repairs.append(f"moved corners by up to {abs(height).max():.3g} m into a plane: {feature.name}")
         feature.points = feature.points - height[:, None] * plane.normal
 
-    def joined_corners(self, surfaces, n_sides):
-        """The surfaces with corners of fractures on others that they nearly touch."""
-        found = surfaces[:n_sides]
-        for surface in surfaces[n_sides:]:
-            moved, told = moved_onto(surface, surfaces, self.network.tolerance)
+    def joined_corners(self, surfaces, others):
+        """The surfaces with corners on others that they nearly touch."""
+        found = []
+        for surface in surfaces:
+            moved, told = moved_onto(surface, others, self.network.tolerance)
             for distance, other in told:
                 if distance > 1e-9 * self.network.domain.size:
                     self.repairs.append(f"joined what was {distance:.3g} m apart: {surface.feature.name} and {other.feature.name}")

@@ -90,7 +90,8 @@ void Network::describe(base::Section& s) {
           "on the boundary of the domain; absent: as elsewhere");
   s.entry(growth, "growth", "-", base::positive(), "of edges per distance from where a size is given");
   s.entry(tolerance, "tolerance", "m", base::positive(),
-          "what is closer is joined, and told; absent: 1e-6 of the domain's diagonal");
+          "what is closer is joined, and told: points and lines in 2D; in 3D corners of polygons, which are moved onto "
+          "surfaces in their own plane; absent: 1e-6 of the domain's diagonal");
   s.entry(minimum_distance, "minimum distance", "m", base::at_least(0),
           "fractures that come closer without being joined are refused; absent: 1e-4 of the domain's diagonal");
   s.entry(minimum_angle, "minimum angle", "degree", base::between(0, 60),
