@@ -1,4 +1,5 @@
 """A network as `sprekk network` prints it: fractures and bodies as features."""
+import os
 import xml.etree.ElementTree as xml
 
 from domain import Body, rows
@@ -47,11 +48,13 @@ class Network:
         return Body(path, entries, kind, group)
 
     def table(self, content):
-        self.files.append(content["file"])
+        path = os.path.relpath(content["file"])
+        path = content["file"] if path.startswith("..") else path  # as people know it
+        self.files.append(path)
         domain = self.entries.get("domain")
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
         kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
-        return read_table(content["file"], kind)
+        return read_table(path, kind)
 
     def domain_entries(self):
         if "domain" in self.entries:

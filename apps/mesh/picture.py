@@ -40,13 +40,13 @@ def of_body(ax, mesh, plan):
     ax.view_init(elev=22, azim=-58)
 
 
-def draw(mesh, plan, path, dpi=200):
+def draw(mesh, plan, path, dpi=110):
     plane = plan.dim == 2
     figure = plt.figure(figsize=(6, 6), constrained_layout=True)
     ax = figure.add_subplot(projection=None if plane else "3d")
     (of_plane if plane else of_body)(ax, mesh, plan)
     ax.set_xlabel("x (m)")
     ax.set_ylabel("y (m)")
-    ax.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=4)
+    ax.legend(fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
     figure.savefig(path, dpi=dpi)
     plt.close(figure)

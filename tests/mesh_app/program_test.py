@@ -218,7 +218,7 @@ class Runs(MeshTest):
         self.write("net.csv", "1,0.2,0.5,0.8")
         for ranks in (1, 2):
             told = self.launch("run", scene, "--ranks", ranks, "--output", "out", expect=1)
-            self.assertEqual(told, f"sprekk: {self.folder / 'net.csv'}: line 1: has 4 columns, needs 5: id,x0,y0,x1,y1\n")
+            self.assertEqual(told, f"sprekk: net.csv: line 1: has 4 columns, needs 5: id,x0,y0,x1,y1\n")
         self.assertEqual(self.results()["status"], "failed")
         self.assertIn("line 1: has 4 columns", self.results()["reason"])
         self.launch("check", scene, expect=1)
