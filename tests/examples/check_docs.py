@@ -62,8 +62,9 @@ def check_quotes(root):
 
 # What ./sprekk does with these commands, without building first.
 LAUNCHER = """#!/usr/bin/env bash
-words=() mpi=()
+words=() mpi=() sets=()
 while (($#)); do
+  if [[ $1 == --set ]]; then sets+=("$1" "$2"); fi
   if [[ $1 == --ranks ]]; then mpi=({mpiexec} --quiet --oversubscribe --bind-to none -np "$2"); shift
   else words+=("$1"); fi
   shift
@@ -72,7 +73,7 @@ mesh=({python} -B {root}/apps/mesh --program {binary})
 if [[ ${{words[0]}} == mesh ]]; then exec "${{mesh[@]}}" "${{words[@]:1}}"; fi
 if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; then
   folder=output/$(basename "${{words[1]}}" .xml)
-  "${{mesh[@]}}" "${{words[1]}}" -o "$folder/network.msh" --quiet || exit
+  "${{mesh[@]}}" "${{words[1]}}" -o "$folder/network.msh" --quiet "${{sets[@]}}" || exit
   words+=(--set "Mesh file.path=$PWD/$folder/network.msh")
 fi
 if [[ ${{words[0]}} == plot ]]; then exec {python} -B {root}/apps/plot "${{words[@]:1}}"; fi

@@ -4,6 +4,7 @@ import unittest
 
 import numpy as np
 from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers
+from report import gamma
 from shapes import NetworkError
 
 
@@ -89,6 +90,22 @@ class Lines(Conformity):
         self.assertLess(at(0.203, 0.5), at(0.25, 0.5))
 
 
+    def test_default_sizes(self):
+        """A tenth of the fracture along it, a twentieth of that at its tips, unless the domain is smaller."""
+        net = network({"a": [[0.2, 0.5], [0.8, 0.5]]}, relative_size=0.1)
+        net.size_at["tips"] = None
+        plan, mesh = meshed(net)
+        edges = np.sort(np.linalg.norm(np.diff(mesh.points[mesh.faces[mesh.face_owner == 4]], axis=1), axis=(1, 2)))
+        self.assertTrue(0.5 * 0.003 < edges[0] < 1.5 * 0.003, edges[0])
+        self.assertTrue(0.4 * 0.06 < edges[-1] < 1.5 * 0.06, edges[-1])
+
+    def test_gaps_are_resolved(self):
+        """Two fractures side by side: cells between them are about as long as the gap is wide."""
+        plan, mesh = meshed(network({"a": [[0.2, 0.5], [0.8, 0.5]], "b": [[0.2, 0.52], [0.8, 0.52]]}))
+        quality, _ = gamma(mesh.points, mesh.cells)
+        self.assertGreater(quality.min(), 0.3)
+
+
 class Polygons(Conformity):
     def test_crossings(self):
         a = square_at(2, 0.5)
@@ -138,6 +155,9 @@ class Polygons(Conformity):
         for k in range(6):
             faces[f"wall {k}"] = numbers([low[k], low[(k + 1) % 6], high[(k + 1) % 6], high[k]])
         domain = {**CUBE, "lower corner": [], "upper corner": [], "faces": faces}
+        x = np.random.default_rng(1).random((500, 3)) * [2.4, 2.4, 1.4] - 0.2
+        inside = (x > 0).all(axis=1) & (x < [2, 2, 1]).all(axis=1) & ((x[:, :2] < 1).any(axis=1))
+        self.assertTrue((network({"a": square_at(2, 0.5)}, domain).domain.holds(x) == inside).all())
         fracture = [[0.2, 1.8, 0.2], [1.8, 0.2, 0.2], [1.8, 0.2, 0.8], [0.2, 1.8, 0.8]]  # through the inner edge (1, 1)
         level = [[0.5, 0.5, 0.3], [1.8, 0.5, 0.3], [1.8, 1.5, 0.3], [0.5, 1.5, 0.3]]
         self.expect({"a": fracture, "b": level}, {"a": 0.6 * np.hypot(1.6, 1.6), "b": 1.3 - 0.8 * 0.5, "roof": 3}, domain)
@@ -184,7 +204,7 @@ class Refusals(unittest.TestCase):
         self.refused({"a": a, "b": a + [0.1, 0.1, 0]}, *both, "lie on each other")
         self.refused({"a": a, "b": a[[1, 2, 3, 0]]}, *both, "are the same")
         self.refused({"a": a, "b": a + [[0, 0, -0.005], [0, 0, 0.005], [0, 0, 0.005], [0, 0, -0.005]]}, *both, "meet at 0.955 degrees")
-        self.refused({"a": a, "b": square_at(0, 0.5) * [1, 1, 0.5] + [0, 0, 0.40005]}, *both, "are 5e-05 m apart")
+        self.refused({"a": a, "b": square_at(0, 0.5, 0.3, 0.7) * [1, 1, 0.5] + [0, 0, 0.35005]}, *both, "are 5e-05 m apart")
         self.refused({"a": a, "b": [[0.80005, 0.5, 0.2], [0.80005, 0.6, 0.9], [0.9, 0.5, 0.9]]}, *both, "are 5e-05 m apart")  # edges pass
         self.refused({"a": square_at(2, 1.0)}, 'fracture "a" of "a": lies on side "top" of domain')
         self.refused({"a": a + [2, 0, 0]}, 'fracture "a" of "a": lies outside')
