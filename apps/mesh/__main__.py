@@ -100,8 +100,9 @@ def main(words=None):
     options = arguments(words)
     try:
         told = make(options)
-    except (NetworkError, OSError) as error:
-        reason = in_words(error, options.scene)
+    except Exception as error:  # one line for whatever shapely or gmsh throw, too
+        known = isinstance(error, (NetworkError, OSError))
+        reason = in_words(error if known else NetworkError(f"no mesh could be made: {type(error).__name__}: {error}"), options.scene)
         print(f"sprekk: {reason}", file=sys.stderr)
         if options.run:
             end_results(options.output.parent / "results.json", reason)

@@ -30,6 +30,7 @@ class Plan:
         self.graph = graph
         self.tell_joined(graph)
         if self.dim == 2:
+            self.straighten_sides()
             self.part_overlaps()
         self.loose = {}  # points in which features touch
         for point, of in touches:
@@ -51,18 +52,33 @@ class Plan:
                 told.add(names)
                 self.repairs.append(f"joined what was {gap:.3g} m apart: " + " and ".join(names))
 
-    def part_overlaps(self):
-        """Gives edges of two fractures, which joining made of lines at an angle, to the first of them."""
+    def straighten_sides(self):
+        """Moves points that were joined to a side of the domain onto it, 2D; corners are on two sides, and stay."""
+        sides = {}
         for edge, of in self.edges.items():
-            fractures = [k for k in sorted(of) if self.is_fracture(k)]
+            for k in of:
+                if self.owners[k].kind == "boundary":
+                    for point in edge:
+                        sides.setdefault(point, set()).add(k)
+        for point, of in sides.items():
+            if len(of) == 1:
+                begin, end = self.owners[min(of)].points
+                along = (end - begin) / np.linalg.norm(end - begin)
+                self.points[point, :2] = begin + (self.points[point, :2] - begin) @ along * along
+
+    def part_overlaps(self):
+        """Gives edges of two fractures, or of one and a side, which joining made of lines at an angle, to the first."""
+        least = max(self.network.minimum_angle, 0.01)
+        for edge, of in self.edges.items():
+            owners = [k for k in sorted(of) if self.owners[k].kind in ("fracture", "boundary")]
             middle = 0.5 * (self.points[edge[0]] + self.points[edge[1]])[:2]
-            along = [direction(self.owners[k].points, middle) for k in fractures]
-            for k, other in zip(fractures[1:], along[1:]):
+            along = [direction(self.owners[k].points, middle) for k in owners] if len(owners) > 1 else []
+            for k, other in zip(owners[1:], along[1:]):
                 angle = np.degrees(np.arcsin(min(1, abs(along[0][0] * other[1] - along[0][1] * other[0]))))
-                if angle >= self.network.minimum_angle:
+                if angle >= least and self.is_fracture(k):
                     self.edges[edge] = self.edges[edge] - {k}
-                    self.repairs.append(f"joined along {np.linalg.norm(self.points[edge[0]] - self.points[edge[1]]):.3g} m: "
-                                        f"{self.owners[fractures[0]].name} and {self.owners[k].name}")
+                    length = np.linalg.norm(self.points[edge[0]] - self.points[edge[1]])
+                    self.repairs.append(f"joined along {length:.3g} m: {self.owners[owners[0]].name} and {self.owners[k].name}")
 
     def lines(self):
         """Owners, segments and their owners of a network in 2D."""

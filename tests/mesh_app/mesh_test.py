@@ -65,6 +65,13 @@ class Lines(Conformity):
         self.assertEqual((len(mesh.intersections), plan.repairs), (0, []))
         self.assertEqual(defects(plan, mesh), [])
 
+    def test_sides_stay_straight(self):
+        """Ends and crossings that are joined to a side move onto it."""
+        lines = {"a": [[0.3, 0.001], [0.3, 0.5]], "b": [[0.6, 0.5], [0.65, -0.001]], "c": [[0.799, 0.5], [0.801, -0.5]], "d": [[0.75, -0.03], [0.85, 0.033]]}
+        plan, mesh = meshed(network(lines, tolerance=5e-3))
+        self.assertEqual(defects(plan, mesh, 6e-3), [])
+        self.assertEqual(sum(owner.group == "south" for owner in plan.owners), 1)
+
     def test_regions_and_constraints(self):
         seam = {**SQUARE, "lower corner": [0.0, 0.2], "upper corner": [1.0, 0.4]}
         plan, mesh = self.expect({"a": [[0.5, 0.1], [0.5, 0.9]], "on": [[0.6, 0.4], [0.9, 0.4]]}, {"a": 0.8, "on": 0.3}, regions={"seam": seam},
