@@ -111,7 +111,7 @@ class Body:
             for (_, a), (_, b) in chords(s, heights(s, plane, tolerance), along / np.linalg.norm(along), tolerance):
                 if np.linalg.norm(b - a) > tolerance:
                     lines.append(LineString(np.round(plane.inside(np.array([a, b])), 12 - int(np.log10(self.size)))))
-        pieces = [p for p in polygonize(unary_union(lines)) if self.holds(plane.outside([p.representative_point().coords[0]]))[0]]
+        pieces = [p for p in polygonize(lines_of(unary_union(lines))) if self.holds(plane.outside([p.representative_point().coords[0]]))[0]]
         return unary_union(pieces)
 
     def clip_polygon(self, whole, tolerance):
