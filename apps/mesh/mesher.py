@@ -84,10 +84,12 @@ class Model:
             raise NetworkError("gmsh made no cells; a larger \"tolerance\" joins what is too close")
         owned = []
         if dim == 2:
-            owned = [(k, elements(1, self.line[edge])) for edge, of in self.plan.edges.items() for k in [foremost(self.plan, of)] if k is not None]
-            meeting = np.array([number[p + 1] for p in sorted(sizes.intersections)], int).reshape(-1, 1)
+            owned = [(foremost(self.plan, of), elements(1, self.line[edge])) for edge, of in self.plan.edges.items()]
+            owned = [(owner, nodes) for owner, nodes in owned if owner is not None]
+            meeting = number[[int(gmsh.model.mesh.getNodes(0, p + 1)[0][0]) for p in sorted(sizes.intersections)]].reshape(-1, 1)
         else:
-            owned = [(face.owner, elements(2, face.tag)) for face in self.faces if self.plan.owners[face.owner].kind in ("fracture", "boundary")]
+            kinds = [self.plan.owners[face.owner].kind for face in self.faces]
+            owned = [(face.owner, elements(2, face.tag)) for face, kind in zip(self.faces, kinds) if kind in ("fracture", "boundary")]
             meeting = np.concatenate([elements(1, self.line[edge]) for edge in sorted(sizes.intersections)] or [np.zeros((0, 2), int)])
         faces = np.concatenate([nodes for _, nodes in owned])
         owner = np.concatenate([np.full(len(nodes), k) for k, nodes in owned])

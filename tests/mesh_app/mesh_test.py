@@ -40,7 +40,10 @@ class Lines(Conformity):
             for k in range(n):
                 along = 0.3 * np.array([np.cos(np.pi * k / n * (1 if whole else 2)), np.sin(np.pi * k / n * (1 if whole else 2))])
                 yield f"f{k}", [0.5 - along if whole else np.array([0.5, 0.5]), 0.5 + along]
-        self.expect(dict(star(5, True)), {f"f{k}": 0.6 for k in range(5)}, intersections=1)
+        plan, mesh = self.expect(dict(star(5, True)), {f"f{k}": 0.6 for k in range(5)}, intersections=1)
+        self.assertTrue(np.allclose(mesh.points[mesh.intersections[0, 0]], [0.5, 0.5, 0], atol=1e-12))
+        _, none = self.expect({"a": [[0.2, 0.5], [0.8, 0.5]]}, intersections=0)
+        self.assertEqual(none.intersections.shape, (0, 1))
         self.expect(dict(star(3, False)), {f"f{k}": 0.3 for k in range(3)}, intersections=1)  # Y
 
     def test_polyline(self):
