@@ -1,9 +1,11 @@
-"""A picture of a mesh: cells and fractures in 2D, faces of fractures in 3D; a colour for each set."""
+"""A picture of a mesh, cells and fractures in 2D, faces of fractures in 3D, beside the directions of fractures; a colour for
+each set."""
 import matplotlib
 
 matplotlib.use("Agg")  # no screen
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import orientations  # noqa: E402
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 
 COLOURS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
@@ -42,11 +44,14 @@ def of_body(ax, mesh, plan):
 
 def draw(mesh, plan, path, dpi=110):
     plane = plan.dim == 2
-    figure = plt.figure(figsize=(6, 6), constrained_layout=True)
-    ax = figure.add_subplot(projection=None if plane else "3d")
+    figure = plt.figure(figsize=(9, 6), constrained_layout=True)
+    left, right = figure.add_gridspec(1, 2, width_ratios=(3, 1.3))
+    ax = figure.add_subplot(left, projection=None if plane else "3d")
     (of_plane if plane else of_body)(ax, mesh, plan)
     ax.set_xlabel("x (m)")
     ax.set_ylabel("y (m)")
     ax.legend(fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
+    given = [(colour, [f.points for f in plan.network.fractures if f.group == name]) for name, colour, _ in sets_of(mesh, plan)]
+    orientations.draw(figure.add_subplot(right, projection="polar"), plan.dim, given)
     figure.savefig(path, dpi=dpi)
     plt.close(figure)

@@ -4,8 +4,9 @@ import unittest
 
 import numpy as np
 from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers
+from orientations import poles, strikes
 from report import gamma
-from shapes import NetworkError
+from shapes import NetworkError, ellipse
 
 
 def square_at(axis, place, low=0.2, high=0.8):
@@ -229,6 +230,19 @@ class Refusals(unittest.TestCase):
         self.refused({"a": square_at(2, 0.5)}, "the faces are not closed", domain={**CUBE, "lower corner": [], "upper corner": [], "faces": faces})
         self.refused({"a": [[0.2, 0.2], [0.3, 0.3]]}, '"upper corner" must be above', domain={**SQUARE, "upper corner": [1.0, 0.0]})
         self.refused({"a": square_at(2, 0.5)}, "the domain has dimension 2; give lines", domain=SQUARE)
+
+
+class Directions(unittest.TestCase):
+    def test_strikes(self):
+        strike, length = strikes([np.array([[0.0, 0], [0, 2], [1, 1]]), np.array([[3.0, 0], [0, 0]])])
+        self.assertTrue(np.allclose(strike, [0, 135, 90]))
+        self.assertTrue(np.allclose(length, [2, np.sqrt(2), 3]))
+
+    def test_poles(self):
+        """A plane that strikes north dips east, its pole points down to the west."""
+        trend, radius = poles([ellipse([0, 0, 0], [2, 1], strike, dip, 20) for strike, dip in ((0, 30), (90, 60), (200, 90 - 1e-7), (50, 0))])
+        self.assertTrue(np.allclose((trend[:3] - [270, 0, 110] + 180) % 360, 180), trend)
+        self.assertTrue(np.allclose(radius, np.sqrt(2) * np.sin(np.radians([15, 30, 45, 0])), atol=1e-6), radius)
 
 
 class Random(unittest.TestCase):
