@@ -1,6 +1,7 @@
 // The program: starts MPI and Kokkos, reads the command line, runs.
 #include "base/check.hpp"
 #include "model/material_library.hpp"
+#include "model/network.hpp"
 #include "model/point.hpp"
 #include "model/run.hpp"
 
@@ -59,7 +60,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   mesh_info->add_option("file", arguments.mesh_file, "gmsh file")->required();
   mesh_info->add_option("--fractures", arguments.fractures, "physical groups that are fractures, a,b,c")
       ->delimiter(',');
-  for (auto* command : {run, check, point}) {
+  auto* network = app.add_subcommand("network", "print a scene's fracture network, checked and with all defaults");
+  for (auto* command : {run, check, point, network}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
         ->allow_extra_args(false);
@@ -97,6 +99,10 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   if (command == "point") {
     const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
     if (speaks) model::write_csv(std::cout, states);
+  }
+  if (command == "network") {
+    const auto description = model::network_description(*comm, options.scene, options.overrides);
+    if (speaks) std::cout << description;
   }
   if (command == "check") {
     model::check(options, comm);

@@ -225,7 +225,11 @@ void MeshFile::Fracture::describe(base::Section& s) {
 }
 
 void MeshFile::describe(base::Section& s) {
-  s.required(path, "path", "-", "file of gmsh, version 2.2 or 4.1; relative to the scene's file");
+  s.section(network, "network", "fractures of which `./sprekk mesh` makes the mesh, and `./sprekk run` before it runs");
+  s.entry(path, "path", "-",
+          "file of gmsh, version 2.2 or 4.1; relative to the scene's file; required but for a network under `./sprekk "
+          "run` and `check`, which make one");
+  if (s.complete() && path.empty() && !network) s.fail("path", "missing; it is required: a file of gmsh");
   s.entry(
       order, "order", "-", base::between(1, 2),
       "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
@@ -237,7 +241,10 @@ void MeshFile::describe(base::Section& s) {
   if (periodic.size() % 2 == 1)
     s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
   mesh::describe_refinements(s, refinements, periodic);
-  s.named_sections(fractures, "fractures", "the physical groups that are fractures, by their names");
+  s.named_sections(fractures, "fractures",
+                   "the physical groups that are fractures, by their names; those of a network need not be listed");
+  if (network)
+    for (const auto& [name, set] : network->fractures) fractures[name];
 }
 
 void Scene::describe(base::Section& s) {
@@ -336,6 +343,7 @@ Scene read_scene(const Comm& comm, const std::string& path, const std::vector<st
   auto& file = draft.value.mesh_file;
   if (file && !file->path.empty())
     file->path = std::filesystem::absolute(std::filesystem::path(path).parent_path() / file->path).string();
+  if (file && file->network) file->network->resolve_files(std::filesystem::path(path).parent_path().string());
   base::collectively(comm, [&] {
     const bool is_wrong = !draft.report.errors.empty() || !misfits(draft, names_in_scene(draft)).empty();
     if (is_wrong && comm.getRank() == 0) checked_mesh(draft);

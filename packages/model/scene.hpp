@@ -7,6 +7,7 @@
 #include "laws/elasticity.hpp"
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
+#include "model/network.hpp"
 #include "physics/elastic_plastic_jump.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
@@ -75,6 +76,7 @@ struct MeshFile {
     void describe(base::Section& section);
   };
   std::string path;                           ///< relative to the scene's file; of a host, to the current directory
+  std::optional<Network> network;             ///< that the mesh was made of; its sets are fractures
   std::optional<int> order;                   ///< of the cells, 1 or 2; absent: as in the file
   int refinements = 0;                        ///< see mesh::describe_refinements()
   std::string tips = "enriched";              ///< see mesh::describe_tips()

@@ -54,6 +54,10 @@ mesh::GlobalMesh Scene::read_mesh() const {
     if (refinements() > 0) box.order = 1;
     return mesh::make_box(box);
   }
+  SPREKK_CHECK(!mesh_file->path.empty(),
+               "Sprekk > Mesh file > \"path\": missing; the mesh of a network is made by `./sprekk mesh {} -o FILE`, "
+               "and by `./sprekk run` and `./sprekk check`",
+               origin);
   mesh::MshOptions options;
   if (refinements() == 0) options.order = mesh_file->order;
   for (const auto& [name, fracture] : mesh_file->fractures) {

@@ -62,12 +62,20 @@ def check_quotes(root):
 
 # What ./sprekk does with these commands, without building first.
 LAUNCHER = """#!/usr/bin/env bash
-words=() mpi=()
+words=() mpi=() sets=()
 while (($#)); do
+  if [[ $1 == --set ]]; then sets+=("$1" "$2"); fi
   if [[ $1 == --ranks ]]; then mpi=({mpiexec} --quiet --oversubscribe --bind-to none -np "$2"); shift
   else words+=("$1"); fi
   shift
 done
+mesh=({python} -B {root}/apps/mesh --program {binary})
+if [[ ${{words[0]}} == mesh ]]; then exec "${{mesh[@]}}" "${{words[@]:1}}"; fi
+if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; then
+  folder=output/$(basename "${{words[1]}}" .xml)
+  "${{mesh[@]}}" "${{words[1]}}" -o "$folder/network.msh" --quiet "${{sets[@]}}" || exit
+  words+=(--set "Mesh file.path=$PWD/$folder/network.msh")
+fi
 if [[ ${{words[0]}} == plot ]]; then exec {python} -B {root}/apps/plot "${{words[@]:1}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
@@ -101,8 +109,8 @@ def commands(block):
 
 def missing_program(command):
     """What the command needs and this machine lacks, or None."""
-    if command.startswith("./sprekk plot"):
-        modules = "matplotlib, numpy, vtkmodules"
+    if command.startswith(("./sprekk plot", "./sprekk mesh")):
+        modules = "matplotlib, numpy, vtkmodules" if "plot" in command else "gmsh, matplotlib, numpy, shapely"
         found = subprocess.run([PLOT_PYTHON, "-c", "import " + modules], stderr=subprocess.DEVNULL).returncode == 0
         return None if found else f"one of {modules} for {PLOT_PYTHON}"
     words = [word for word in shlex.split(command) if "=" not in word]

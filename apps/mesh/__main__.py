@@ -1,0 +1,116 @@
+"""Makes the mesh of a fracture network that a scene describes in its section `Mesh file > network`.
+
+FILE is a mesh for gmsh and Sprekk; FILE.json beside it reports what the mesh is like and what was repaired. A mesh that is
+there and was made of the same description is kept."""
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from shapes import NetworkError
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="sprekk mesh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", help="XML file")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="the mesh, NAME.msh")
+    parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene; may be repeated")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the mesh, too")
+    parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # on behalf of a run into the mesh's folder
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # sprekk itself, by the launcher
+    return parser.parse_args(words)
+
+
+def description(options):
+    """The network as the program reads it, which checks names, units and bounds."""
+    command = [options.program, "network", options.scene, *(word for entry in options.set for word in ("--set", entry))]
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode:
+        raise NetworkError(done.stderr.strip().removeprefix("sprekk: "))
+    return done.stdout
+
+
+def fingerprint(text, files):
+    """Of everything that the mesh depends on."""
+    digest = hashlib.sha256(text.encode())
+    for path in [*files, *sorted(Path(__file__).parent.glob("*.py"))]:
+        digest.update(Path(path).read_bytes())
+    return digest.hexdigest()
+
+
+def is_made(mesh, report, print_of_input):
+    """Whether the mesh is there, whole, and of the same input."""
+    try:
+        known = json.loads(report.read_text())
+        return known["input"] == print_of_input and known["mesh"] == hashlib.sha256(mesh.read_bytes()).hexdigest()
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def make(options):
+    from description import Network
+    text = description(options)
+    network = Network(text)
+    report_file = options.output.with_suffix(options.output.suffix + ".json")
+    print_of_input = fingerprint(text, network.files)
+    if is_made(options.output, report_file, print_of_input) and not options.picture:
+        return None
+    import checks
+    import mesher
+    import msh_file
+    import report
+    from plan import Plan
+    from sizes import Sizes
+    plan = Plan(network)
+    checks.check(plan)
+    sizes = Sizes(plan)
+    mesh = mesher.make_mesh(plan, sizes)
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
+    msh_file.write(unfinished, mesh.points, msh_file.groups_of(mesh, plan))
+    content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(), **report.of_mesh(mesh, plan, sizes)}
+    unfinished.replace(options.output)
+    report_file.write_text(json.dumps(content, indent=1) + "\n")
+    if options.picture:
+        import picture
+        picture.draw(mesh, plan, options.picture)
+    return report.as_text(content)
+
+
+def end_results(path, reason):
+    """Results of an earlier run do not pass for those of one that has no mesh."""
+    try:
+        if path.exists():
+            path.write_text(json.dumps({"status": "failed", "reason": reason, "steps": []}, indent=1) + "\n")
+    except OSError:  # the reason is told in any case
+        pass
+
+
+def in_words(error, scene):
+    """A line for each thing that is wrong, which opens with a file."""
+    opens = tuple(getattr(error, "files", ())) + (scene,)
+    return "\n".join(line if line.startswith(opens) else f"{scene}: {line}" for line in str(error).splitlines())
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        told = make(options)
+    except Exception as error:  # one line for whatever shapely or gmsh throw, too
+        known = isinstance(error, (NetworkError, OSError))
+        reason = in_words(error if known else NetworkError(f"no mesh could be made: {type(error).__name__}: {error}"), options.scene)
+        print(f"sprekk: {reason}", file=sys.stderr)
+        if options.run:
+            end_results(options.output.parent / "results.json", reason)
+        return 1
+    if not options.quiet:
+        print(f"{options.output}: {told or 'is up to date'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

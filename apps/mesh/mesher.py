@@ -1,0 +1,134 @@
+"""Hands a plan to gmsh, and takes the cells back."""
+import re
+from dataclasses import dataclass
+
+import gmsh
+import numpy as np
+from shapes import NetworkError
+
+
+@dataclass
+class Mesh:
+    """Cells and faces by their nodes, from 0. `faces` of dimension d - 1 have the number of the plan's owner that they
+    belong to, `intersections` of dimension d - 2 are those of fractures."""
+    points: np.ndarray
+    cells: np.ndarray
+    faces: np.ndarray
+    face_owner: np.ndarray
+    intersections: np.ndarray
+
+
+def make_mesh(plan, sizes):
+    """Throws a NetworkError with gmsh's words where gmsh gives up."""
+    gmsh.initialize(readConfigFiles=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.logger.start()
+        model = Model(plan)
+        set_sizes(sizes)
+        try:
+            gmsh.model.mesh.generate(plan.dim)
+        except Exception as error:  # what gmsh throws has no type of its own
+            said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
+            raise NetworkError(model.failure(said or [str(error)])) from None
+        return model.mesh(sizes)
+    finally:
+        gmsh.finalize()
+
+
+class Model:
+    """The plan's points, edges and faces in gmsh, which numbers them from 1."""
+
+    def __init__(self, plan):
+        self.plan, geo = plan, gmsh.model.geo
+        for k, x in enumerate(plan.points):
+            geo.addPoint(*x, 0, k + 1)
+        self.line = {edge: geo.addLine(edge[0] + 1, edge[1] + 1) for edge in plan.edges}
+        self.faces = plan.faces()
+        for face in self.faces:
+            face.tag = geo.addPlaneSurface([geo.addCurveLoop(self.loop(ring)) for ring in face.rings])
+        if plan.dim == 3:
+            outer = [face.tag for face in self.faces if plan.owners[face.owner].kind == "boundary"]
+            geo.addVolume([geo.addSurfaceLoop(outer)], 1)
+        geo.synchronize()
+        for face in self.faces:
+            gmsh.model.mesh.embed(1, [self.line[edge] for edge in face.edges], 2, face.tag)
+            gmsh.model.mesh.embed(0, [point + 1 for point in face.points], 2, face.tag)
+        if plan.dim == 3:
+            gmsh.model.mesh.embed(2, [face.tag for face in self.faces if face.tag not in outer], 3, 1)
+
+    def loop(self, ring):
+        return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
+
+    def failure(self, said):
+        """What gmsh says of a mesh that it could not make, with the names of the features that it numbers."""
+        owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
+        names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
+        where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
+        return f"gmsh could not make the mesh{where}: {said[0]}; a larger \"tolerance\" joins what is too close, smaller sizes resolve it"
+
+    def mesh(self, sizes):
+        dim = self.plan.dim
+        tags, x, _ = gmsh.model.mesh.getNodes()
+        number = np.zeros(int(tags.max()) + 1, int)
+        number[tags.astype(int)] = np.arange(len(tags))
+        points = x.reshape(-1, 3)
+
+        def elements(of, tag=-1):
+            types, _, nodes = gmsh.model.mesh.getElements(of, tag)
+            n = of + 1
+            return number[np.concatenate(nodes).astype(int)].reshape(-1, n) if len(types) else np.zeros((0, n), int)
+
+        cells = elements(dim)
+        if not len(cells):
+            raise NetworkError("gmsh made no cells; a larger \"tolerance\" joins what is too close")
+        owned = []
+        if dim == 2:
+            owned = [(foremost(self.plan, of), elements(1, self.line[edge])) for edge, of in self.plan.edges.items()]
+            owned = [(owner, nodes) for owner, nodes in owned if owner is not None]
+            meeting = number[[int(gmsh.model.mesh.getNodes(0, p + 1)[0][0]) for p in sorted(sizes.intersections)]].reshape(-1, 1)
+        else:
+            kinds = [self.plan.owners[face.owner].kind for face in self.faces]
+            owned = [(face.owner, elements(2, face.tag)) for face, kind in zip(self.faces, kinds) if kind in ("fracture", "boundary")]
+            meeting = np.concatenate([elements(1, self.line[edge]) for edge in sorted(sizes.intersections)] or [np.zeros((0, 2), int)])
+        faces = np.concatenate([nodes for _, nodes in owned])
+        owner = np.concatenate([np.full(len(nodes), k) for k, nodes in owned])
+        used = np.unique(cells)
+        new = np.full(len(points), -1)
+        new[used] = np.arange(len(used))
+        return Mesh(points[used], new[cells], new[faces], owner, new[meeting])
+
+
+def foremost(plan, owners):
+    """The fracture or the side among the owners of an edge."""
+    for kind in ("boundary", "fracture"):
+        for k in sorted(owners):
+            if plan.owners[k].kind == kind:
+                return k
+    return None
+
+
+def set_sizes(sizes):
+    """Fields of gmsh: for each size the distance from the points that ask for it, and the least of all."""
+    network, field = sizes.network, gmsh.model.mesh.field
+    level = np.round(2 * np.log2(sizes.sizes / network.size)).astype(int)
+    fields = []
+    for value in np.unique(level):
+        points = sizes.points[level == value]
+        size = min(network.size, network.size * 2.0 ** (value / 2))
+        if size >= network.size:
+            continue
+        points = np.unique(np.round(points / (0.2 * size)).astype(np.int64), axis=0) * 0.2 * size
+        distance, threshold = field.add("Distance"), field.add("Threshold")
+        field.setNumbers(distance, "NodesList", [gmsh.model.geo.addPoint(*x) for x in points])
+        for name, number in (("IField", distance), ("LcMin", size), ("LcMax", network.size), ("DistMin", 0),
+                             ("DistMax", (network.size - size) / network.growth)):
+            field.setNumber(threshold, name, number)
+        fields.append(threshold)
+    gmsh.model.geo.synchronize()
+    if fields:
+        least = field.add("Min")
+        field.setNumbers(least, "FieldsList", fields)
+        field.setAsBackgroundMesh(least)
+    for option, value in (("MeshSizeMax", network.size), ("MeshSizeExtendFromBoundary", 0), ("MeshSizeFromPoints", 0)):
+        gmsh.option.setNumber(f"Mesh.{option}", value)

@@ -1,0 +1,50 @@
+"""Directions of fractures: a rose diagram of strikes in 2D, poles in a stereonet in 3D."""
+import numpy as np
+from shapes import Plane
+
+
+def strikes(lines):
+    """Directions (degree, clockwise from north, in [0, 180)) and lengths of all segments of polylines."""
+    along = np.concatenate([np.diff(line, axis=0) for line in lines])
+    return np.degrees(np.arctan2(along[:, 0], along[:, 1])) % 180, np.linalg.norm(along, axis=1)
+
+
+def poles(polygons):
+    """Trend (degree, clockwise from north) of the poles that point down, and their distance from the centre of a stereonet of
+    radius 1, of the lower hemisphere and equal areas."""
+    normal = np.array([Plane(x).normal for x in polygons])
+    down = np.where(normal[:, 2:] > 0, -normal, normal)
+    return np.degrees(np.arctan2(down[:, 0], down[:, 1])) % 360, np.sqrt(np.maximum(1 - abs(down[:, 2]), 0))
+
+
+def draw_rose(ax, sets):
+    """Bars of 10 degrees as long as their share of the length of all fractures, stacked by set: (colour, lines)."""
+    sides = np.arange(0, 361, 10)
+    total = sum(strikes(lines)[1].sum() for _, lines in sets)
+    base = np.zeros(36)
+    for colour, lines in sets:
+        strike, length = strikes(lines)
+        both = np.concatenate([strike, strike + 180])
+        share = np.histogram(both, sides, weights=np.tile(length, 2))[0] / total
+        ax.bar(np.radians(sides[:-1] + 5), share, width=np.radians(10), bottom=base, color=colour, edgecolor="white", linewidth=0.4)
+        base += share
+    ax.set_title("length by strike", fontsize=9)
+
+
+def draw_stereonet(ax, sets):
+    """Poles of planes, by set: (colour, polygons)."""
+    for colour, polygons in sets:
+        trend, radius = poles(polygons)
+        ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="white", markeredgewidth=0.4)
+    ax.set_ylim(0, 1)
+    ax.set_yticks([])
+    ax.set_title("poles, lower hemisphere, equal areas", fontsize=9)
+
+
+def draw(ax, dim, sets):
+    """On polar axes."""
+    ax.set_theta_zero_location("N")
+    ax.set_theta_direction(-1)
+    (draw_rose if dim == 2 else draw_stereonet)(ax, sets)
+    ax.set_xticks(np.radians([0, 90, 180, 270]), ["N", "E", "S", "W"])
+    ax.tick_params(labelsize=8)

@@ -1,0 +1,57 @@
+"""A picture of a mesh, cells and fractures in 2D, faces of fractures in 3D, beside the directions of fractures; a colour for
+each set."""
+import matplotlib
+
+matplotlib.use("Agg")  # no screen
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import orientations  # noqa: E402
+from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
+
+COLOURS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
+
+
+def sets_of(mesh, plan):
+    """(name, colour, faces) of each set of fractures."""
+    names = list(dict.fromkeys(owner.group for owner in plan.owners if owner.kind == "fracture"))
+    for k, name in enumerate(names):
+        owners = [i for i, owner in enumerate(plan.owners) if owner.kind == "fracture" and owner.group == name]
+        yield name, COLOURS[k % len(COLOURS)], mesh.faces[np.isin(mesh.face_owner, owners)]
+
+
+def of_plane(ax, mesh, plan):
+    x = mesh.points[:, :2]
+    ax.add_collection(PolyCollection(x[mesh.cells], facecolors="none", edgecolors="#8a8f99", linewidths=0.2))
+    for name, colour, faces in sets_of(mesh, plan):
+        ax.add_collection(LineCollection(x[faces], colors=colour, linewidths=1.3, label=name))
+    ax.set_aspect("equal")
+    ax.autoscale_view()
+
+
+def of_body(ax, mesh, plan):
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    for name, colour, faces in sets_of(mesh, plan):
+        ax.add_collection3d(Poly3DCollection(mesh.points[faces], facecolors=colour, edgecolors="#262933", linewidths=0.1, alpha=0.7))
+        ax.plot([], [], color=colour, label=name)
+    domain = plan.network.domain
+    for axis, low, high in zip("xyz", domain.low, domain.high):
+        getattr(ax, f"set_{axis}lim")(low, high)
+    ax.set_zlabel("z (m)")
+    ax.set_box_aspect(domain.high - domain.low)
+    ax.set_proj_type("ortho")
+    ax.view_init(elev=22, azim=-58)
+
+
+def draw(mesh, plan, path, dpi=110):
+    plane = plan.dim == 2
+    figure = plt.figure(figsize=(9, 6), constrained_layout=True)
+    left, right = figure.add_gridspec(1, 2, width_ratios=(3, 1.3))
+    ax = figure.add_subplot(left, projection=None if plane else "3d")
+    (of_plane if plane else of_body)(ax, mesh, plan)
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    ax.legend(fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
+    given = [(colour, [f.points for f in plan.network.fractures if f.group == name]) for name, colour, _ in sets_of(mesh, plan)]
+    orientations.draw(figure.add_subplot(right, projection="polar"), plan.dim, given)
+    figure.savefig(path, dpi=dpi)
+    plt.close(figure)

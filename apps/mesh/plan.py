@@ -1,0 +1,244 @@
+"""What gmsh is to mesh: points, edges and plane faces that meet in edges and points only, and whose they are."""
+import numpy as np
+from arrange import arrange, near_pairs, on_segment
+from shapely.geometry import LineString, Point
+from shapely.ops import polygonize
+from shapes import Errors, Feature, NetworkError, Plane, check_line, check_polygon, refuse
+from surfaces import Surface, are_level, check_angles, moved_onto, overlap, shared_sides, traces, without
+
+
+class Face:
+    """A plane face: rings of points, the first around it; edges and points inside that cells must keep to."""
+
+    def __init__(self, owner, rings, shape):
+        self.owner, self.rings, self.shape = owner, rings, shape
+        self.edges, self.points = [], []
+
+
+class Plan:
+    """points (n, 3); edges {(a, b): numbers of owners}; faces; owners: the features of those numbers, more than once if
+    a feature is in parts; `repairs` are lines for the report."""
+
+    def __init__(self, network):
+        self.network, self.dim = network, network.dim
+        self.repairs, self.surfaces = [], None
+        # What joins lines would bend surfaces, of which only corners are moved, in their planes; all else is exact.
+        self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
+        self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()
+        graph = arrange(segments, parents, self.tolerance)
+        self.points, self.edges = graph.points, graph.edges
+        self.graph = graph
+        self.tell_joined(graph)
+        if self.dim == 2:
+            self.straighten_sides()
+            self.part_overlaps()
+        self.loose = {}  # points in which features touch
+        for point, of in touches:
+            self.loose.setdefault(int(np.argmin(np.linalg.norm(self.points - point, axis=1))), set()).update(of)
+
+    def is_fracture(self, owner):
+        return self.owners[owner].kind == "fracture"
+
+    def fractures_of(self, owners):
+        """The fractures among owners, each once, in their order."""
+        return list({id(self.owners[k]): self.owners[k] for k in sorted(owners) if self.is_fracture(k)}.values())
+
+    def tell_joined(self, graph):
+        told = set()
+        for gap, one, other in sorted(graph.joined, key=lambda join: -join[0]):
+            names = {self.owners[k].name for k in one} ^ {self.owners[k].name for k in other}
+            names = tuple(sorted(names or {self.owners[k].name for k in one}))
+            if names not in told:
+                told.add(names)
+                self.repairs.append(f"joined what was {gap:.3g} m apart: " + " and ".join(names))
+
+    def straighten_sides(self):
+        """Moves points that were joined to a side of the domain onto it, 2D; corners are on two sides, and stay."""
+        sides = {}
+        for edge, of in self.edges.items():
+            for k in of:
+                if self.owners[k].kind == "boundary":
+                    for point in edge:
+                        sides.setdefault(point, set()).add(k)
+        for point, of in sides.items():
+            if len(of) == 1:
+                begin, end = self.owners[min(of)].points
+                along = (end - begin) / np.linalg.norm(end - begin)
+                self.points[point, :2] = begin + (self.points[point, :2] - begin) @ along * along
+
+    def part_overlaps(self):
+        """Gives edges of two fractures, or of one and a side, which joining made of lines at an angle, to the first."""
+        least = max(self.network.minimum_angle, 0.01)
+        for edge, of in self.edges.items():
+            owners = [k for k in sorted(of) if self.owners[k].kind in ("fracture", "boundary")]
+            middle = 0.5 * (self.points[edge[0]] + self.points[edge[1]])[:2]
+            along = [direction(self.owners[k].points, middle) for k in owners] if len(owners) > 1 else []
+            for k, other in zip(owners[1:], along[1:]):
+                angle = np.degrees(np.arcsin(min(1, abs(along[0][0] * other[1] - along[0][1] * other[0]))))
+                if angle >= least and self.is_fracture(k):
+                    self.edges[edge] = self.edges[edge] - {k}
+                    length = np.linalg.norm(self.points[edge[0]] - self.points[edge[1]])
+                    self.repairs.append(f"joined along {length:.3g} m: {self.owners[owners[0]].name} and {self.owners[k].name}")
+
+    def lines(self):
+        """Owners, segments and their owners of a network in 2D."""
+        network, domain = self.network, self.network.domain
+        owners, errors = list(domain.sides), Errors()
+        for line in network.fractures + network.constraints + [s for body in network.regions for s in body.sides]:
+            with errors.of_one():
+                check_line(line, network.tolerance)
+                parts = self.worth(line, domain.clip_line(line, network.tolerance))
+                owners += [Feature(line.kind, line.group, line.name, x) for x in parts]
+        errors.throw()
+        check_same(network.fractures, network.tolerance)
+        segments, parents = [], []
+        for k, owner in enumerate(owners):
+            flat = np.column_stack([owner.points, np.zeros(len(owner.points))])
+            segments += list(np.stack([flat[:-1], flat[1:]], axis=1))
+            parents += [frozenset([k])] * (len(flat) - 1)
+        return owners, np.array(segments), parents, []
+
+    def worth(self, line, parts):
+        """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture that has none."""
+        length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
+        if line.kind == "fracture" and max(length, default=0) < self.network.minimum_distance:
+            refuse(line, "lies outside of the domain")
+        for x in length:
+            if x < self.network.minimum_distance:
+                self.repairs.append(f"left out a part of {x:.3g} m in the domain: {line.name}")
+        return [part for part, x in zip(parts, length) if x >= self.network.minimum_distance]
+
+    def polygons(self):
+        """The same in 3D, and points in which surfaces touch."""
+        network, domain, tolerance = self.network, self.network.domain, self.tolerance
+        surfaces, errors = list(domain.surfaces), Errors()
+        for feature in network.fractures:
+            with errors.of_one():
+                check_polygon(feature, network.tolerance)
+                self.flatten(feature)
+                parts = domain.clip_polygon(self.joined_corners([Surface.whole(feature)], domain.surfaces)[0], tolerance)
+                if not parts:
+                    refuse(feature, "lies outside of the domain")
+                surfaces += parts
+        errors.throw()
+        check_same(network.fractures, tolerance)
+        surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
+        for feature in network.constraints + [side for body in network.regions for side in body.sides]:
+            check_polygon(feature, network.tolerance)
+            self.flatten(feature)
+            for part in domain.clip_polygon(Surface.whole(feature), tolerance):
+                level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
+                surfaces += without(part, level, tolerance) if level else [part]
+        segments, parents, touches = [], [], []
+        for k, surface in enumerate(surfaces):
+            sides = surface.sides()
+            segments += list(sides)
+            parents += [frozenset([k])] * len(sides)
+        low, high = (np.array([getattr(s, which) for s in surfaces]) for which in ("low", "high"))
+        for i, j in zip(*near_pairs(low, high, 2 * tolerance)):
+            with errors.of_one():
+                for begin, end in self.meet(surfaces[i], surfaces[j]):
+                    if np.linalg.norm(end - begin) > tolerance:
+                        segments.append(np.array([begin, end]))
+                        parents.append(frozenset([i, j]))
+                    else:
+                        touches.append((begin, {i, j}))
+        errors.throw()
+        self.surfaces = surfaces
+        return [s.feature for s in surfaces], np.array(segments), parents, touches
+
+    def flatten(self, feature):
+        """Moves corners into the plane of a polygon."""
+        plane = Plane(feature.points)
+        height = plane.height(feature.points)
+        if abs(height).max() > 1e-9 * self.network.domain.size:
+            self.repairs.append(f"moved corners by up to {abs(height).max():.3g} m into a plane: {feature.name}")
+        feature.points = feature.points - height[:, None] * plane.normal
+
+    def joined_corners(self, surfaces, others):
+        """The surfaces with corners on others that they nearly touch."""
+        found = []
+        for surface in surfaces:
+            moved, told = moved_onto(surface, others, self.network.tolerance)
+            for distance, other in told:
+                if distance > 1e-9 * self.network.domain.size:
+                    self.repairs.append(f"joined what was {distance:.3g} m apart: {surface.feature.name} and {other.feature.name}")
+            found.append(moved if told else surface)
+        return found
+
+    def meet(self, one, other):
+        """Segments in which two surfaces meet; refuses fractures that lie on each other or meet at too small an angle."""
+        tolerance = self.tolerance
+        are_fractures = one.feature.kind == other.feature.kind == "fracture"
+        if are_level(one, other, tolerance):
+            if are_fractures and overlap(one, other).area > tolerance * self.network.domain.size:
+                raise NetworkError(f"{one.feature.name} and {other.feature.name} lie on each other; leave one out or make them one")
+            return shared_sides(one, other, tolerance)
+        if np.linalg.norm(np.cross(one.plane.normal, other.plane.normal)) < 1e-8:
+            return []
+        found = traces(one, other, tolerance)
+        if "fracture" in (one.feature.kind, other.feature.kind):
+            check_angles(one, other, found, self.network.minimum_angle)
+        moved = [h for a, b in ((one, other), (other, one)) for x in found for h in abs(b.plane.height(np.array(x)))]
+        if max(moved, default=0) > 1e-9 * self.network.domain.size:
+            self.repairs.append(f"joined what was {max(moved):.3g} m apart: {one.feature.name} and {other.feature.name}")
+        return found
+
+    def faces(self):
+        """All faces, cut along edges; checks that they cover each surface."""
+        if self.dim == 2:
+            return faces_of(0, self.points[:, :2], list(self.edges), self.loose, self.network.domain.shape, self.tolerance)
+        edges = [[] for _ in self.surfaces]
+        for edge, of in self.edges.items():
+            for k in of:
+                edges[k].append(edge)
+        found = []
+        for k, surface in enumerate(self.surfaces):
+            loose = [p for p, of in self.loose.items() if k in of]
+            faces = faces_of(k, surface.plane.inside(self.points), edges[k], loose, surface.shape, self.tolerance)
+            area = sum(face.shape.area for face in faces)
+            if abs(area - surface.shape.area) > 4 * self.tolerance * surface.shape.length:
+                refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
+                                        f"try another \"tolerance\"")
+            found += faces
+        return list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # joined ones once
+
+
+def direction(line, point):
+    """Of the segment of a polyline that is nearest to a point."""
+    begin, end = line[:-1], line[1:]
+    _, gap = on_segment(np.broadcast_to(point, begin.shape), begin, end)
+    along = (end - begin)[np.argmin(gap)]
+    return along / np.linalg.norm(along)
+
+
+def check_same(fractures, tolerance):
+    """Refuses two fractures with the same points."""
+    seen, errors = {}, Errors()
+    for fracture in fractures:
+        grid = np.round(fracture.points / (10 * tolerance)) + 0.0
+        key = tuple(sorted(map(tuple, grid)))
+        if key in seen:
+            errors.lines.append(f"{seen[key].name} and {fracture.name} are the same")
+        seen[key] = fracture
+    errors.throw()
+
+
+def faces_of(owner, flat, edges, loose, shape, tolerance):
+    """The faces into which edges cut a polygon `shape`; `flat` are coordinates of all points in its plane."""
+    number = {tuple(flat[k]): k for edge in edges for k in edge}
+    used, faces = set(), []
+    room = shape.buffer(10 * tolerance)
+    for polygon in polygonize([LineString(flat[list(edge)]) for edge in edges]):
+        rings = [[number[x] for x in ring.coords[:-1]] for ring in (polygon.exterior, *polygon.interiors)]
+        if not room.contains(polygon.representative_point()) or not shape.buffer(tolerance).contains(polygon.representative_point()):
+            continue
+        faces.append(Face(owner, rings, polygon))
+        used.update((min(a, b), max(a, b)) for ring in rings for a, b in zip(ring, ring[1:] + ring[:1]))
+    inside = [(edge, 0.5 * (flat[edge[0]] + flat[edge[1]])) for edge in edges if edge not in used]
+    on_edges = {k for edge in edges for k in edge}
+    for what, x in inside + [(k, flat[k]) for k in loose if k not in on_edges]:
+        home = next((face for face in faces if face.shape.contains(Point(x))), None)
+        if home:
+            (home.edges if isinstance(what, tuple) else home.points).append(what)
+    return faces

@@ -1,0 +1,75 @@
+"""What a mesh is like: counts, shapes of cells, lengths of edges beside those that were asked for."""
+import numpy as np
+
+
+def gamma(points, cells):
+    """Radius of the inscribed over that of the circumscribed circle or sphere, 1 for a regular cell; and the volumes."""
+    x = points[cells]
+    if cells.shape[1] == 3:
+        side = [np.linalg.norm(x[:, i] - x[:, j], axis=1) for i, j in ((1, 2), (2, 0), (0, 1))]
+        area = 0.5 * abs(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])[:, 2])
+        return 16 * area**2 / (sum(side) * np.prod(side, axis=0)), area
+    volume = abs(np.linalg.det(x[:, 1:] - x[:, :1])) / 6
+    area = sum(0.5 * np.linalg.norm(np.cross(x[:, j] - x[:, i], x[:, k] - x[:, i]), axis=1)
+               for i, j, k in ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2)))
+    p, q, r = (np.linalg.norm(x[:, a] - x[:, b], axis=1) * np.linalg.norm(x[:, c] - x[:, d], axis=1)
+               for a, b, c, d in ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2)))
+    heron = (p + q + r) * (p + q - r) * (p - q + r) * (-p + q + r)
+    return 216 * volume**2 / (area * np.sqrt(np.maximum(heron, 1e-300))), volume
+
+
+def measure(points, faces):
+    """Lengths of lines or areas of triangles."""
+    x = points[faces]
+    if faces.shape[1] == 2:
+        return np.linalg.norm(x[:, 1] - x[:, 0], axis=1)
+    return 0.5 * np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1)
+
+
+def edges_of(faces):
+    """Each edge of lines or triangles once."""
+    pairs = faces if faces.shape[1] == 2 else np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def of_sets(mesh, plan, sizes):
+    """By set of fractures: how many, length or area, faces, median edge and the median size that was asked for."""
+    sets = {}
+    for k, owner in enumerate(plan.owners):
+        if owner.kind == "fracture":
+            sets.setdefault(owner.group, []).append(k)
+    found = {}
+    for name, owners in sets.items():
+        faces = mesh.faces[np.isin(mesh.face_owner, owners)]
+        edges = measure(mesh.points, edges_of(faces))
+        found[name] = {"fractures": len({id(plan.owners[k]) if plan.dim == 3 else plan.owners[k].name for k in owners}),
+                       "length" if plan.dim == 2 else "area": float(measure(mesh.points, faces).sum()), "faces": len(faces),
+                       "median edge": float(np.median(edges)), "shortest edge": float(edges.min()),
+                       "median size asked for": float(np.median([sizes.of_owner[k] for k in owners]))}
+    return found
+
+
+def of_mesh(mesh, plan, sizes):
+    quality, volume = gamma(mesh.points, mesh.cells)
+    worst = mesh.points[mesh.cells[np.argmin(quality)]].mean(axis=0)[:plan.dim]
+    return {"dimension": plan.dim, "nodes": len(mesh.points), "cells": len(mesh.cells), "fracture faces": int(sum(
+                plan.is_fracture(k) for k in mesh.face_owner)),
+            "intersections": len(mesh.intersections), "volume": float(volume.sum()),
+            "gamma": {"min": float(quality.min()), "percentile 1": float(np.percentile(quality, 1)), "median": float(np.median(quality)),
+                      "worst at": [float(x) for x in worst]},
+            "tolerance": plan.network.tolerance, "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
+
+
+def as_text(report):
+    what = "length" if report["dimension"] == 2 else "area"
+    g = report["gamma"]
+    lines = [f"{report['cells']} cells, {report['nodes']} nodes, {report['fracture faces']} fracture faces; "
+             f"gamma of cells: least {g['min']:.3g}, median {g['median']:.3g}"]
+    for name, s in report["sets"].items():
+        lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
+                     f"shortest {s['shortest edge']:.3g} m, asked for {s['median size asked for']:.3g} m")
+    shown = report["repairs"][:10]
+    lines += [f"  {line}" for line in shown]
+    if len(shown) < len(report["repairs"]):
+        lines.append(f"  and {len(report['repairs']) - len(shown)} more repairs")
+    return "\n".join(lines)

@@ -1,0 +1,137 @@
+"""Fractures, and what else cells keep to, as points in space; the frame of a plane."""
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+from shapely.geometry import LineString, Polygon
+from shapely.validation import explain_validity
+
+
+class NetworkError(Exception):
+    """What is wrong with a network: a line for each thing; `files` open lines about themselves."""
+
+    def __init__(self, what, files=()):
+        super().__init__(what)
+        self.files = files
+
+
+class Errors:
+    """Collects what is wrong with several things, to tell it all at once: a line each."""
+
+    MOST = 20
+
+    def __init__(self, lines=()):
+        self.lines = list(lines)
+
+    @contextmanager
+    def of_one(self):
+        try:
+            yield
+        except NetworkError as error:
+            self.lines.append(str(error))
+
+    def throw(self, files=()):
+        if self.lines:
+            more = [f"and {len(self.lines) - self.MOST} more"] if len(self.lines) > self.MOST else []
+            raise NetworkError("\n".join(self.lines[:self.MOST] + more), [*files, "and "])
+
+
+@dataclass
+class Feature:
+    """A polyline in 2D, a plane polygon in 3D."""
+    kind: str  # "fracture", "constraint", "boundary" or "region"
+    group: str  # of the mesh: name of the set, the boundary or the region
+    name: str  # in messages
+    points: np.ndarray = field(repr=False)  # (n, 2) or (n, 3), m
+
+
+def refuse(feature, what):
+    raise NetworkError(f"{feature.name}: {what}")
+
+
+class Plane:
+    """The plane through the points of a polygon, with coordinates in it."""
+
+    def __init__(self, points):
+        self.centre = points.mean(axis=0)
+        area = 0.5 * np.cross(points - self.centre, np.roll(points, -1, axis=0) - self.centre).sum(axis=0)
+        self.area = np.linalg.norm(area)  # of a polygon that does not cross itself
+        if self.area > 0:
+            self.normal = area / self.area
+            longest = np.argmax(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))
+            along = np.roll(points, -1, axis=0)[longest] - points[longest]
+            along = along - self.normal * (self.normal @ along)
+            self.axes = np.array([along, np.cross(self.normal, along)]) / np.linalg.norm(along)
+
+    def height(self, points):
+        return (points - self.centre) @ self.normal
+
+    def inside(self, points):
+        """Coordinates in the plane."""
+        return (points - self.centre) @ self.axes.T
+
+    def outside(self, coordinates):
+        """The points of coordinates in the plane."""
+        return self.centre + np.asarray(coordinates) @ self.axes
+
+
+def diameter(points):
+    """The largest distance between two of the points."""
+    return max(np.linalg.norm(points - point, axis=1).max() for point in points)
+
+
+def frame(strike, dip, rake=0.0):
+    """Two axes in a plane and its upward normal; x points east, y north. Strike is clockwise from north, the plane dips
+    to the right of it; the first axis is the strike turned upwards by the rake. Degrees."""
+    s, d, r = np.radians([strike, dip, rake])
+    along = np.array([np.sin(s), np.cos(s), 0])
+    normal = np.array([np.sin(d) * np.cos(s), -np.sin(d) * np.sin(s), np.cos(d)])
+    up = np.cross(normal, along)
+    return np.cos(r) * along + np.sin(r) * up, np.cos(r) * up - np.sin(r) * along, normal
+
+
+def regular(centre, first, second, n):
+    """n points of the ellipse with these half axes."""
+    angle = 2 * np.pi * np.arange(n) / n
+    return np.asarray(centre) + np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second)
+
+
+def ellipse(centre, radii, strike, dip, rake, n=32):
+    """A polygon of n corners with the area of the ellipse."""
+    first, second, _ = frame(strike, dip, rake)
+    scale = np.sqrt(2 * np.pi / n / np.sin(2 * np.pi / n))
+    return regular(centre, scale * radii[0] * first, scale * radii[1] * second, n)
+
+
+def check_line(line, tolerance):
+    """Refuses a polyline that has no length or crosses itself."""
+    if not np.isfinite(line.points).all():
+        refuse(line, "has a coordinate that is no finite number")
+    length = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    if length.min() <= tolerance:
+        refuse(line, f"has no length: points {np.argmin(length) + 1} and {np.argmin(length) + 2} are {length.min():.3g} m apart, "
+                     f"the tolerance is {tolerance:.3g} m")
+    if not LineString(line.points).is_simple:
+        refuse(line, "crosses itself; make it two fractures")
+
+
+def check_polygon(polygon, tolerance):
+    """Refuses a polygon in 3D without area, not plane, or crossing itself."""
+    points = polygon.points
+    if not np.isfinite(points).all():
+        refuse(polygon, "has a coordinate that is no finite number")
+    if len(points) < 3:
+        refuse(polygon, f"has {len(points)} corners, needs at least 3")
+    edge = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    if edge.min() <= tolerance:
+        k = int(np.argmin(edge))
+        refuse(polygon, f"corners {k + 1} and {(k + 1) % len(points) + 1} are {edge.min():.3g} m apart, the tolerance is {tolerance:.3g} m")
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0))  # of best fit, also where the polygon crosses itself
+    height = abs((points - points.mean(axis=0)) @ axes[2]).max()
+    if height > tolerance:
+        refuse(polygon, f"is not plane: a corner is {height:.3g} m from the plane of best fit, the tolerance is {tolerance:.3g} m")
+    flat = Polygon((points - points.mean(axis=0)) @ axes[:2].T)
+    if not flat.is_valid and flat.convex_hull.area > tolerance * edge.sum():
+        refuse(polygon, f"crosses or touches itself ({explain_validity(flat).split('[')[0].lower()})")
+    if flat.area <= tolerance * edge.sum():
+        refuse(polygon, f"has no area: {flat.area:.3g} m^2")

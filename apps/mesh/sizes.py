@@ -1,0 +1,146 @@
+"""How long edges of cells are to be: lengths at points, from which they grow in proportion to the distance."""
+from collections import Counter
+
+import numpy as np
+from arrange import closest, near_pairs, on_segment
+from domain import in_polygon
+from shapely.geometry import Point
+from shapes import diameter
+
+TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # size at tips / size at the fracture, where none is given
+LEAST_RATIO = {2: 1 / 20, 3: 1 / 8}  # narrow gaps are resolved down to this
+
+
+class Sizes:
+    """`points` (n, 3) with the `sizes` (n,) that are asked for there; `at_edge` of each edge of the plan."""
+
+    def __init__(self, plan):
+        self.plan, self.network = plan, plan.network
+        self.of_owner = [self.fracture_size(owner) if owner.kind == "fracture" else np.inf for owner in plan.owners]
+        self.tips, self.intersections = special(plan)
+        self.edges = np.array(list(plan.edges))
+        self.segments = plan.graph.segments()
+        self.at_edge = np.array([self.edge_size(edge, of) for edge, of in plan.edges.items()])
+        self.found = [], []
+        self.take_edges()
+        if plan.dim == 2:
+            self.take_points()
+        else:
+            self.take_surfaces()
+        self.take_gaps()
+        self.points, self.sizes = np.concatenate(self.found[0]), np.concatenate(self.found[1])
+
+    def fracture_size(self, fracture):
+        x = fracture.points
+        length = diameter(x) if self.plan.dim == 3 else np.linalg.norm(np.diff(x, axis=0), axis=1).sum()
+        return min(self.network.size, self.network.relative_size * length)
+
+    def add(self, points, sizes):
+        self.found[0].append(np.atleast_2d(points))
+        self.found[1].append(np.minimum(np.broadcast_to(sizes, len(np.atleast_2d(points))), self.network.size))
+
+    def tip_size(self, owners):
+        size = self.network.size_at["tips"]
+        return size if size is not None else TIP_RATIO[self.plan.dim] * min(self.of_owner[k] for k in owners)
+
+    def edge_size(self, edge, of):
+        size = min([self.network.size] + [self.of_owner[k] for k in of])
+        if self.plan.dim == 3 and edge in self.tips:
+            size = min(size, self.tip_size(of))
+        if self.plan.dim == 3 and edge in self.intersections and self.network.size_at["intersections"]:
+            size = min(size, self.network.size_at["intersections"])
+        if self.network.size_at["boundary"] and any(self.plan.owners[k].kind == "boundary" for k in of):
+            size = min(size, self.network.size_at["boundary"])
+        return size
+
+    def take_edges(self):
+        for (begin, end), size in zip(self.segments, self.at_edge):
+            if size < self.network.size:
+                n = int(np.ceil(np.linalg.norm(end - begin) / size))
+                self.add(begin + np.linspace(0, 1, n + 1)[:, None] * (end - begin), size)
+
+    def take_points(self):
+        at = self.plan.graph.parents_at()
+        for p in self.tips:
+            self.add(self.plan.points[p], self.tip_size([k for k in at[p] if self.plan.is_fracture(k)]))
+        if self.network.size_at["intersections"]:
+            for p in self.intersections:
+                self.add(self.plan.points[p], self.network.size_at["intersections"])
+
+    def take_surfaces(self):
+        """Points inside of surfaces, where edges are far."""
+        for k, surface in enumerate(self.plan.surfaces):
+            size = self.of_owner[k]
+            if surface.feature.kind == "boundary":
+                size = self.network.size_at["boundary"] or np.inf
+            if size >= self.network.size:
+                continue
+            ring = np.array(surface.shape.exterior.coords)
+            axes = [np.arange(low, high, 1.5 * size) for low, high in zip(ring.min(axis=0), ring.max(axis=0))]
+            grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+            grid = grid[in_polygon(grid, ring[:-1])]
+            if len(grid):
+                self.add(surface.plane.outside(grid), size)
+
+    def take_gaps(self):
+        """Where edges, or in 3D points and surfaces, that do not meet come closer than their size."""
+        reach = self.at_edge.max()
+        i, j = near_pairs(self.segments.min(axis=1), self.segments.max(axis=1), reach)
+        apart = ~(self.edges[i][:, :, None] == self.edges[j][:, None, :]).any(axis=(1, 2))
+        i, j = i[apart], j[apart]
+        wanted = np.minimum(self.at_edge[i], self.at_edge[j])
+        _, _, gap = closest(self.segments[i], self.segments[j])
+        least = LEAST_RATIO[self.plan.dim]
+        for k in np.flatnonzero(gap < wanted):
+            for one, other in ((i[k], j[k]), (j[k], i[k])):
+                begin, end = self.segments[one]
+                n = min(int(np.ceil(np.linalg.norm(end - begin) / gap[k])), 64)
+                x = begin + np.linspace(0, 1, n + 1)[:, None] * (end - begin)
+                _, distance = on_segment(x, *(np.broadcast_to(y, x.shape) for y in self.segments[other]))
+                near = distance < wanted[k]
+                if near.any():
+                    self.add(x[near], np.maximum(distance[near], least * wanted[k]))
+        if self.plan.dim == 3:
+            self.take_gaps_of_surfaces(least)
+
+    def take_gaps_of_surfaces(self, least):
+        at = self.plan.graph.parents_at()
+        for k, surface in enumerate(self.plan.surfaces):
+            size = min(self.of_owner[k], self.network.size)
+            points = self.plan.points
+            near = np.flatnonzero(np.all((points > surface.low - size) & (points < surface.high + size), axis=1))
+            height = surface.plane.height(points[near])
+            flat = surface.plane.inside(points[near])
+            over = (abs(height) < size) & in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
+            over &= np.array([k not in at[p] | self.plan.loose.get(int(p), set()) for p in near], bool)
+            if over.any():
+                for x in (points[near[over]], surface.plane.outside(flat[over])):
+                    self.add(x, np.maximum(abs(height[over]), least * size))
+
+
+def special(plan):
+    """Where fractures end in the rock, and where several meet: points in 2D, edges in 3D."""
+    if plan.dim == 3:
+        tips, intersections = set(), set()
+        for edge, of in plan.edges.items():
+            n = sum(plan.is_fracture(k) for k in of)
+            on_side = any(plan.owners[k].kind == "boundary" for k in of)
+            if n == 1 and not on_side and is_side(plan, edge, next(k for k in of if plan.is_fracture(k))):
+                tips.add(edge)
+            elif n > 1:
+                intersections.add(edge)
+        return tips, intersections
+    count, at = Counter(), plan.graph.parents_at()
+    for edge, of in plan.edges.items():
+        if plan.fractures_of(of):
+            count.update(edge)
+    sides = {p for edge, of in plan.edges.items() if any(plan.owners[k].kind == "boundary" for k in of) for p in edge}
+    tips = {p for p, n in count.items() if n == 1 and p not in sides}
+    return tips, {p for p in count if len(plan.fractures_of(at[p])) > 1}
+
+
+def is_side(plan, edge, owner):
+    """Whether an edge lies on the rim of its surface."""
+    surface = plan.surfaces[owner]
+    middle = surface.plane.inside(0.5 * (plan.points[edge[0]] + plan.points[edge[1]]))
+    return surface.shape.boundary.distance(Point(middle)) <= 10 * plan.tolerance

@@ -1,0 +1,167 @@
+"""Plane polygons in space and the segments in which they meet."""
+import numpy as np
+from shapely.geometry import LineString, Point, Polygon
+from shapely.ops import unary_union
+from shapes import NetworkError, Plane
+
+
+class Surface:
+    """A plane polygon, perhaps with holes, of a feature. `rings` are its corners, which may lie off the plane by the
+    tolerance; `shape` is the polygon in coordinates of the plane."""
+
+    def __init__(self, feature, plane, rings):
+        self.feature, self.plane, self.rings = feature, plane, rings
+        flat = [plane.inside(ring) for ring in rings]
+        self.shape = Polygon(flat[0], flat[1:])
+        points = np.concatenate(rings)
+        self.low, self.high = points.min(axis=0), points.max(axis=0)
+
+    @classmethod
+    def whole(cls, feature):
+        return cls(feature, Plane(feature.points), [feature.points])
+
+    @classmethod
+    def of_shape(cls, feature, plane, shape):
+        return cls(feature, plane, [plane.outside(np.array(ring.coords[:-1])) for ring in (shape.exterior, *shape.interiors)])
+
+    def sides(self):
+        """Segments (n, 2, 3) around it."""
+        return np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in self.rings])
+
+    def holds(self, point, tolerance):
+        return self.shape.distance(Point(self.plane.inside(point))) <= tolerance
+
+
+def moved_onto(surface, others, tolerance):
+    """The surface with corners that are closer to one of the others than the tolerance moved onto it, in its own plane;
+    and how far (m) for the sake of which: [(distance, other)]. What would move by much more is left."""
+    rings, told = [ring.copy() for ring in surface.rings], []
+    close = [o for o in others if o is not surface and np.all(o.low <= surface.high + tolerance) and np.all(o.high >= surface.low - tolerance)]
+    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # of the height over the other along both axes
+    for ring in rings:
+        for k, corner in enumerate(ring):
+            near = [(o.plane.height(corner), slope, o) for o, slope in zip(close, slopes)
+                    if abs(o.plane.height(corner)) <= tolerance < 4 * tolerance * np.linalg.norm(slope) and o.holds(corner, tolerance)]
+            near = near[:2]  # two planes fix a corner
+            height = np.array([h for h, _, _ in near])
+            if not near or abs(height).max() < 1e-12 * np.linalg.norm(surface.high - surface.low):
+                continue
+            step = -np.linalg.lstsq(np.array([s for _, s, _ in near]), height, rcond=1e-3)[0]
+            if np.linalg.norm(step) <= 4 * tolerance:
+                ring[k] = corner + step @ surface.plane.axes
+                told += [(abs(h), o) for h, _, o in near]
+    return Surface(surface.feature, surface.plane, rings), told
+
+
+def heights(surface, plane, tolerance):
+    """Of the corners of each ring above a plane; what is within the tolerance is on it."""
+    all_heights = [plane.height(ring) for ring in surface.rings]
+    return [np.where(abs(height) <= tolerance, 0, height) for height in all_heights]
+
+
+def chords(surface, height, along, tolerance):
+    """Where a line in the plane of a surface runs through it: [((s0, point), (s1, point)), ...] with s along the line;
+    `height` of the corners tells on which side of the line they are. Touched in a point, s0 = s1."""
+    hits = []
+    for ring, h in zip(surface.rings, height):
+        for k in range(len(ring)):
+            a, b = h[k - 1], h[k]
+            if b == 0:
+                hits.append(ring[k])
+            elif a * b < 0:
+                hits.append(ring[k - 1] + a / (a - b) * (ring[k] - ring[k - 1]))
+    hits = sorted(((float(along @ x), x) for x in hits), key=lambda hit: hit[0])
+    found = []
+    for here, after in zip(hits, hits[1:]):
+        if surface.holds(0.5 * (here[1] + after[1]), tolerance):
+            found.append((here, after))
+        elif not found or found[-1][1] is not here:
+            found.append((here, here))
+    if hits and (not found or found[-1][1] is not hits[-1]):
+        found.append((hits[-1], hits[-1]))
+    return found
+
+
+def traces(one, other, tolerance):
+    """Pairs of points, the ends of the segments in which two surfaces that are not parallel meet; both alike where they
+    touch in a point."""
+    on_other, on_one = heights(one, other.plane, tolerance), heights(other, one.plane, tolerance)
+    for height in (on_other, on_one):
+        if all((h > 0).all() for h in height) or all((h < 0).all() for h in height):
+            return []
+    along = np.cross(one.plane.normal, other.plane.normal)
+    along /= np.linalg.norm(along)
+    found = []
+    for a0, a1 in chords(one, on_other, along, tolerance):
+        for b0, b1 in chords(other, on_one, along, tolerance):
+            begin, end = max(a0, b0, key=lambda hit: hit[0]), min(a1, b1, key=lambda hit: hit[0])
+            if end[0] >= begin[0]:
+                found.append((begin[1], end[1]))
+            elif begin[0] - end[0] <= tolerance:
+                found.append((begin[1], begin[1]))
+    return found
+
+
+def are_level(one, other, tolerance):
+    """Whether the corners of the smaller of two surfaces lie in the plane of the other."""
+    small, large = sorted((one, other), key=lambda surface: surface.shape.area)
+    return all((h == 0).all() for h in heights(small, large.plane, tolerance))
+
+
+def polygons_of(shape):
+    """The polygons in a shape of any kind, as a list."""
+    if shape.geom_type == "Polygon":
+        return [shape] if shape.area > 0 else []
+    return [part for piece in getattr(shape, "geoms", []) for part in polygons_of(piece)]
+
+
+def lines_of(shape):
+    if shape.geom_type in ("LineString", "LinearRing"):
+        return [shape] if shape.length > 0 else []
+    return [part for piece in getattr(shape, "geoms", []) for part in lines_of(piece)]
+
+
+def overlap(one, other):
+    """The part of `other` that lies in `one`, which is level with it, in the coordinates of `one`."""
+    rings = [one.plane.inside(ring) for ring in other.rings]
+    return Polygon(rings[0], rings[1:]).buffer(0).intersection(one.shape.buffer(0))
+
+
+def shared_sides(one, other, tolerance):
+    """Segments of the sides of one of two level surfaces in the other: pairs of points."""
+    found = []
+    for a, b in ((one, other), (other, one)):
+        for begin, end in b.sides():
+            line = LineString(a.plane.inside(np.array([begin, end])))
+            for part in lines_of(line.intersection(a.shape.buffer(tolerance))):
+                if part.length > tolerance:
+                    found.append(tuple(a.plane.outside(np.array([part.coords[0], part.coords[-1]]))))
+    return found
+
+
+def without(surface, others, tolerance):
+    """What others, level with it, leave of a surface: a list."""
+    left = surface.shape.buffer(0)
+    taken = [Polygon(surface.plane.inside(o.rings[0]), [surface.plane.inside(r) for r in o.rings[1:]]).buffer(tolerance) for o in others]
+    left = left.difference(unary_union(taken))
+    return [Surface.of_shape(surface.feature, surface.plane, part) for part in polygons_of(left) if part.area > tolerance * part.length]
+
+
+def angle_between(one, other, point, along):
+    """The smallest angle (degree) between half planes of two surfaces at a point in which they meet along a line."""
+    step = 1e-3 * min(np.linalg.norm(s.high - s.low) for s in (one, other))
+    directions = []
+    for surface in (one, other):
+        across = np.cross(surface.plane.normal, along)
+        across /= np.linalg.norm(across)
+        directions.append([d for d in (across, -across) if surface.shape.contains(Point(surface.plane.inside(point + step * d)))])
+    return min((np.degrees(np.arccos(np.clip(d @ e, -1, 1))) for d in directions[0] for e in directions[1]), default=90.0)
+
+
+def check_angles(one, other, found, minimum):
+    for begin, end in found:
+        if np.linalg.norm(end - begin) == 0:
+            continue
+        angle = angle_between(one, other, 0.5 * (begin + end), (end - begin) / np.linalg.norm(end - begin))
+        if angle < minimum:
+            raise NetworkError(f"{one.feature.name} and {other.feature.name} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}")

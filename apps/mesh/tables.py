@@ -1,0 +1,141 @@
+"""Files of fractures as they are exchanged: CSV of lines, polygons and ellipses, and .fab of FracMan."""
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from shapes import Errors, NetworkError, ellipse
+
+
+@dataclass
+class Table:
+    fractures: list = field(default_factory=list)  # (name, points)
+    box: tuple = None  # lowest and highest corner of the domain, if the file tells
+    errors: list = field(default_factory=list)
+
+
+def numbers(words, place, table, first=1):
+    """The words, from column `first` on, as finite numbers, or None and an error."""
+    found = []
+    for k, word in enumerate(words, first):
+        try:
+            found.append(float(word))
+        except ValueError:
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no number")
+            return None
+        if not math.isfinite(found[-1]):
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no finite number")
+            return None
+    return np.array(found)
+
+
+def is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def read_lines(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise NetworkError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is no text in UTF-8'}", [path]) from None
+
+
+def lines_row(words, place, table):
+    if len(words) != 5:
+        table.errors.append(f"{place}: has {len(words)} columns, needs 5: id,x0,y0,x1,y1")
+        return
+    x = numbers(words[1:], place, table, 2)
+    if x is not None:
+        table.fractures.append((f"{words[0].strip()} ({place})", x.reshape(2, 2)))
+
+
+def polygons_row(words, place, table):
+    if len(words) == 6 and not table.fractures and table.box is None:
+        x = numbers(words, place, table)
+        if x is not None and not (x[3:] > x[:3]).all():
+            table.errors.append(f"{place}: the domain xmin,ymin,zmin,xmax,ymax,zmax has a maximum that is not above its minimum")
+        elif x is not None:
+            table.box = x[:3], x[3:]
+        return
+    if len(words) % 3 or len(words) < 9:
+        table.errors.append(f"{place}: has {len(words)} columns, needs 3 for each of at least 3 corners: x0,y0,z0,x1,y1,z1,...")
+        return
+    x = numbers(words, place, table)
+    if x is not None:
+        table.fractures.append((f"{len(table.fractures) + 1} ({place})", x.reshape(-1, 3)))
+
+
+def ellipses_row(words, place, table):
+    if len(words) != 8:
+        table.errors.append(f"{place}: has {len(words)} columns, needs 8: cx,cy,cz,r1,r2,rake,strike,dip")
+        return
+    x = numbers(words, place, table)
+    if x is None:
+        return
+    if min(x[3:5]) <= 0:
+        table.errors.append(f"{place}: has the radii {x[3]:g} and {x[4]:g}, they must be positive")
+        return
+    table.fractures.append((f"{len(table.fractures) + 1} ({place})", ellipse(x[:3], x[3:5], x[6], x[7], x[5])))
+
+
+def read_csv(path, row):
+    """A table of lines with commas; empty lines and those that open with # are passed over, as is a line of titles."""
+    table, is_first = Table(), True
+    for number, line in enumerate(read_lines(path), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        words = line.split(",")
+        while len(words) > 1 and not words[-1].strip():  # commas at the end
+            words.pop()
+        is_title = is_first and not any(is_number(word) for word in words)
+        is_first = False
+        if not is_title:
+            row(words, f"{path}: line {number}", table)
+    return table
+
+
+def read_fab(path):
+    """The fractures of a file in FracMan's format: after BEGIN FRACTURE for each a line `id corners set ...`, a line
+    `number x y z` for each corner and a last one with the normal; x east, y north, z up."""
+    table, lines = Table(), read_lines(path)
+    begin = next((k for k, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "FRACTURE"]), None)
+    if begin is None:
+        raise NetworkError(f"{path}: has no line BEGIN FRACTURE", [path])
+    k = begin + 1
+    while k < len(lines) and lines[k].split()[:2] != ["END", "FRACTURE"]:
+        words, place = lines[k].split(), f"{path}: line {k + 1}"
+        k += 1
+        if not words:
+            continue
+        head = words[:2]
+        if len(head) < 2 or not all(word.isdigit() for word in head):
+            raise NetworkError(f"{place}: is \"{lines[k - 1].strip()[:40]}\", expected the number of a fracture and that of its corners", [path])
+        n = int(head[1])
+        corners = [line.split() for line in lines[k:k + n]]
+        if [c[:1] for c in corners] != [[str(row + 1)] for row in range(n)] or any(len(c) < 4 for c in corners):
+            raise NetworkError(f"{place}: fracture {head[0]} has {n} corners; their lines, number x y z, do not follow", [path])
+        x = [numbers(c[1:4], f"{path}: line {k + row + 1}", table, 2) for row, c in enumerate(corners)]
+        if all(p is not None for p in x):
+            table.fractures.append((f"{head[0]} ({place})", np.array(x)))
+        k += n + 1
+    if k >= len(lines):
+        raise NetworkError(f"{path}: has no line END FRACTURE", [path])
+    return table
+
+
+def read_table(path, kind):
+    """The fractures in a file; refuses it with a line for each thing that is wrong. A kind None is that of the columns."""
+    if kind is None:
+        lines = (line for line in read_lines(path) if line.strip() and not line.lstrip().startswith("#"))
+        first = next((line.split(",") for line in lines), [])
+        words = first if any(is_number(word) for word in first) else next(lines, "").split(",")
+        kind = "lines" if len(words) == 5 else "polygons"
+    table = read_fab(path) if kind == "fab" else read_csv(path, {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind])
+    if not table.errors and not table.fractures:
+        table.errors.append(f"{path}: has no fracture")
+    Errors(table.errors).throw([path])
+    return table

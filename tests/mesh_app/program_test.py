@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+"""From files and scenes to meshes and runs: program_test.py PROGRAM ROOT MPIEXEC"""
+import contextlib
+import importlib.util
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+from unittest import mock
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "regression"))
+
+import numpy as np  # noqa: E402
+import program  # noqa: E402
+from conformity import DEFAULTS, as_xml  # noqa: E402
+from program import ROOT, ProgramTest, main  # noqa: E402
+
+spec = importlib.util.spec_from_file_location("sprekk_mesh", ROOT / "apps" / "mesh" / "__main__.py")
+app = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(app)
+
+SQUARE = {"lower corner": [0.0, 0.0], "upper corner": [1.0, 1.0]}
+REST = """<ParameterList name="Materials"><ParameterList name="joint"><Parameter name="type" type="string" value="joint"/>
+<Parameter name="friction coefficient" type="double" value="0.6"/></ParameterList></ParameterList>
+<ParameterList name="Bulk"><Parameter name="material" type="string" value="granite"/></ParameterList>
+<ParameterList name="Fractures"><ParameterList name="set"><Parameter name="material" type="string" value="joint"/></ParameterList></ParameterList>
+<ParameterList name="Boundary conditions">
+<ParameterList name="floor"><Parameter name="boundary" type="string" value="FLOOR"/><Parameter name="displacement" type="Array(double)" value="ZERO"/></ParameterList>
+<ParameterList name="roof"><Parameter name="boundary" type="string" value="ROOF"/><Parameter name="displacement" type="Array(double)" value="DOWN"/></ParameterList>
+</ParameterList>"""
+
+
+class MeshTest(ProgramTest):
+    def write(self, name, *lines):
+        path = self.folder / name
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    def scene(self, name="scene.xml", dim=2, **network):
+        """A scene in the folder with one set of fractures, pressed from the top."""
+        floor, roof = ("south", "north") if dim == 2 else ("bottom", "top")
+        zeros = ", ".join(["0"] * (dim - 1))
+        rest = REST.replace("FLOOR", floor).replace("ROOF", roof).replace("ZERO", f"{{{zeros}, 0}}").replace("DOWN", f"{{{zeros}, -1e-3}}")
+        if dim == 2:
+            network.setdefault("domain", SQUARE)
+        described = as_xml("network", {key.replace("_", " "): value for key, value in network.items()})
+        return self.write(name, '<ParameterList name="Sprekk"><ParameterList name="Mesh file">', described, "</ParameterList>", rest, "</ParameterList>")
+
+    def mesh(self, scene, *words, expect=0, output="net.msh"):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = app.main([str(scene), "-o", str(self.folder / output), "--program", str(program.PROGRAM), *words])
+        self.assertEqual(status, expect, out.getvalue() + err.getvalue())
+        return err.getvalue() if expect else out.getvalue()
+
+    def report(self, output="net.msh"):
+        return json.loads((self.folder / f"{output}.json").read_text())
+
+    def refused(self, file, *expected, kind=None, **network):
+        """Lines of the error, each of which opens as expected."""
+        described = {"file": file.name, **({"format": kind} if kind else {})}
+        told = self.mesh(self.scene(fractures={"set": described}, **network), expect=1).removeprefix("sprekk: ").splitlines()
+        self.assertEqual(len(told), len(expected), told)
+        for line, words in zip(told, expected):
+            self.assertIn(words, line)
+
+
+class Files(MeshTest):
+    """What is in files; the description comes without a start of the program, as the program would print it."""
+
+    def scene(self, **network):
+        network.setdefault("domain", SQUARE)
+        for content in network["fractures"].values():
+            content["file"] = str(self.folder / content["file"])
+        if network.pop("dim", 2) == 3 and network["domain"] is SQUARE:
+            del network["domain"]
+        else:
+            network["domain"] = {"corners": [], "faces": {}, **network["domain"]}
+        text = as_xml("network", {**DEFAULTS, **network})
+        patch = mock.patch.object(app, "description", lambda options: text)
+        patch.start()
+        self.addCleanup(patch.stop)
+        return "scene.xml"
+
+    def test_lines(self):
+        self.write("net.csv", "id,x0,y0,x1,y1", "# a comment", "7,0.2,0.5,0.8,0.5", "", "8,0.5,0.2,0.5,0.8")
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 1.2, 9)
+
+    def test_polygons_and_their_domain(self):
+        self.write("net.csv", "0,0,0,2,1,1", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5", "1,0.2,0.2,1,0.8,0.2,1,0.5,0.8")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}))
+        report = self.report()
+        self.assertAlmostEqual(report["sets"]["set"]["area"], 0.36 + 0.18, 9)
+        self.assertAlmostEqual(report["volume"], 2, 9)
+
+    def test_ellipses(self):
+        self.write("net.csv", "cx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.3,0.2,30,120,60")
+        self.mesh(self.scene(dim=3, domain={"lower corner": [0.0] * 3, "upper corner": [1.0] * 3},
+                             fractures={"set": {"file": "net.csv", "format": "ellipses"}}))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], np.pi * 0.06, 9)
+
+    FAB = ("BEGIN FORMAT", "  Format = Ascii", "  No_Fractures = 2", "END FORMAT", "BEGIN FRACTURE", "  1 4 1 1.0e-5 2.0",
+           "   1 0.2 0.2 0.5", "   2 0.8 0.2 0.5", "   3 0.8 0.8 0.5", "   4 0.2 0.8 0.5", "   0 0 0 1", "  2 3 1 1.0e-5 2.0",
+           "   1 0.5 0.2 0.2", "   2 0.5 0.8 0.2", "   3 0.5 0.5 0.8", "   0 1 0 0", "END FRACTURE")
+    CUBE = {"domain": {"lower corner": [0.0] * 3, "upper corner": [1.0] * 3}}
+
+    def test_fab(self):
+        self.write("net.fab", *self.FAB)
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36 + 0.18, 9)
+
+    def test_bad_rows(self):
+        net = self.write("net.csv", "id,x0,y0,x1,y1", "1,0.2,0.5,0.8", "2,0.2,nan,0.8,0.5", "3,0.2,0.5,O.8,0.5", "4,0.1,0.1,0.2,0.2")
+        self.refused(net, f"{net}: line 2: has 4 columns, needs 5", f'{net}: line 3: "nan" in column 3 is no finite number',
+                     f'{net}: line 4: "O.8" in column 4 is no number')
+        net = self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.5,0.8,0.5", "3,1.5,0.5,1.8,0.5")
+        self.refused(net, f"fracture 3 ({net}: line 3): lies outside")
+        net = self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.5,0.8,0.5")
+        self.refused(net, f"fracture 1 ({net}: line 1) and fracture 2 ({net}: line 2) are the same")
+        net = self.write("net.csv", "0,0,0,1,1,1", "0.2,0.2,0.5,0.8,0.8,0.5,0.8,0.2,0.5,0.2,0.8,0.5", "0.1,0.1,0.1,0.2,0.2,0.2,0.3,0.3,0.3")
+        self.refused(net, f"fracture 1 ({net}: line 2): crosses or touches itself", f"fracture 2 ({net}: line 3): has no area", dim=3)
+        net = self.write("net.csv", "0,0,0,1,1,1", "0.2,0.2,0.5,0.8,0.8")
+        self.refused(net, f"{net}: line 2: has 5 columns, needs 3 for each", dim=3, kind="polygons")
+        net = self.write("net.csv", "0,0,0,1,0,1", "0.2,0.2,0.5,0.8,0.8,0.5,0.8,0.2,0.5")
+        self.refused(net, f"{net}: line 1: the domain", dim=3)
+        net = self.write("net.csv", "0.5,0.5,0.5,0.3,0,0,0,0")
+        self.refused(net, f"{net}: line 1: has the radii 0.3 and 0", dim=3, kind="ellipses", **self.CUBE)
+
+    def test_one_bad_row_of_many(self):
+        rows = [f"{k},0.2,{0.2 + 6e-6 * k},0.8,{0.2 + 6e-6 * k}" for k in range(100000)]
+        rows[77776] = rows[77776].replace("0.8", "0.8.1")
+        net = self.write("net.csv", *rows)
+        self.refused(net, f'{net}: line 77777: "0.8.1" in column 4 is no number')
+
+    def test_bad_fab(self):
+        for change, words in (({5: "  1 5 1"}, "line 6: fracture 1 has 5 corners"), ({7: "   2 0.8 x 0.5"}, 'line 8: "x" in column 3 is no number'),
+                              ({16: ""}, "has no line END FRACTURE"), ({4: "BEGIN"}, "has no line BEGIN FRACTURE"),
+                              ({11: "  two 3 1"}, "line 12: is \"two 3 1\", expected the number")):
+            lines = list(self.FAB)
+            for k, line in change.items():
+                lines[k] = line
+            net = self.write("net.fab", *lines)
+            self.refused(net, words, dim=3, **self.CUBE)
+
+    def test_files_that_cannot_be_read(self):
+        self.refused(self.folder / "absent.csv", "absent.csv: cannot be read: No such file")
+        (self.folder / "net.csv").write_bytes(b"1,0.2,0.5,\xff\xfe")
+        self.refused(self.folder / "net.csv", "net.csv: cannot be read: is no text in UTF-8")
+        self.refused(self.write("net.csv", "id,x0,y0,x1,y1"), "net.csv: has no fracture")
+
+
+class Runs(MeshTest):
+    LINES = "1,0.2,0.5,0.8,0.5", "2,0.5,0.2,0.5,0.8"
+
+    def simple(self):
+        self.write("net.csv", *self.LINES)
+        return self.scene(fractures={"set": {"file": "net.csv"}}, relative_size=0.2)
+
+    def test_mesh_is_made_once(self):
+        scene = self.simple()
+        self.assertIn("cells", self.mesh(scene))
+        self.assertIn("up to date", self.mesh(scene))
+        self.assertIn("cells", self.mesh(scene, "--set", "Mesh file.network.growth=0.6"))
+        self.write("net.csv", *self.LINES, "3,0.1,0.1,0.2,0.2")
+        self.assertIn("cells", self.mesh(scene, "--set", "Mesh file.network.growth=0.6"))
+        with open(self.folder / "net.msh", "r+b") as file:
+            file.truncate(1000)
+        self.assertIn("cells", self.mesh(scene, "--set", "Mesh file.network.growth=0.6"))
+
+    def test_same_mesh_each_time(self):
+        scene = self.simple()
+        for output in ("a.msh", "b.msh"):
+            self.mesh(scene, output=output)
+        self.assertEqual((self.folder / "a.msh").read_bytes(), (self.folder / "b.msh").read_bytes())
+
+    def test_report(self):
+        self.mesh(self.simple())
+        report, info = self.report(), self.call("mesh-info", "net.msh", "--fractures", "set")[0]
+        self.assertIn(f"{report['cells']} triangles", info)
+        self.assertIn("length 1.2", info)
+        self.assertTrue(0.3 < report["gamma"]["min"] <= report["gamma"]["median"] <= 1)
+        self.assertTrue(0 < report["sets"]["set"]["median edge"] <= 1.5 * report["sets"]["set"]["median size asked for"])
+
+    def launch(self, *words, expect=0):
+        """The launcher, of which building is left out."""
+        launcher = self.folder / "sprekk"
+        text = (ROOT / "sprekk").read_text().replace("\nbuild() {\n", "\nbuild() { return\n").replace("\ninstall_missing() {\n", "\ninstall_missing() { return\n")
+        launcher.write_text(text)
+        binary = self.folder / "build/apps/sprekk/sprekk"
+        if not binary.exists():
+            binary.parent.mkdir(parents=True)
+            binary.symlink_to(program.PROGRAM)
+            (self.folder / "apps").mkdir()
+            (self.folder / "apps/mesh").symlink_to(ROOT / "apps/mesh")
+        done = subprocess.run(["timeout", "60", "bash", "./sprekk", *map(str, words)], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def test_run_and_check_make_the_mesh(self):
+        scene = self.simple()
+        for ranks in (1, 2):
+            self.launch("run", scene, "--ranks", ranks, "--output", f"out{ranks}")
+            results = self.results(f"out{ranks}")
+            self.assertEqual(results["status"], "completed")
+            self.assertAlmostEqual(results["steps"][0]["fractures"]["set"]["area"], 1.2, 9)
+        self.assertAlmostEqual(results["steps"][0]["reactions"]["south"][1], self.results("out1")["steps"][0]["reactions"]["south"][1], delta=1)
+        self.assertIn("no errors", self.launch("check", scene))
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.is_dir()), ["apps", "build", "out1", "out2"])
+        self.launch("run", scene, "--output", "again", "--set", "Mesh file.order=2")
+        self.assertIn("network", (self.folder / "again/effective_input.xml").read_text())
+        self.launch("run", "again/effective_input.xml", "--output", "once more")
+
+    def test_errors_reach_the_user_on_any_number_of_ranks(self):
+        scene = self.simple()
+        self.launch("run", scene, "--output", "out")
+        self.write("net.csv", "1,0.2,0.5,0.8")
+        for ranks in (1, 2):
+            told = self.launch("run", scene, "--ranks", ranks, "--output", "out", expect=1)
+            self.assertEqual(told, f"sprekk: net.csv: line 1: has 4 columns, needs 5: id,x0,y0,x1,y1\n")
+        self.assertEqual(self.results()["status"], "failed")
+        self.assertIn("line 1: has 4 columns", self.results()["reason"])
+        self.launch("check", scene, expect=1)
+
+    def test_program_alone_says_who_makes_the_mesh(self):
+        for command in ("run", "check"):
+            _, err = self.call(command, self.simple(), expect=1)
+            self.assertIn('Sprekk > Mesh file > "path": missing; the mesh of a network is made by `./sprekk mesh', err)
+        self.mesh(self.folder / "scene.xml")
+        self.call("run", self.folder / "scene.xml", "--set", "Mesh file.path=net.msh", "--output", "out", ranks=2)
+        self.assertEqual(self.results()["status"], "completed")
+
+    def test_descriptions(self):
+        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, tolerence=1.0), expect=1)
+        self.assertRegex(told, r'scene.xml: Sprekk > Mesh file > network > "tolerence": unknown. Did you mean "tolerance"\?')
+        told = self.mesh(self.scene(fractures={"set": {"random": {"number": 3, "shortest": 2.0, "longest": 1.0}}}), expect=1)
+        self.assertIn('"longest": is 1, "shortest" 2', told)
+        self.write("net.csv", "1,0,0,1,1")
+        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, domain={"lower corner": [0.0, 0.0], "upper corner": [1.0]}), expect=1)
+        self.assertIn('"upper corner": has 1 coordinates', told)
+        told = self.mesh(self.write("empty.xml", '<ParameterList name="Sprekk"/>'), expect=1)
+        self.assertIn("has no section Sprekk > Mesh file > network", told)
+
+    def test_picture(self):
+        self.mesh(self.simple(), "--picture", str(self.folder / "net.png"))
+        self.assertGreater((self.folder / "net.png").stat().st_size, 10000)
+
+
+if __name__ == "__main__":
+    main()
