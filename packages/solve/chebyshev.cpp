@@ -91,6 +91,7 @@ void Chebyshev::update(const NodeMatrix& A) {
               }
         });
   });
+  widening_ = 1;
   find_largest_eigenvalue();
 }
 
@@ -131,7 +132,7 @@ Real Chebyshev::square(const View<Real*>& x) const {
 }
 
 void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) const {
-  const Real high = margin * largest_, low = smallest_over_largest * largest_;
+  const Real high = margin * widening_ * largest_, low = smallest_over_largest * widening_ * largest_;
   const Real middle = (high + low) / 2, half = (high - low) / 2, sigma = middle / half;
   const auto root = root_;
   const auto scaled = b_, step = step_;

@@ -19,6 +19,9 @@ class Chebyshev {
   /// Takes the values of A, and looks for its largest eigenvalue.
   void update(const NodeMatrix& A);
 
+  /// Doubles the interval until the next update: eigenvalues off the real axis are then nearer to it.
+  void widen() { widening_ *= 2; }
+
   /// x <- S b, or x += S b; b [owned], x [all].
   void apply(const View<Real*>& b, const View<Real*>& x, bool add) const;
 
@@ -34,7 +37,7 @@ class Chebyshev {
   NodeGraph graph_;
   View<float*> value_;  // of D^-1/2 A D^-1/2: [entry, column, row], and a few numbers more
   View<Real*> root_;    // D^-1/2 [all]
-  Real largest_ = 1;
+  Real largest_ = 1, widening_ = 1;
   mutable View<Real*> b_, step_, x_, next_;  // times D^1/2 or D^-1/2
 };
 

@@ -12,19 +12,21 @@ using fields::MultiVector;
 using Policy = Kokkos::RangePolicy<Execution>;
 
 /// By how much of itself the diagonal of the last matrix is raised: parts of rock that float would make it singular.
-constexpr Real raise = 1e-8, most_raise = 1e-1;
-constexpr Real most_growth = 100;  // of the residual in a cycle
+constexpr Real raise = 1e-8;
+
+constexpr Real most_growth = 5;  // of the residual in a cycle
+constexpr int most_widenings = 4;
 
 constexpr Real least_coarsening = 0.8;
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
 
-void raise_diagonal(CrsMatrix& matrix, Real by) {
+void raise_diagonal(CrsMatrix& matrix) {
   const auto local = matrix.getLocalMatrixHost();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
   for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
     for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= 1 + by;
+      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= 1 + raise;
 }
 
 }  // namespace
@@ -66,15 +68,15 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
     level.smoother->update(level.A);
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
-  for (Real by = raise; by <= most_raise; by *= 100) {
-    factor_last(by, symmetric);
-    if (symmetric || growth() < most_growth) break;
-  }
+  factor_last(symmetric);
+  for (int widenings = 0; !symmetric && growth() > most_growth && widenings < most_widenings; ++widenings)
+    for (auto& level : levels_)
+      if (level.smoother) level.smoother->widen();
 }
 
-void Multigrid::factor_last(Real raised_by, bool symmetric) {
+void Multigrid::factor_last(bool symmetric) {
   const auto last = crs_matrix(levels_.back().A);
-  raise_diagonal(*last, raised_by);
+  raise_diagonal(*last);
   if (last_.is_null()) {
     last_matrix_ = last;
     last_ = rcp(new DirectInverse(last_matrix_, "the coarsest level of multigrid"));
@@ -84,8 +86,8 @@ void Multigrid::factor_last(Real raised_by, bool symmetric) {
   last_->setup(symmetric);
 }
 
-/// |b - A M b| / |b| of a vector b that is the same on any number of ranks. R A P of a matrix that is not symmetric can
-/// be singular where the matrix is not; then it is large.
+/// |b - A M b| / |b| of a vector b that is the same on any number of ranks. Large where eigenvalues of a matrix that is
+/// not symmetric lie so far from the real axis that the smoother enlarges what belongs to them.
 Real Multigrid::growth() const {
   Vector b(map_), Mb(map_), r(map_);
   for (std::size_t i = 0; i < b.getLocalLength(); ++i)

@@ -39,7 +39,7 @@ class Multigrid : public fields::Operator {
   };
 
   void add_level(const NodeMatrix& A);
-  void factor_last(Real raised_by, bool symmetric);
+  void factor_last(bool symmetric);
   Real growth() const;
   void cycle(std::size_t level) const;
   void solve_last() const;
