@@ -241,6 +241,12 @@ class BlockSweep : public Operator {
 
 }  // namespace
 
+bool takes_muelu(const ParameterList& muelu, const Block& block) {
+  const auto& modes = block.near_null_space;
+  const int n_modes = modes.is_null() ? block.n_components : static_cast<int>(modes->getNumVectors());
+  return muelu.numParams() > 0 || !Multigrid::can_solve(block.n_components, n_modes);
+}
+
 ParameterList multigrid_parameters(const ParameterList& muelu, const Block& block) {
   auto list = multigrid_defaults(block.n_components, block.map->getComm()->getSize());
   if (muelu.isParameter("smoother: type")) list.remove("smoother: params");
@@ -255,7 +261,7 @@ RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& bloc
 }
 
 RCP<BlockSolver> make_multigrid(const ParameterList& muelu, const Block& block) {
-  if (!asks_for_muelu(muelu)) return rcp(new NodeMultigrid(block.name));
+  if (!takes_muelu(muelu, block)) return rcp(new NodeMultigrid(block.name));
   return rcp(new MueLuMultigrid(block.name, multigrid_parameters(muelu, block)));
 }
 

@@ -33,8 +33,8 @@ class BlockSolver {
 /// `muelu` goes over the defaults.
 RCP<BlockSolver> make_block_solver(const Teuchos::ParameterList& muelu, const Block& block);
 
-/// Whether MueLu takes the place of multigrid on blocks of nodes: where any of its parameters is given.
-inline bool asks_for_muelu(const Teuchos::ParameterList& muelu) { return muelu.numParams() > 0; }
+/// Whether multigrid of a block is MueLu's: where any of its parameters is given, or nodes have too many unknowns.
+bool takes_muelu(const Teuchos::ParameterList& muelu, const Block& block);
 
 /// Multigrid on what its coordinates and near null space belong to.
 RCP<BlockSolver> make_multigrid(const Teuchos::ParameterList& muelu, const Block& block);

@@ -36,9 +36,9 @@ void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const Vi
   Kokkos::parallel_for(
       "product of nodes", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
         Real sums[n_sums][lanes] = {};
-        const float* a = value.data() + b * b * start(i);
+        const float* a = &value(b * b * start(i));
         for (std::size_t k = start(i); k < start(i + 1); ++k, a += b * b) {
-          const Real* const from = x.data() + static_cast<std::size_t>(column(k)) * b;
+          const Real* const from = &x(static_cast<std::size_t>(column(k)) * b);
           for (int c = 0; c < b; ++c)
             for (int r = 0; r < lanes; ++r) sums[c % n_sums][r] += a[c * b + r] * from[c];
         }

@@ -31,9 +31,6 @@ Rows<Node> make_rows(LocalIndex n, const Fill& fill) {
     std::sort(set.begin(), set.end());
     all.insert(all.end(), set.begin(), std::unique(set.begin(), set.end()));
     rows.start(i + 1) = all.size();
-    SPREKK_CHECK(all.size() - rows.start(i) < nowhere,
-                 "multigrid: a node couples to {} others; allowed are less than {}", all.size() - rows.start(i),
-                 nowhere);
   }
   rows.node = View<Node*>("node", all.size());
   std::copy(all.begin(), all.end(), rows.node.data());
@@ -86,6 +83,8 @@ std::uint16_t slot_in(const Rows<Node>& rows, LocalIndex row, Node node) {
   const auto begin = rows.node.data() + rows.start(row), end = rows.node.data() + rows.start(row + 1);
   const auto at = std::lower_bound(begin, end, node);
   SPREKK_CHECK(at != end && *at == node, "multigrid: the graph of the matrix is not symmetric");
+  SPREKK_CHECK(at - begin < nowhere, "multigrid: a node couples to {} others; allowed are less than {}", end - begin,
+               nowhere);
   return static_cast<std::uint16_t>(at - begin);
 }
 
@@ -93,6 +92,16 @@ View<std::uint16_t*> to_view(const std::vector<std::uint16_t>& from) {
   const View<std::uint16_t*> view("slots", from.size());
   std::copy(from.begin(), from.end(), view.data());
   return view;
+}
+
+/// to[q] += sum over c < b of a[c] from[c * stride + q], q < m.
+template <int b, int m>
+KOKKOS_INLINE_FUNCTION void add_row(const Real* a, const Real* from, std::size_t stride, Real* to) {
+  Real sum[m];
+  for (int q = 0; q < m; ++q) sum[q] = to[q];
+  for (int c = 0; c < b; ++c)
+    for (int q = 0; q < m; ++q) sum[q] += a[c] * from[c * stride + q];
+  for (int q = 0; q < m; ++q) to[q] = sum[q];
 }
 
 }  // namespace
@@ -235,9 +244,9 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
         "smoothed prolongator", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
                             n_a = graph.start(i + 1) - begin;
-          Real* const row = p.data() + b * m * first;
-          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           if (n == 0) return;
+          Real* const row = &p(b * m * first);
+          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           for (std::size_t k = 0; k < n_a; ++k) {
             if (slot(begin + k) == nowhere) continue;
             const LocalIndex j = graph.column(begin + k);
@@ -288,7 +297,7 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
     Kokkos::parallel_for(
         "restriction", Policy(0, R_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
           const std::size_t n = start(I + 1) - start(I);
-          Real* const row = r.data() + b * m * start(I);
+          Real* const row = &r(b * m * start(I));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           for (std::size_t at = first_member(I); at < first_member(I + 1); ++at) {
             const LocalIndex j = member(at);
@@ -323,21 +332,19 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP) const 
         "A P", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
                             n_a = graph.start(i + 1) - begin;
-          Real* const row = AP.data() + b * m * first;
-          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           if (n == 0) return;
-          const Slot* slot = slots.data() + first_slot(i);
+          Real* const row = &AP(b * m * first);
+          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
+          std::size_t at = first_slot(i);
           for (std::size_t k = 0; k < n_a; ++k) {
             const LocalIndex j = graph.column(begin + k);
             const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
-            const Real* const from = p.data() + b * m * first_p;
+            if (n_p == 0) continue;
+            const Real* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
-            for (std::size_t s = 0; s < n_p; ++s, ++slot)
-              for (int r = 0; r < b; ++r) {
-                Real* const to = row + (r * n + *slot) * m;
-                for (int c = 0; c < b; ++c)
-                  for (int q = 0; q < m; ++q) to[q] += block[r * n_a * b + c] * from[(c * n_p + s) * m + q];
-              }
+            for (std::size_t s = 0; s < n_p; ++s, ++at)
+              for (int r = 0; r < b; ++r)
+                add_row<b, m>(block + r * n_a * b, from + s * m, n_p * m, row + (r * n + slots(at)) * m);
           }
         });
   });
@@ -354,20 +361,18 @@ void Galerkin::multiply_left(const View<Real*>& AP) const {
     Kokkos::parallel_for(
         "R A P", Policy(0, coarse_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
           const std::size_t n = start(I + 1) - start(I), begin = start_R(I), n_r = start_R(I + 1) - begin;
-          Real* const row = out.data() + m * m * start(I);
+          Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
-          const Slot* slot = slots.data() + first_slot(I);
+          std::size_t at = first_slot(I);
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
             const std::size_t first = start_AP(fine), n_ap = start_AP(fine + 1) - first;
-            const Real* const from = AP.data() + b * m * first;
+            if (n_ap == 0) continue;
+            const Real* const from = &AP(b * m * first);
             const Real* const block = &r(b * m * begin + k * b);
-            for (std::size_t s = 0; s < n_ap; ++s, ++slot)
-              for (int q = 0; q < m; ++q) {
-                Real* const to = row + (q * n + *slot) * m;
-                for (int c = 0; c < b; ++c)
-                  for (int d = 0; d < m; ++d) to[d] += block[q * n_r * b + c] * from[(c * n_ap + s) * m + d];
-              }
+            for (std::size_t s = 0; s < n_ap; ++s, ++at)
+              for (int q = 0; q < m; ++q)
+                add_row<b, m>(block + q * n_r * b, from + s * m, n_ap * m, row + (q * n + slots(at)) * m);
           }
           for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)

@@ -140,7 +140,7 @@ class IterativeSolver : public LinearSolver {
  private:
   /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
   int describe_multigrid(const Block& block) {
-    if (asks_for_muelu(muelu_)) {
+    if (takes_muelu(muelu_, block)) {
       parameters_.sublist("MueLu") = multigrid_parameters(muelu_, block);
       return parameters_.sublist("MueLu").get<int>("coarse: max size");
     }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "solve/node_kernels.hpp"
+
 namespace sprekk::solve {
 namespace {
 
@@ -30,6 +32,12 @@ void raise_diagonal(CrsMatrix& matrix) {
 }
 
 }  // namespace
+
+bool Multigrid::can_solve(int n_components, int n_modes) {
+  const auto nothing = [](auto, auto) {};
+  return try_sizes(n_components, n_components, nothing) && try_sizes(n_components, n_modes, nothing) &&
+         try_sizes(n_modes, n_modes, nothing);
+}
 
 Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
                      const RCP<const MultiVector>& modes)

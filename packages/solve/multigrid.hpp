@@ -13,6 +13,9 @@ class Multigrid : public fields::Operator {
  public:
   static constexpr int coarse_size = 1000;  ///< unknowns of the last level, which is solved directly
 
+  /// Whether there is code for that many unknowns of a node and motions.
+  static bool can_solve(int n_components, int n_modes);
+
   /// Aggregates by `bulk`, which has the graph of the matrices that follow or less, and no edge across an interface,
   /// so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
   Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,

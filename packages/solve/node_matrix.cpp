@@ -124,10 +124,10 @@ void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
         "product of nodes", Kokkos::RangePolicy<Execution>(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t begin = start(i), n = start(i + 1) - begin;
           const Real* row[h];
-          for (int r = 0; r < h; ++r) row[r] = value.data() + w * (h * begin + r * n);
+          for (int r = 0; r < h; ++r) row[r] = &value(w * (h * begin + r * n));
           Real sums[n_sums][h] = {};
           for (std::size_t k = 0; k < n; ++k) {
-            const Real* const from = x.data() + static_cast<std::size_t>(column(begin + k)) * w;
+            const Real* const from = &x(static_cast<std::size_t>(column(begin + k)) * w);
             for (int r = 0; r < h; ++r)
               for (int c = 0; c < w; ++c) sums[c % n_sums][r] += row[r][k * w + c] * from[c];
           }
