@@ -87,7 +87,7 @@ void Chebyshev::update(const NodeMatrix& A) {
               for (int c = 0; c < b; ++c) {
                 const Real value = a(b * b * begin + (r * n + k) * b + c);
                 scaled(b * b * (begin + k) + c * b + r) =
-                    static_cast<float>(value * root(i * b + r) * root(column(begin + k) * b + c));
+                    static_cast<float>(value * (root(i * b + r) * root(column(begin + k) * b + c)));
               }
         });
   });
@@ -95,7 +95,7 @@ void Chebyshev::update(const NodeMatrix& A) {
   find_largest_eigenvalue();
 }
 
-/// The power method, from the same vector on any number of ranks.
+/// The power method, from the same vector whatever was set up before.
 void Chebyshev::find_largest_eigenvalue() {
   const auto x = x_, next = next_;
   const auto& halo = *graph_.columns;

@@ -15,12 +15,40 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-/// P^T A P, or A itself without P.
+/// P^T A P, or A itself without P. Its graph leaves out what is zero in A.
 RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
   if (P.is_null()) return A;
   const auto product = rcp(new CrsMatrix(P->getDomainMap(), 0));
   Tpetra::TripleMatrixMultiply::MultiplyRAP(*P, true, *A, false, *P, false, *product);
   return product;
+}
+
+/// The same with a graph for any values of A, once; and its present values.
+RCP<CrsMatrix> order_one_matrix(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
+  const auto ones = rcp(new CrsMatrix(A, Teuchos::Copy));
+  ones->resumeFill();
+  ones->setAllToScalar(1);
+  ones->fillComplete(A.getDomainMap(), A.getRangeMap());
+  return at_order_one(ones, P);
+}
+
+void fill_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P, CrsMatrix& product) {
+  const auto present = at_order_one(A, P);
+  const auto local = present->getLocalMatrixHost();
+  const auto &rows = *present->getRowMap(), &columns = *present->getColMap();
+  product.resumeFill();
+  product.setAllToScalar(0);
+  std::vector<GlobalIndex> global;
+  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row) {
+    global.clear();
+    const auto begin = local.graph.row_map(row);
+    for (auto k = begin; k < local.graph.row_map(row + 1); ++k)
+      global.push_back(columns.getGlobalElement(local.graph.entries(k)));
+    if (!global.empty())
+      product.sumIntoGlobalValues(rows.getGlobalElement(row), static_cast<LocalIndex>(global.size()),
+                                  &local.values(begin), global.data());
+  }
+  product.fillComplete(product.getDomainMap(), product.getRangeMap());
 }
 
 RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
@@ -150,8 +178,13 @@ void FineLevel::setup(const LinearSystem& system) {
   const auto& P = first.block.interpolation;
   std::function<RCP<CrsMatrix>()> bulk;
   if (first.bulk) bulk = [&] { return at_order_one(first.bulk(), P); };
-  order_one_->setup(
-      {first.block, at_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P), bulk, system.symmetric});
+  RCP<const CrsMatrix> matrix = first.matrix;
+  if (!P.is_null()) {
+    if (product_.is_null()) product_ = order_one_matrix(*first.matrix, P);
+    fill_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P, *product_);
+    matrix = product_;
+  }
+  order_one_->setup({first.block, matrix, bulk, system.symmetric});
   if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
   smoothed_->update();
   RCP<const Operator> smoother;

@@ -25,6 +25,7 @@ class FineLevel {
 
  private:
   RCP<BlockSolver> order_one_;
+  RCP<CrsMatrix> product_;                  // P^T A P
   std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   RCP<DirectInverse> direct_;               // their inverse, of blocks that enrich
   RCP<const fields::Operator> cycle_;

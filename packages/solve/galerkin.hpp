@@ -8,11 +8,12 @@ namespace sprekk::solve {
 /// P = (I - w D^-1 A) T, R = T^T (I - w A D^-1) and R A P of a matrix A whose values change and whose graph does not,
 /// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
 /// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). Where numbers go is found once, with
-/// the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. The graph of A must
-/// be symmetric.
+/// the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. R has the graph
+/// of P^T.
 class Galerkin {
  public:
-  /// Makes the graphs. `tentative` [owned node, unknown, mode]. Collective.
+  /// Makes the graphs. `tentative` [owned node, unknown, mode]. Throws where a node couples to 65535 others or more.
+  /// Collective.
   Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_modes, const std::vector<Real>& tentative);
 
   /// Makes the matrices for the present values of A; `inverse_diagonal` [all nodes, unknown] is w D^-1. Collective.
@@ -21,7 +22,7 @@ class Galerkin {
   const NodeMatrix& prolongation() const { return P_; }  ///< [fine, coarse]
   const NodeMatrix& restriction() const { return R_; }   ///< [coarse, fine]
   const NodeMatrix& coarse() const { return coarse_; }
-  std::size_t bytes() const;  ///< of all that is stored
+  std::size_t bytes() const;  ///< of values and places of products
 
  private:
   using Slot = std::uint16_t;  // a place in a row
@@ -35,7 +36,6 @@ class Galerkin {
 
   NodeGraph fine_;                  // of A
   View<Real*> tentative_;           // [all nodes, unknown, mode]
-  View<LocalIndex*> aggregate_;     // [all nodes] its coarse node, -1: none
   View<std::size_t*> start_P_all_;  // of rows of P, ghosts' included; their values follow the owned ones'
   View<LocalIndex*> column_P_all_;
   View<Real*> value_P_all_;

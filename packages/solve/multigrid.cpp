@@ -19,6 +19,7 @@ constexpr Real raise = 1e-8;
 constexpr Real most_growth = 5;  // of the residual in a cycle
 constexpr int most_widenings = 4;
 
+/// Levels end where there are more coarse nodes than this share of the fine ones: all alone, or one on each rank.
 constexpr Real least_coarsening = 0.8;
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
@@ -60,6 +61,10 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, 
     add_level(levels_.back().to_coarse->coarse());
     nodes = std::move(coarse);
   }
+  double here[2] = {static_cast<double>(levels_.front().A.value.extent(0)), 0}, all[2] = {};
+  for (const auto& level : levels_) here[1] += level.A.value.extent(0);
+  Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_SUM, 2, here, all);
+  operator_complexity_ = all[1] / all[0];
 }
 
 void Multigrid::add_level(const NodeMatrix& A) {
@@ -69,7 +74,14 @@ void Multigrid::add_level(const NodeMatrix& A) {
 }
 
 void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
-  if (matrix != finest_ || !shares_) levels_.front().A.value = node_matrix(*matrix, size_).value;
+  if (matrix != finest_ || !shares_) {
+    const auto values = node_matrix(*matrix, size_).value;
+    base::collectively(*map_->getComm(), [&] {
+      SPREKK_CHECK(values.extent(0) == levels_.front().A.value.extent(0),
+                   "multigrid: the graph of the matrix has changed");
+    });
+    levels_.front().A.value = values;
+  }
   finest_ = matrix;
   for (auto& level : levels_) {
     if (!level.to_coarse) continue;
@@ -77,12 +89,13 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);
-  for (int widenings = 0; !symmetric && growth() > most_growth && widenings < most_widenings; ++widenings)
+  for (int widenings = 0; !symmetric && !(growth() <= most_growth) && widenings < most_widenings; ++widenings)
     for (auto& level : levels_)
       if (level.smoother) level.smoother->widen();
 }
 
 void Multigrid::factor_last(bool symmetric) {
+  if (n_nodes(levels_.back().A) == 0) return;  // no node couples to another: smoothing is all
   const auto last = crs_matrix(levels_.back().A);
   raise_diagonal(*last);
   if (last_.is_null()) {
@@ -135,6 +148,7 @@ void Multigrid::cycle(std::size_t level) const {
 }
 
 void Multigrid::solve_last() const {
+  if (last_.is_null()) return;
   const auto from = levels_.back().b, to = levels_.back().x;
   MultiVector b(last_->getDomainMap(), 1), x(last_->getRangeMap(), 1);
   const Policy rows(0, from.extent(0));
@@ -147,12 +161,6 @@ void Multigrid::solve_last() const {
   const auto values = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
   Kokkos::parallel_for(
       "give", rows, KOKKOS_LAMBDA(LocalIndex i) { to(i) = values(i, 0); });
-}
-
-double Multigrid::operator_complexity() const {
-  double sum = 0;
-  for (const auto& level : levels_) sum += level.A.value.extent(0);
-  return levels_.front().A.value.extent(0) > 0 ? sum / levels_.front().A.value.extent(0) : 1;
 }
 
 double Multigrid::bytes() const {

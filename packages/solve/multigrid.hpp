@@ -7,11 +7,12 @@
 
 namespace sprekk::solve {
 
-/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once; set-ups
-/// are numbers alone. All members are collective unless they return stored data.
+/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Each
+/// rank, and each piece of rock on it, keeps at least one node on every level. It throws where the last level is
+/// singular. All members are collective unless they return stored data.
 class Multigrid : public fields::Operator {
  public:
-  static constexpr int coarse_size = 1000;  ///< unknowns of the last level, which is solved directly
+  static constexpr int coarse_size = 1000;  ///< no further level below so many unknowns: a direct solve
 
   /// Whether there is code for that many unknowns of a node and motions.
   static bool can_solve(int n_components, int n_modes);
@@ -29,9 +30,11 @@ class Multigrid : public fields::Operator {
   void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real alpha,
              Real beta) const override;
 
-  double operator_complexity() const;  ///< entries of the matrices of all levels over those of the finest
-  double bytes() const;                ///< that this rank has stored
-  double cycle_bytes() const;          ///< of matrices that this rank reads in a V-cycle
+  double operator_complexity() const {
+    return operator_complexity_;
+  }                            ///< entries of the matrices of all levels over those of the finest
+  double bytes() const;        ///< that this rank has stored
+  double cycle_bytes() const;  ///< of matrices that this rank reads in a V-cycle
 
  private:
   struct Level {
@@ -50,6 +53,7 @@ class Multigrid : public fields::Operator {
   RCP<const fields::Map> map_;
   RCP<const CrsMatrix> finest_;
   int size_;
+  double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
   std::vector<Level> levels_;
   RCP<CrsMatrix> last_matrix_;

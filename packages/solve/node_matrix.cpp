@@ -57,8 +57,8 @@ bool in_blocks(const Graph& graph, const ColumnNodes& columns, const Map& map, i
     const auto length = graph.row_map(row + 1) - begin;
     if (length % size != 0 || graph.row_map(row - row % size + 1) - first != length) return false;
     for (std::size_t k = 0; k < length; ++k)
-      if (graph.entries(begin + k) != graph.entries(first + k) ||
-          graph.entries(begin + k) % size != static_cast<LocalIndex>(k % size))
+      if (graph.entries(begin + k) != graph.entries(first + k) || graph.entries(begin + k - k % size) % size != 0 ||
+          graph.entries(begin + k) != graph.entries(begin + k - k % size) + static_cast<LocalIndex>(k % size))
         return false;
   }
   return true;

@@ -26,7 +26,8 @@ struct NodeMatrix {
 };
 
 /// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
-/// the values of A where A's rows and columns allow that. Collective.
+/// the values of A where A's rows and columns on this rank allow that. Throws where unknowns are numbered otherwise.
+/// Collective.
 NodeMatrix node_matrix(const fields::CrsMatrix& A, int size);
 
 /// A square matrix number by number, the unknowns of node n as above. Collective.
@@ -34,9 +35,9 @@ RCP<fields::CrsMatrix> crs_matrix(const NodeMatrix& A);
 
 /// y <- A x with x [all columns], whose ghosts it exchanges first; y [rows]. Collective.
 void product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
-/// y += A x.
+/// y += A x. Collective.
 void add_product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
-/// r <- b - A x.
+/// r <- b - A x. Collective.
 void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r);
 
 }  // namespace sprekk::solve
