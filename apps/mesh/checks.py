@@ -51,7 +51,10 @@ def close_surfaces(plan):
         near = np.flatnonzero(np.all((points > surface.low - reach) & (points < surface.high + reach), axis=1))
         height = abs(surface.plane.height(points[near]))
         near = near[height < reach]
-        over = in_polygon(surface.plane.inside(points[near]), np.array(surface.shape.exterior.coords[:-1]))
+        flat = surface.plane.inside(points[near])
+        over = in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
+        for hole in surface.shape.interiors:
+            over &= ~in_polygon(flat, np.array(hole.coords[:-1]))
         for p in near[over]:
             pair = None if k in at[p] | plan.loose.get(int(p), set()) else names(plan, [k], at[p])
             if pair:

@@ -38,7 +38,7 @@ def is_number(word):
 
 def read_lines(path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             return file.read().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise NetworkError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is no text in UTF-8'}", [path]) from None
@@ -83,10 +83,11 @@ def ellipses_row(words, place, table):
 
 
 def read_csv(path, row):
-    """A table of lines with commas; empty lines and those that open with # are passed over, as is a line of titles."""
+    """A table of lines with commas; empty lines and what follows a # are passed over, as is a line of titles."""
     table, is_first = Table(), True
     for number, line in enumerate(read_lines(path), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
+        line = line.partition("#")[0]
+        if not line.strip():
             continue
         words = line.split(",")
         while len(words) > 1 and not words[-1].strip():  # commas at the end
@@ -105,6 +106,10 @@ def read_fab(path):
     begin = next((k for k, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "FRACTURE"]), None)
     if begin is None:
         raise NetworkError(f"{path}: has no line BEGIN FRACTURE", [path])
+    for k, line in enumerate(lines[:begin], 1):
+        entry, _, unit = (word.strip().lower() for word in line.partition("="))
+        if entry == "length_unit" and unit not in ("m", "meter", "meters", "metre", "metres"):
+            raise NetworkError(f"{path}: line {k}: lengths are in {unit}, expected metres", [path])
     k = begin + 1
     while k < len(lines) and lines[k].split()[:2] != ["END", "FRACTURE"]:
         words, place = lines[k].split(), f"{path}: line {k + 1}"

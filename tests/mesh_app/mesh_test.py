@@ -181,6 +181,11 @@ class Polygons(Conformity):
         groups = {name: elements for _, name, elements in groups_of(mesh, plan)}
         self.assertAlmostEqual(sizes_of(mesh.points, groups["seam"]).sum(), 0.5, 9)
 
+    def test_fractures_that_cross_within_one_on_a_side_of_a_region(self):
+        seam = {**CUBE, "upper corner": [1.0, 1.0, 0.5]}
+        small = (square_at(0, 0.5) - 0.5) * [1, 0.5, 0.5] + 0.5  # its trace ends inside of the other
+        self.expect({"on": square_at(2, 0.5), "small": small}, {"on": 0.36, "small": 0.09}, regions={"seam": seam})
+
     def test_near_touches_are_joined_within_the_tolerance(self):
         short = square_at(0, 0.5) * [1, 1, 0.5] + [0, 0, 0.4005]  # half a millimetre above the other
         plan, mesh = meshed(network({"a": square_at(2, 0.5), "b": short}, tolerance=1e-3))

@@ -96,7 +96,7 @@ class Files(MeshTest):
         self.assertAlmostEqual(report["volume"], 2, 9)
 
     def test_ellipses(self):
-        self.write("net.csv", "cx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.3,0.2,30,120,60")
+        self.write("net.csv", "\ufeffcx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.3,0.2,30,120,60  # as spreadsheets write it")
         self.mesh(self.scene(dim=3, domain={"lower corner": [0.0] * 3, "upper corner": [1.0] * 3},
                              fractures={"set": {"file": "net.csv", "format": "ellipses"}}))
         self.assertAlmostEqual(self.report()["sets"]["set"]["area"], np.pi * 0.06, 9)
@@ -137,7 +137,7 @@ class Files(MeshTest):
     def test_bad_fab(self):
         for change, words in (({5: "  1 5 1"}, "line 6: fracture 1 has 5 corners"), ({7: "   2 0.8 x 0.5"}, 'line 8: "x" in column 3 is no number'),
                               ({16: ""}, "has no line END FRACTURE"), ({4: "BEGIN"}, "has no line BEGIN FRACTURE"),
-                              ({11: "  two 3 1"}, "line 12: is \"two 3 1\", expected the number")):
+                              ({1: "  Length_Unit = Feet"}, "line 2: lengths are in feet, expected metres"), ({11: "  two 3 1"}, "line 12: is \"two 3 1\", expected the number")):
             lines = list(self.FAB)
             for k, line in change.items():
                 lines[k] = line
