@@ -1,7 +1,6 @@
 #include "solve/galerkin.hpp"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "solve/node_kernels.hpp"
 
@@ -70,11 +69,6 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
   const View<LocalIndex*> local("local", nodes.extent(0));
   for (std::size_t k = 0; k < nodes.extent(0); ++k) local(k) = map.getLocalElement(nodes(k));
   return local;
-}
-
-template <class Node>
-Rows<Node> first_rows(const Rows<Node>& rows, LocalIndex n) {
-  return {Kokkos::subview(rows.start, Kokkos::pair(0, n + 1)), rows.node};
 }
 
 /// Where a node is in a sorted row; nowhere if it is not.

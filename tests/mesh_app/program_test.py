@@ -96,7 +96,7 @@ class Files(MeshTest):
         self.assertAlmostEqual(report["volume"], 2, 9)
 
     def test_ellipses(self):
-        self.write("net.csv", "\ufeffcx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.3,0.2,30,120,60  # as spreadsheets write it")
+        self.write("net.csv", "\ufeff0.5,0.5,0.5,0.3,0.2,30,120,60  # as spreadsheets write it")
         self.mesh(self.scene(dim=3, domain={"lower corner": [0.0] * 3, "upper corner": [1.0] * 3},
                              fractures={"set": {"file": "net.csv", "format": "ellipses"}}))
         self.assertAlmostEqual(self.report()["sets"]["set"]["area"], np.pi * 0.06, 9)

@@ -66,7 +66,8 @@ TEST(LinearSolvers, OrderTwoFollowsContact) {
                {"Solver.Linear solver.type=iterative", "Mesh.cells={32, 24}", "Mesh.order=2"}, 1);
   for (const Real t : {2.0, 3.0}) {
     ASSERT_TRUE(r.report.converged) << r.report.reason;
-    EXPECT_LE(solve::iterations(r.report.linear_solves), 20 * r.report.newton_iterations);
+    EXPECT_LE(solve::iterations(r.report.linear_solves), 15 * r.report.newton_iterations);
+    EXPECT_LE(r.report.newton_iterations, 10);  // 4, 7 and 8, as with MueLu
     r.report = r.model->step_to(t);
   }
   ASSERT_TRUE(r.report.converged) << r.report.reason;
