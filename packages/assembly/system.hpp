@@ -19,6 +19,13 @@ struct Reference {
   Real length;   ///< L, m
 };
 
+/// What the supports of a boundary condition do to the body.
+struct Reaction {
+  std::string condition;
+  std::vector<Real> force;       ///< [component] N; N/m in 2D
+  std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D the last alone, N
+};
+
 class System : public fields::BlockProblem {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
@@ -52,9 +59,9 @@ class System : public fields::BlockProblem {
   fields::BlockVector initial() const;
   /// Everything the modules can show of the last committed state x.
   std::vector<OutputField> outputs(const fields::BlockVector& x);
-  /// Sum of the reactions (forces on the body, N; N/m in 2D) over the unknowns that each condition holds, [condition,
-  /// component]; an unknown held by two conditions counts for the first. Collective.
-  std::vector<std::pair<std::string, std::vector<Real>>> reactions(const fields::BlockVector& x);
+  /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
+  /// counts for the first. Collective.
+  std::vector<Reaction> reactions(const fields::BlockVector& x);
 
   /// What the modules keep, as "MODULE: HISTORY"; the values, [owned entity, component], may be written.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;

@@ -323,21 +323,30 @@ std::vector<OutputField> System::outputs(const BlockVector& x) {
   return outputs;
 }
 
-std::vector<std::pair<std::string, std::vector<Real>>> System::reactions(const BlockVector& x) {
+std::vector<Reaction> System::reactions(const BlockVector& x) {
   auto r = fields::create_like(x);
   raw_residual(x, r);
-  std::vector<std::pair<std::string, std::vector<Real>>> result;
+  std::vector<Reaction> result;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (!unknowns_[b].enriches.empty()) continue;  // the functions of the other field add up to 1: it has all the force
     const auto view = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
-    const int n_components = blocks_[b].n_components, n = static_cast<int>(constraints_[b].conditions().size());
-    std::vector<Real> here(n * n_components, 0), all(n * n_components);
-    for (const auto& entry : constraints_[b].entries())
-      here[entry.condition * n_components + entry.component] += view(entry.unknown, 0);
+    const int n_components = blocks_[b].n_components, width = n_components + 3;  // the force, then the moment
+    const auto& conditions = constraints_[b].conditions();
+    std::vector<Real> here(conditions.size() * width, 0), all(here.size());
+    for (const auto& entry : constraints_[b].entries()) {
+      Real* sums = &here[entry.condition * width];
+      const int i = entry.component, j = (i + 1) % 3, k = (i + 2) % 3;
+      const Real force = view(entry.unknown, 0);
+      sums[i] += force;
+      sums[n_components + j] += entry.x[k] * force;
+      sums[n_components + k] -= entry.x[j] * force;
+    }
     Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
-    for (int k = 0; k < n; ++k)
-      result.emplace_back(constraints_[b].conditions()[k].name,
-                          std::vector<Real>(all.begin() + k * n_components, all.begin() + (k + 1) * n_components));
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
+      result.push_back({conditions[c].name, {sums, sums + n_components}});
+      std::copy_n(sums + n_components, 3, result.back().moment.begin());
+    }
   }
   return result;
 }

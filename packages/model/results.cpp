@@ -255,11 +255,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   }
   auto outputs = model_.system().outputs(model_.state());
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
-  step["reactions"] = json::object();
-  for (const auto& [name, force] : model_.system().reactions(model_.state())) {
-    auto& sum = step["reactions"][model_.scene().boundary_conditions.at(name).boundary];
-    for (std::size_t i = 0; i < force.size(); ++i) sum[i] = force[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
-  }
+  step.update(reactions());
   if (estimator_) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
@@ -272,6 +268,21 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
                   {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
     write_json();
   return contact_counts(*model_.mesh().comm, outputs);
+}
+
+/// Forces and moments of the supports, by boundary.
+json Results::reactions() const {
+  json forces = json::object(), moments = json::object();
+  const auto add = [](json& sum, const auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) sum[i] = values[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
+  };
+  for (const auto& reaction : model_.system().reactions(model_.state())) {
+    const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;
+    const auto& m = reaction.moment;
+    add(forces[boundary], reaction.force);
+    add(moments[boundary], model_.mesh().dim() == 2 ? std::vector<Real>{m[2]} : std::vector<Real>(m.begin(), m.end()));
+  }
+  return {{"reactions", forces}, {"reaction_moments", moments}};
 }
 
 /// Counts the faces that found no state, and writes which they are beside the state that they left.

@@ -38,6 +38,7 @@ class Results {
   void finish(const std::string& status, const std::string& reason = "");
 
  private:
+  nlohmann::json reactions() const;
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
   void write_json();

@@ -36,8 +36,8 @@ class Input:
 
     def __init__(self, path):
         self.root = xml.parse(path).getroot()
-        self.joints = [self._joint(self.text("Fractures", name, "material")) for name in self._names("Fractures")]
-        rocks = [self.rock(name) for name in self._names("Materials") if self.text("Materials", name, "type") == "elastic"]
+        self.joints = [self._joint(self.text("Fractures", name, "material")) for name in self.names("Fractures")]
+        rocks = [self.rock(name) for name in self.names("Materials") if self.text("Materials", name, "type") == "elastic"]
         self.modulus = min(rock["E"] for rock in rocks)
 
     def _list(self, *path):
@@ -48,7 +48,7 @@ class Input:
                 return []
         return node
 
-    def _names(self, *path):
+    def names(self, *path):
         return sorted(child.get("name") for child in self._list(*path) if child.tag == "ParameterList")
 
     def text(self, *path):
@@ -100,13 +100,18 @@ class Faces:
     distance: np.ndarray = field(default=None)  # w_n - g
 
 
+def sorted_by_place(centre, fracture, extent):
+    """The order of faces in Faces, which does not depend on the number of ranks."""
+    place = np.round(centre / extent * 1e8).astype(np.int64)
+    return np.lexsort((place[:, 2], place[:, 1], place[:, 0], fracture))
+
+
 def faces(time, file, joints, extent):
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
     points = read.vtk_to_numpy(grid.GetPoints().GetData())
     centre = np.array([points[cell].mean(axis=0) for cell in read.cells(grid.GetCells())])
-    place = np.round(centre / extent * 1e8).astype(np.int64)
-    order = np.lexsort((place[:, 2], place[:, 1], place[:, 0], data["fracture"]))
+    order = sorted_by_place(centre, data["fracture"], extent)
     f = Faces(time, centre[order], data["fracture"].astype(int)[order], data["state"].astype(int)[order],
               *(data[name][order] for name in ("jump local", "plastic jump local", "traction local")),
               data["fluid pressure"][order] if "fluid pressure" in data else np.zeros(len(order)))

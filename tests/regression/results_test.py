@@ -115,6 +115,8 @@ class Results(ProgramTest):
             for i, force in enumerate((l_t, 0, -0.3)):
                 self.assertAlmostEqual(step["reactions"]["top"][i], force, places=9)
                 self.assertAlmostEqual(step["reactions"]["bottom"][i], -force, places=9)
+            for i, moment in enumerate((-0.15, l_t + 0.15, -0.5 * l_t)):  # of a uniform stress on the square around (0.5, 0.5, 1)
+                self.assertAlmostEqual(step["reaction_moments"]["top"][i], moment, places=9)
 
     def test_state_fractions(self):
         r = self.run_scene("verification/cyclic_2d.xml", QUIET)

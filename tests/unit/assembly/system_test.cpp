@@ -277,11 +277,11 @@ TEST(System, ReactionsBalanceTheLoads) {
   EXPECT_LE(r[0]->normInf(), 1e-12);
   const auto reactions = system->reactions(x);
   ASSERT_EQ(reactions.size(), 2u);
-  EXPECT_EQ(reactions[0].first, "wall");
-  EXPECT_EQ(reactions[1].first, "floor");
-  EXPECT_NEAR(reactions[0].second[0], -0.75 * static_cast<Real>(mesh->n_global_nodes), 1e-10);  // all nodes are pulled
-  EXPECT_EQ(reactions[1].second[0], 0);
-  EXPECT_NEAR(reactions[0].second[1] + reactions[1].second[1], 0, 1e-10);
+  EXPECT_EQ(reactions[0].condition, "wall");
+  EXPECT_EQ(reactions[1].condition, "floor");
+  EXPECT_NEAR(reactions[0].force[0], -0.75 * static_cast<Real>(mesh->n_global_nodes), 1e-10);  // all nodes are pulled
+  EXPECT_EQ(reactions[1].force[0], 0);
+  EXPECT_NEAR(reactions[0].force[1] + reactions[1].force[1], 0, 1e-10);
 }
 
 TEST(System, CommitMovesTheHistoriesOnAndNothingElseDoes) {

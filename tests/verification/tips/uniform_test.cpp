@@ -50,10 +50,14 @@ void expect_uniform(const model::Scene& scene, const std::function<Real(const Ve
   const int dim = mesh.dim();
   const auto forces = model.system().reactions(model.state());
   EXPECT_EQ(forces.size(), 2u * dim);  // one of each condition
-  Vector3 total{};
-  for (const auto& [name, force] : forces)
-    for (int i = 0; i < dim; ++i) total[i] += force[i];
+  Vector3 total{}, moment{};
+  for (const auto& reaction : forces)
+    for (int i = 0; i < 3; ++i) {
+      if (i < dim) total[i] += reaction.force[i];
+      moment[i] += reaction.moment[i];
+    }
   EXPECT_NEAR(norm(total), 0, 1e-10);
+  EXPECT_NEAR(norm(moment), 0, 1e-10);
   if (mesh::order(mesh.shape) == 1) EXPECT_GT(mesh.n_global_enriched, 0);
   Vector3 x{};
   for (LocalIndex node = 0; node < mesh.n_nodes(); ++node) {

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""The measurement perf/networks: perf_networks_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+
+Of runs that are right forces, moments and energy are in balance; of results that are wrong in a known way they are not."""
+import sys
+
+from program import ROOT, ProgramTest, main
+
+if ROOT:
+    sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/contact", "perf/networks")]
+try:
+    import numpy as np
+    import balance
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+CASES = (("verification/cyclic_2d.xml", "triangle"), ("verification/cyclic_3d.xml", "tetrahedron"))
+
+
+class Balance(ProgramTest):
+    def budget(self, scene, cell, *overrides):
+        self.told = self.run_scene(scene, f"Mesh.cell={cell}", *overrides)
+        return balance.budget(self.folder / "out", self.told)
+
+    def test_energy_is_in_balance_but_for_what_is_stated(self):
+        """Without closure all is linear but for the traction at which faces slide, so the late heat is all of the defect."""
+        for scene, cell in CASES:
+            for steps in (8, 16):
+                b = self.budget(scene, cell, f"Time.steps={steps}")
+                self.assertLess(b.balance, 1e-12)
+                rest = b.work - b.strain - b.stored - b.heat + b.late
+                self.assertLess(abs(rest).max(), 1e-12 * b.work[-1])
+                self.assertGreater(b.heat[-1], 0.05)  # friction 0.6, load 0.3, slid by some tenths to and fro
+                self.assertGreater(b.least_heat, -1e-14)
+            self.assertGreater(b.late[-1], 1e-3 * b.heat[-1])
+
+    def test_heat_of_a_known_path(self):
+        """Cyclic shear of a unit area at constant load: between steps 2 and 3, and 7 and 8, nothing; reversed: 0.18 times the slip."""
+        b = self.budget(*CASES[0])
+        slips = [step["fractures"]["fracture"]["mean_plastic_jump"]["local"][1] for step in self.told["steps"]]
+        tractions = [step["fractures"]["fracture"]["mean_traction"]["local"][1] for step in self.told["steps"]]
+        increments = np.diff([0, *slips])
+        self.assertTrue(np.allclose(np.diff(b.heat), increments * tractions, rtol=0, atol=1e-12))
+
+    def test_what_is_wrong_is_seen(self):
+        for scene, cell in CASES:
+            self.budget(scene, cell)
+            top = "north" if cell == "triangle" else "top"
+            step = self.told["steps"][4]
+            for key, of in (("reactions", 0), ("reaction_moments", -1)):
+                value = step[key][top][of]
+                step[key][top][of] = value * (1 + 1e-6)
+                self.assertGreater(balance.budget(self.folder / "out", self.told).balance, 1e-8)
+                step[key][top][of] = value
+
+
+if __name__ == "__main__":
+    main()
