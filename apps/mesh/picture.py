@@ -1,14 +1,14 @@
 """A picture of a mesh, cells and fractures in 2D, faces of fractures in 3D, beside the directions of fractures; a colour for
 each set."""
-import matplotlib
+import sys
+from pathlib import Path
 
-matplotlib.use("Agg")  # no screen
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+sys.path.append(str(Path(__file__).parents[1] / "plot"))
 import orientations  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
-
-COLOURS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
+from style import FAINT, INK, LINES, plt, save  # noqa: E402
 
 
 def sets_of(mesh, plan):
@@ -16,22 +16,23 @@ def sets_of(mesh, plan):
     names = list(dict.fromkeys(owner.group for owner in plan.owners if owner.kind == "fracture"))
     for k, name in enumerate(names):
         owners = [i for i, owner in enumerate(plan.owners) if owner.kind == "fracture" and owner.group == name]
-        yield name, COLOURS[k % len(COLOURS)], mesh.faces[np.isin(mesh.face_owner, owners)]
+        yield name, LINES[k % len(LINES)], mesh.faces[np.isin(mesh.face_owner, owners)]
 
 
 def of_plane(ax, mesh, plan):
     x = mesh.points[:, :2]
-    ax.add_collection(PolyCollection(x[mesh.cells], facecolors="none", edgecolors="#8a8f99", linewidths=0.2))
+    ax.add_collection(PolyCollection(x[mesh.cells], facecolors="none", edgecolors=FAINT, linewidths=0.2))
     for name, colour, faces in sets_of(mesh, plan):
         ax.add_collection(LineCollection(x[faces], colors=colour, linewidths=1.3, label=name))
     ax.set_aspect("equal")
     ax.autoscale_view()
+    ax.grid(False)
 
 
 def of_body(ax, mesh, plan):
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
     for name, colour, faces in sets_of(mesh, plan):
-        ax.add_collection3d(Poly3DCollection(mesh.points[faces], facecolors=colour, edgecolors="#262933", linewidths=0.1, alpha=0.7))
+        ax.add_collection3d(Poly3DCollection(mesh.points[faces], facecolors=colour, edgecolors=INK, linewidths=0.1, alpha=0.7))
         ax.plot([], [], color=colour, label=name)
     domain = plan.network.domain
     for axis, low, high in zip("xyz", domain.low, domain.high):
@@ -44,7 +45,7 @@ def of_body(ax, mesh, plan):
 
 def draw(mesh, plan, path, dpi=110):
     plane = plan.dim == 2
-    figure = plt.figure(figsize=(9, 6), constrained_layout=True)
+    figure = plt.figure(figsize=(9, 6))
     left, right = figure.add_gridspec(1, 2, width_ratios=(3, 1.3))
     ax = figure.add_subplot(left, projection=None if plane else "3d")
     (of_plane if plane else of_body)(ax, mesh, plan)
@@ -53,5 +54,5 @@ def draw(mesh, plan, path, dpi=110):
     ax.legend(fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
     given = [(colour, [f.points for f in plan.network.fractures if f.group == name]) for name, colour, _ in sets_of(mesh, plan)]
     orientations.draw(figure.add_subplot(right, projection="polar"), plan.dim, given)
-    figure.savefig(path, dpi=dpi)
+    save(figure, path, dpi)
     plt.close(figure)

@@ -1,8 +1,8 @@
 """Pictures of what sprekk computed, as PNG files.
 
 PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
-as NAME.png, those of a run into its directory: bulk.png, fractures.png and, where the run estimated its error, error.png
-of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps.
+as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
+error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps.
 """
 import argparse
 import sys
@@ -40,6 +40,7 @@ def of_run(directory, options):
     import error
     import fractures
     import loops
+    import maps
     content = read.results(directory)
     steps = content["steps"]
     states = [step for step in steps if "fractures" in step]  # a step that failed at once has none
@@ -57,6 +58,7 @@ def of_run(directory, options):
         yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
         if joints and joints.GetNumberOfCells() > 0:
             yield "fractures", fractures.of_step(joints, names, title)
+            yield "maps", maps.of_step(rock, joints, title)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     if names and len(states) > 1:

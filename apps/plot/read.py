@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPUnstructuredGridReader
 
 
 class PlotError(Exception):
@@ -53,14 +54,45 @@ def written_steps(directory, kind):
     return [(float(entry.get("timestep")), pvd.parent / entry.get("file")) for entry in entries]
 
 
-def grid(file):
-    """The pieces of a .pvtu as one grid of VTK."""
+def output(reader, file):
     if not Path(file).is_file():
         raise PlotError(f"{file}: no such file")
-    reader = vtkXMLPUnstructuredGridReader()
     reader.SetFileName(str(file))
     reader.Update()
     return reader.GetOutput()
+
+
+def joined(grids):
+    append = vtkAppendFilter()
+    for data in grids:
+        append.AddInputData(data)
+    append.Update()
+    return append.GetOutput()
+
+
+def complete(file):
+    """The .vtm, all of whose pieces are there."""
+    for entry in xml.parse(file).iter("DataSet") if Path(file).is_file() else ():
+        if not (Path(file).parent / entry.get("file")).is_file():
+            raise PlotError(f"{Path(file).parent / entry.get('file')}: no such file")
+    return file
+
+
+def blocks(file):
+    """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
+    tree, found = output(vtkXMLMultiBlockDataReader(), complete(file)), {}
+    for k in range(tree.GetNumberOfBlocks()):
+        block = tree.GetBlock(k)
+        parts = [block.GetPartition(i) for i in range(block.GetNumberOfPartitions())] if hasattr(block, "GetPartition") else [block]
+        found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts)
+    return found
+
+
+def grid(file):
+    """The pieces of a .pvtu, or those of all fractures in a .vtm, as one grid of VTK."""
+    if Path(file).suffix == ".vtm":
+        return joined(block for block in blocks(file).values() if block.GetCellData().HasArray("fracture"))
+    return output(vtkXMLPUnstructuredGridReader(), file)
 
 
 @dataclass

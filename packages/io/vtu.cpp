@@ -16,6 +16,8 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <map>
+#include <set>
 #include <utility>
 
 namespace sprekk::io {
@@ -129,6 +131,11 @@ std::string declared(const Piece& piece) {
       declarations(piece.point_data), declarations(piece.cell_data));
 }
 
+/// A file in a list of blocks.
+std::string data_set(std::size_t index, const std::string& name, const std::string& file) {
+  return fmt::format("      <DataSet index=\"{}\"{} file=\"{}\"/>\n", index, name, base::xml_escaped(file));
+}
+
 void check_sizes(const std::string& name, const Piece& piece) {
   const auto check = [&](const std::vector<DataArray>& arrays, LocalIndex n_entities, const char* entities) {
     for (const auto& a : arrays)
@@ -157,6 +164,51 @@ Piece fracture_piece(const mesh::Mesh& mesh) {
   return builder.take();
 }
 
+Piece intersection_piece(const std::vector<mesh::Intersection>& intersections) {
+  constexpr int types[] = {VTK_VERTEX, VTK_LINE, VTK_QUADRATIC_EDGE};
+  Piece piece;
+  piece.nodes_per_cell = intersections.empty() ? 1 : static_cast<int>(intersections.front().nodes.size());
+  piece.vtk_cell_type = types[piece.nodes_per_cell - 1];
+  std::map<GlobalIndex, LocalIndex> point_of_node;
+  piece.cell_data = {{"fractures", 1, {}}, {"faces", 1, {}}, {"first fracture", 1, {}}, {"last fracture", 1, {}}};
+  for (const auto& at : intersections) {
+    for (std::size_t k = 0; k < at.nodes.size(); ++k) {
+      const auto [found, is_new] = point_of_node.emplace(at.nodes[k], piece.n_points());
+      if (is_new) piece.points.insert(piece.points.end(), at.x[k].begin(), at.x[k].end());
+      piece.connectivity.push_back(found->second);
+    }
+    const std::set<int> different(at.fractures.begin(), at.fractures.end());
+    const std::size_t numbers[] = {different.size(), at.fractures.size(), static_cast<std::size_t>(*different.begin()),
+                                   static_cast<std::size_t>(*different.rbegin())};
+    for (int i = 0; i < 4; ++i) piece.cell_data[i].values.push_back(static_cast<Real>(numbers[i]));
+  }
+  return piece;
+}
+
+Piece part_of(const Piece& piece, const std::vector<LocalIndex>& cells) {
+  Piece part;
+  part.vtk_cell_type = piece.vtk_cell_type;
+  part.nodes_per_cell = piece.nodes_per_cell;
+  std::vector<LocalIndex> point_in_part(piece.n_points(), -1);
+  for (const auto& array : piece.cell_data) part.cell_data.push_back({array.name, array.n_components, {}});
+  for (LocalIndex cell : cells) {
+    for (int k = 0; k < piece.nodes_per_cell; ++k) {
+      const LocalIndex from = piece.connectivity[cell * piece.nodes_per_cell + k];
+      if (point_in_part[from] < 0) {
+        point_in_part[from] = part.n_points();
+        part.point_node.push_back(piece.point_node[from]);
+        part.points.insert(part.points.end(), &piece.points[3 * from], &piece.points[3 * from] + 3);
+      }
+      part.connectivity.push_back(point_in_part[from]);
+    }
+    for (std::size_t a = 0; a < piece.cell_data.size(); ++a) {
+      const auto& [name, n, values] = piece.cell_data[a];
+      part.cell_data[a].values.insert(part.cell_data[a].values.end(), &values[cell * n], &values[cell * n] + n);
+    }
+  }
+  return part;
+}
+
 DataArray data_array(std::string name, int n_components, std::vector<Real> values) {
   if (n_components != 2) return {std::move(name), n_components, std::move(values)};
   DataArray padded{std::move(name), 3, std::vector<Real>(values.size() / 2 * 3)};
@@ -172,47 +224,93 @@ DataArray nodal_data_array(const Piece& piece, std::string name, int n_component
   return data_array(std::move(name), n_components, std::move(values));
 }
 
-VtuSeries::VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times)
-    : comm_(std::move(comm)), directory_(std::move(directory)), name_(std::move(name)), times_(std::move(times)) {
-  make_directory(*comm_, directory_ + '/' + name_);
+VtuSeries::VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times, Of of)
+    : comm_(std::move(comm)),
+      directory_(std::move(directory)),
+      name_(std::move(name)),
+      times_(std::move(times)),
+      of_(of) {
+  make_directory(*comm_, path(name_));
   base::collectively(*comm_, [&] {
     if (comm_->getRank() == 0 && !times_.empty()) write_list();
   });
 }
 
+std::string VtuSeries::step_name(std::size_t step) const { return fmt::format("{}_{:04}", name_, step); }
+
 void VtuSeries::write_list() const {
   std::string steps;
   for (std::size_t i = 0; i < times_.size(); ++i)
-    steps += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}_{:04}.pvtu\"/>\n", times_[i],
-                         base::xml_escaped(name_), i);
-  write_file(fmt::format("{}/{}.pvd", directory_, name_), vtk_file("Collection", ">\n" + steps));
+    steps += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_[i],
+                         base::xml_escaped(step_name(i) + ending()));
+  write_file(path(name_ + ".pvd"), vtk_file("Collection", ">\n" + steps));
 }
 
-void VtuSeries::write(Real time, const Piece& piece) {
-  const std::string step = fmt::format("{}_{:04}", name_, times_.size());
-  const auto piece_file = [&](int rank) { return fmt::format("{}/{}_{}.vtu", name_, step, rank); };
-  const std::string declared_here = declared(piece), declared_on_0 = from_rank_0(*comm_, declared_here);
-  base::collectively(*comm_, [&] {
-    check_sizes(name_, piece);
-    SPREKK_CHECK(declared_here == declared_on_0, "output \"{}\": rank {} has other arrays than rank 0:\n{}versus\n{}",
-                 name_, comm_->getRank(), declared_here, declared_on_0);
-    write_file(directory_ + '/' + piece_file(comm_->getRank()), vtu_content(piece));
-  });
-
+void VtuSeries::add_step(Real time, const std::string& content) {
   times_.push_back(time);
   try {
     base::collectively(*comm_, [&] {
       if (comm_->getRank() != 0) return;
-      std::string pieces;
-      for (int r = 0; r < comm_->getSize(); ++r)
-        pieces += fmt::format("    <Piece Source=\"{}\"/>\n", base::xml_escaped(piece_file(r)));
-      write_file(fmt::format("{}/{}.pvtu", directory_, step), vtk_file("PUnstructuredGrid", declared_here + pieces));
+      write_file(path(step_name(times_.size() - 1) + ending()), content);
       write_list();
     });
   } catch (...) {
     times_.pop_back();
     throw;
   }
+}
+
+void VtuSeries::write(Real time, const Piece& piece) {
+  const auto piece_file = [&](int rank) { return fmt::format("{}/{}_{}.vtu", name_, step_name(times_.size()), rank); };
+  const std::string declared_on_0 = from_rank_0(*comm_, declared(piece));
+  base::collectively(*comm_, [&] { write_piece(piece_file(comm_->getRank()), piece, declared_on_0); });
+  std::string pieces;
+  for (int r = 0; r < comm_->getSize(); ++r)
+    pieces += fmt::format("    <Piece Source=\"{}\"/>\n", base::xml_escaped(piece_file(r)));
+  add_step(time, vtk_file("PUnstructuredGrid", declared_on_0 + pieces));
+}
+
+void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
+  const auto piece_file = [&](std::size_t block, int rank) {
+    return fmt::format("{}/{}_{}_{}.vtu", name_, step_name(times_.size()), block, rank);
+  };
+  const int n_ranks = comm_->getSize(), rank = comm_->getRank();
+  std::vector<int> here(blocks.size() * n_ranks, 0), has_cells(here.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const auto& piece = blocks[b].piece;
+    const std::string declared_on_0 = from_rank_0(*comm_, declared(piece));
+    here[b * n_ranks + rank] = piece.n_cells() > 0;
+    base::collectively(*comm_, [&] {
+      if (piece.n_cells() > 0) write_piece(piece_file(b, rank), piece, declared_on_0);
+    });
+  }
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), has_cells.data());
+  std::string content;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    content += fmt::format("    <Piece index=\"{}\" name=\"{}\">\n", b, base::xml_escaped(blocks[b].name));
+    for (int r = 0, n = 0; r < n_ranks; ++r)
+      if (has_cells[b * n_ranks + r]) content += data_set(n++, "", piece_file(b, r));
+    content += "    </Piece>\n";
+  }
+  for (std::size_t k = 0; k < kept_.size(); ++k)
+    content +=
+        data_set(blocks.size() + k, fmt::format(" name=\"{}\"", base::xml_escaped(kept_[k])), kept_file(kept_[k]));
+  add_step(time, vtk_file("vtkMultiBlockDataSet", ">\n" + content));
+}
+
+void VtuSeries::keep(const Block& block) {
+  base::collectively(*comm_, [&] {
+    if (comm_->getRank() == 0) write_piece(kept_file(block.name), block.piece, declared(block.piece));
+  });
+  kept_.push_back(block.name);
+}
+
+void VtuSeries::write_piece(const std::string& file, const Piece& piece, const std::string& declared_on_0) const {
+  check_sizes(name_, piece);
+  const std::string declared_here = declared(piece);
+  SPREKK_CHECK(declared_here == declared_on_0, "output \"{}\": rank {} has other arrays than rank 0:\n{}versus\n{}",
+               name_, comm_->getRank(), declared_here, declared_on_0);
+  write_file(path(file), vtu_content(piece));
 }
 
 }  // namespace sprekk::io

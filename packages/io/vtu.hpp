@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/types.hpp"
+#include "mesh/intersections.hpp"
 #include "mesh/mesh.hpp"
 
 #include <string>
@@ -38,6 +39,13 @@ Piece bulk_piece(const mesh::Mesh& mesh);
 /// minus. A point for each of these nodes.
 Piece fracture_piece(const mesh::Mesh& mesh);
 
+/// Points or lines where fractures meet, without ranks: all of them are on rank 0. Cells have how many "fractures" meet
+/// there, how many "faces" end there, and the lowest and highest number of the fractures, "first" and "last fracture".
+Piece intersection_piece(const std::vector<mesh::Intersection>& intersections);
+
+/// Some of the cells of a piece that has no point data, with their points and data.
+Piece part_of(const Piece& piece, const std::vector<LocalIndex>& cells);
+
 /// An array of cell or point values: [entity * n_components + component]. Two components are taken for a plane vector
 /// and get a third one, 0.
 DataArray data_array(std::string name, int n_components, std::vector<Real> values);
@@ -45,26 +53,51 @@ DataArray data_array(std::string name, int n_components, std::vector<Real> value
 /// The same from values at all local nodes of the mesh, at the points of the piece.
 DataArray nodal_data_array(const Piece& piece, std::string name, int n_components, const std::vector<Real>& nodal);
 
-/// Steps of one grid in time. The step number 3 is DIRECTORY/NAME_0003.pvtu with the pieces of the ranks in
-/// DIRECTORY/NAME/; DIRECTORY/NAME.pvd lists all steps and is complete after every write.
+/// A grid that has a name among others.
+struct Block {
+  std::string name;
+  Piece piece;
+};
+
+/// Steps in time. The step number 3 is DIRECTORY/NAME_0003.pvtu with the pieces of the ranks in DIRECTORY/NAME/;
+/// DIRECTORY/NAME.pvd lists all steps and is complete after every write. Steps of blocks are NAME_0003.vtm, with the
+/// pieces of ranks that have cells of a block.
 class VtuSeries {
  public:
+  /// What the steps of a series are.
+  enum class Of { grids, blocks };
+
   /// Makes the directories. The series goes on after the steps at `times`, which are there already. Collective; Error
   /// on every rank, naming the path.
-  VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times = {});
+  VtuSeries(RCP<const Comm> comm, std::string directory, std::string name, std::vector<Real> times = {},
+            Of of = Of::grids);
 
   /// Adds the step at `time`, second. Collective. Error on every rank when an array has the wrong size or is not the
   /// same on all ranks, or when a file cannot be written; the series then stands as before the call.
   void write(Real time, const Piece& piece);
+  /// The same of blocks, which have the same names and order on all ranks.
+  void write(Real time, const std::vector<Block>& blocks);
+
+  /// Adds rank 0's block to all steps that follow: DIRECTORY/NAME/BLOCK.vtu, written once. Collective, as write().
+  void keep(const Block& block);
 
   const std::vector<Real>& times() const { return times_; }
 
  private:
-  void write_list() const;  ///< NAME.pvd; not collective
+  std::string step_name(std::size_t step) const;
+  std::string path(const std::string& file) const { return directory_ + '/' + file; }
+  std::string kept_file(const std::string& block) const { return name_ + '/' + block + ".vtu"; }
+  const char* ending() const { return of_ == Of::grids ? ".pvtu" : ".vtm"; }
+  /// Checks its arrays, also against those of rank 0. Not collective.
+  void write_piece(const std::string& file, const Piece& piece, const std::string& declared_on_0) const;
+  void add_step(Real time, const std::string& content);  ///< content of the step's own file; collective
+  void write_list() const;                               ///< NAME.pvd; not collective
 
   RCP<const Comm> comm_;
   std::string directory_, name_;
   std::vector<Real> times_;
+  Of of_;
+  std::vector<std::string> kept_;  ///< names of blocks
 };
 
 }  // namespace sprekk::io

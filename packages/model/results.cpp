@@ -59,6 +59,16 @@ io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>&
   return piece;
 }
 
+/// The same, a block for each fracture.
+std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractures) {
+  std::vector<std::vector<LocalIndex>> faces(mesh.fracture_names.size());
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) faces[mesh.fracture_faces[f].fracture].push_back(f);
+  std::vector<io::Block> blocks;
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    blocks.push_back({mesh.fracture_names[k], io::part_of(fractures, faces[k])});
+  return blocks;
+}
+
 Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
   const int n = output.n_components;
   Statistics s;
@@ -195,7 +205,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
       for (const auto& entry : earlier->journal)
         if (entry.at("written")) written.push_back(entry.at("step").at("time"));
     bulk_.emplace(comm, directory_, "bulk", written);
-    if (!model_.mesh().fracture_names.empty()) fractures_.emplace(comm, directory_, "fractures", written);
+    if (!model_.mesh().fracture_names.empty()) start_fractures(written);
   }
   if (model_.scene().output.error_estimate) estimator_.emplace(model_);
   const auto& mesh = model_.mesh();
@@ -224,6 +234,16 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
   write_json();
+}
+
+void Results::start_fractures(const std::vector<Real>& written) {
+  const auto& mesh = model_.mesh();
+  fractures_.emplace(mesh.comm, directory_, "fractures", written, io::VtuSeries::Of::blocks);
+  const auto piece = io::intersection_piece(mesh::intersections(mesh));
+  const int n = piece.n_cells();
+  int any = 0;
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &n, &any);
+  if (any > 0) fractures_->keep({"intersections", piece});
 }
 
 std::vector<json> Results::journal(int begin) const {
@@ -315,7 +335,7 @@ void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
       bulk.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
   }
   bulk_->write(time, bulk);
-  if (fractures_) fractures_->write(time, fractures_with(mesh, outputs));
+  if (fractures_) fractures_->write(time, blocks_of(mesh, fractures_with(mesh, outputs)));
 }
 
 void Results::write_json() {

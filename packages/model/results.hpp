@@ -39,6 +39,7 @@ class Results {
 
  private:
   nlohmann::json reactions() const;
+  void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
   void write_json();

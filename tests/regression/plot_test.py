@@ -26,6 +26,7 @@ spec.loader.exec_module(plot)
 import bulk  # noqa: E402
 import fractures  # noqa: E402
 import loops  # noqa: E402
+import maps  # noqa: E402
 import numpy as np  # noqa: E402
 import read  # noqa: E402
 import style  # noqa: E402
@@ -99,12 +100,13 @@ class Pictures(PlotTest):
     def test_plane_run(self):
         self.run_scene("verification/crossing_2d.xml")
         out, _ = self.draw(self.folder / "out")
-        names = ["bulk.png", "fractures.png", "loops.png", "convergence.png"]
+        names = ["bulk.png", "fractures.png", "maps.png", "loops.png", "convergence.png"]
         self.assertEqual([Path(line).name for line in out.splitlines()], names)
         self.expect_pictures("out/" + name for name in names)
         made = self.figures("out")
         self.expect_labels(made["bulk"], "x (m)", "y (m)", "displacement (", "von Mises stress (", "largest compressive")
         self.expect_labels(made["fractures"], "arc length (m)", "tangential jump (mm)", "opening (mm)", "traction (Pa)")
+        self.expect_labels(made["maps"], "shear traction / normal compression (-)", "slip (mm)", "opening, normal jump (mm)", "x (m)")
         self.expect_labels(made["loops"], "mean tangential jump (", "mean normal traction (Pa)")
         self.expect_labels(made["convergence"], "Newton iterations (-)", "relative residual (-)")
         titles = [ax.get_title(loc="left") for ax in made["fractures"].axes]
@@ -114,7 +116,7 @@ class Pictures(PlotTest):
         """No edges between the pieces of ranks; each side of a fracture once."""
         def rim(ranks, *overrides):
             self.run_scene("verification/crossing_2d.xml", *overrides, ranks=ranks)
-            rock, joints = (read.grid(self.folder / "out" / f"{kind}_0000.pvtu") for kind in ("bulk", "fractures"))
+            rock, joints = (read.grid(self.folder / "out" / f"{kind}_0000.{end}") for kind, end in (("bulk", "pvtu"), ("fractures", "vtm")))
             surface = read.surface(rock)
             ends = surface.points[bulk.rim(surface, joints)]
             return np.sum(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)), joints
@@ -130,9 +132,10 @@ class Pictures(PlotTest):
         made = self.figures("out")
         self.expect_labels(made["bulk"], "displacement (", "von Mises stress (")
         self.expect_labels(made["fractures"], "slip (", "opening (", "normal traction (", "contact state (-)")
+        self.expect_labels(made["maps"], "shear traction / normal compression (-)", "slip (", "opening, normal jump (")
         for words in ([], ["--whole"]):
             self.draw(self.folder / "out", *words, "--dpi", "60", "--output", self.folder / "pictures")
-            self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png"])
+            self.expect_pictures(["pictures/bulk.png", "pictures/fractures.png", "pictures/maps.png"])
 
     def test_where_the_error_sits(self):
         self.run_scene("verification/crossing_3d.xml", "Output.error estimate=true")
@@ -167,7 +170,7 @@ class Pictures(PlotTest):
 
     def test_quadratic_cells(self):
         self.run_scene("seed/push_2d.xml", "Mesh.order=2")
-        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures"])
+        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures", "maps"])
 
     def shown_by_paraview(self, output):
         """What the state shows: displays of the stand-in of ParaView."""
@@ -208,9 +211,106 @@ class Pictures(PlotTest):
     def test_one_step_has_no_loop(self):
         self.run_scene("seed/push_2d.xml")
         out, err = self.draw(self.folder / "out", "--dpi", "30")
-        self.assertEqual([Path(line).name for line in out.splitlines()], ["bulk.png", "fractures.png", "convergence.png"])
+        self.assertEqual([Path(line).name for line in out.splitlines()], ["bulk.png", "fractures.png", "maps.png", "convergence.png"])
         self.assertIn("no loops.png", err)
         self.assertIn("one step", err)
+
+
+class Maps(PlotTest):
+    def test_slip_tendency(self):
+        """Shear over compression; none on faces that are open or pulled, or carry round-off."""
+        traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 0, 0]])
+        data = {"traction local": traction, "traction": traction, "jump": traction, "state": np.array([1, 2, 0, 0, 1, 0])}
+        self.assertTrue(np.array_equal(maps.slip_tendency(data), [0.5, 1.5, np.nan, np.nan, np.nan, np.nan], equal_nan=True))
+
+    def test_planes(self):
+        """Faces in one plane are one pole, with the mean over their area; those of another fracture or height another."""
+        square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+        corners = [square, square * [3, 1, 1] + [1, 0, 0], square, square + [0, 0, 1], square + [2, 0, 1]]
+        surface = read.Surface(np.concatenate(corners), list(np.arange(20).reshape(5, 4)), {"fracture": np.array([0, 0, 1, 0, 0])}, {})
+        found = sorted(value for _, value in maps.planes(surface, np.array([0.1, 0.5, 0.7, np.nan, 0.9])))
+        self.assertTrue(np.allclose(found, [0.4, 0.7, 0.9]), found)
+
+    def test_colours_are_those_of_the_results(self):
+        """2D: a line of each face has the value of the face; open ones are told in a legend."""
+        self.run_scene("verification/crossing_2d.xml")
+        figure = self.figure("out", "maps")
+        data = read.arrays(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]).GetCellData())
+        shown = [np.ma.filled(lines.get_array(), np.nan) for ax in figure.axes for lines in ax.collections if lines.get_array() is not None]
+        shown = [values for values in shown if len(values) == len(data["slip"])]
+        self.assertEqual(len(shown), 3)
+        self.assertTrue(np.allclose(shown[0], np.minimum(maps.slip_tendency(data), maps.LARGEST_TENDENCY), equal_nan=True))
+        for values, name in zip(shown[1:], ("slip", "opening")):
+            self.assertTrue(np.allclose(values / np.max(abs(values)), data[name] / np.max(abs(data[name]))), name)
+        self.assertEqual(bool(figure.axes[0].get_legend()), bool(np.isnan(shown[0]).any()))
+
+    def figure(self, directory, name):
+        with contextlib.redirect_stderr(io.StringIO()):
+            return dict(plot.of_run(self.folder / directory, plot.arguments(["-"])))[name]
+
+
+class Blocks(ProgramTest):
+    """What VTK reads of fractures.pvd: a block for each fracture, and where they meet."""
+
+    def blocks(self, output="out"):
+        """Of all steps; each the same faces and intersections as in the first."""
+        steps = [read.blocks(file) for _, file in read.written_steps(self.folder / output, "fractures")]
+        for step in steps[1:]:
+            self.assertEqual([(name, self.places(grid)) for name, grid in step.items()],
+                             [(name, self.places(grid)) for name, grid in steps[0].items()])
+        return steps[0], len(steps)
+
+    def places(self, grid):
+        """Centres of the cells, sorted."""
+        points = vtk_to_numpy(grid.GetPoints().GetData())
+        return sorted(tuple(np.round(points[cell].mean(axis=0), 9) + 0) for cell in read.cells(grid.GetCells()))
+
+    def expect_same_on_two_ranks(self, scene, *overrides):
+        found = []
+        for ranks in (1, 2):
+            results = self.run_scene(scene, *overrides, ranks=ranks, output=f"out{ranks}")
+            blocks, n_steps = self.blocks(f"out{ranks}")
+            self.assertEqual(n_steps, len(results["steps"]))
+            *fractures, last = blocks
+            self.assertEqual((fractures, last), (sorted(results["steps"][0]["fractures"]), "intersections"))
+            self.assertEqual(sum(blocks[name].GetNumberOfCells() for name in fractures), results["mesh"]["fracture_faces"])
+            for k, name in enumerate(fractures):
+                self.assertEqual(set(read.arrays(blocks[name].GetCellData())["fracture"]), {k})
+            found.append({name: self.places(grid) for name, grid in blocks.items()})
+        self.assertEqual(*found)
+        self.assertEqual(*((self.folder / f"out{ranks}/fractures/intersections.vtu").read_bytes() for ranks in (1, 2)))
+        return blocks["intersections"]
+
+    def test_in_2d(self):
+        for order in (1, 2):
+            points = self.expect_same_on_two_ranks("contact/network_t.xml", f"Mesh file.order={order}", "Time.end=1", "Time.steps=1")
+            names = ",".join(f"f{k:02}" for k in range(1, 21))
+            self.assertIn(f"intersections {points.GetNumberOfCells()} points", self.call("mesh-info", self.scene("contact/network_t.msh"), "--fractures", names)[0])
+            data = read.arrays(points.GetCellData())
+            self.assertTrue((data["fractures"] >= 2).all() and (data["first fracture"] < data["last fracture"]).all())
+            self.assertEqual(set(data["faces"]), {3, 4})  # a T and an X
+
+    def test_in_3d(self):
+        for order, refinements, per_edge in ((1, 0, 1), (2, 0, 1), (1, 1, 2)):
+            lines = self.expect_same_on_two_ranks("verification/crossing_3d.xml", f"Mesh.order={order}", f"Mesh.refinements={refinements}", "Time.steps=1", "Time.end=1")
+            points = vtk_to_numpy(lines.GetPoints().GetData())
+            cells = read.cells(lines.GetCells())
+            if order == 1 and refinements == 0:
+                coarse = len(cells)
+            self.assertEqual(len(cells), coarse * per_edge)
+            self.assertEqual({len(cell) for cell in cells}, {order + 1})
+            self.assertAlmostEqual(sum(np.linalg.norm(points[cell[1]] - points[cell[0]]) for cell in cells), 1 + 0.75 + 0.5, 9)
+            self.assertEqual(set(read.arrays(lines.GetCellData())["faces"]), {4})
+
+    def test_of_one_fracture(self):
+        self.run_scene("seed/push_3d.xml")
+        self.assertEqual(list(self.blocks()[0]), ["fracture"])
+
+    def test_after_a_restart_on_fewer_ranks(self):
+        scene = ["contact/network_t.xml", "Output.checkpoints.steps=1"]
+        self.run_scene(*scene, "Time.end=1", "Time.steps=1", ranks=2)
+        self.call("run", self.scene(scene[0]), "--output", "out", "--restart", *(word for o in (*scene[1:], "Time.end=2", "Time.steps=2") for word in ("--set", o)))
+        self.assertEqual(self.blocks()[1], 2)  # the same places in both steps
 
 
 class Errors(PlotTest):
@@ -243,6 +343,9 @@ class Errors(PlotTest):
         self.run_scene("seed/push_2d.xml")
         (self.folder / "out" / "bulk_0000.pvtu").unlink()
         self.expect_error(self.folder / "out", ["bulk_0000.pvtu", "no such file"])
+        self.run_scene("seed/push_2d.xml")
+        (self.folder / "out" / "fractures" / "fractures_0000_0_0.vtu").unlink()
+        self.expect_error(self.folder / "out", ["fractures_0000_0_0.vtu", "no such file"])
 
 
 class Numbers(ProgramTest):

@@ -8,11 +8,15 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkIdList.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkMultiPieceDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLPUnstructuredGridReader.h>
 
 #include <algorithm>
@@ -220,6 +224,70 @@ TEST(Vtu, CollectionListsEveryStepAfterEveryWrite) {
       EXPECT_EQ(contents.steps.at(file), times[k]);
       EXPECT_EQ(read(scratch / ("out/" + file))->GetNumberOfCells(), first_block_of(comm->getSize()));
     }
+  }
+}
+
+TEST(Vtu, BlocksReadBackByTheirNames) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto shape : shapes) {
+    const Scratch scratch(*comm);
+    const auto mesh = row_of_blocks(comm, shape);
+    io::Piece all = io::fracture_piece(mesh);
+    std::vector<LocalIndex> even, odd, none;
+    std::vector<Real> id;
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      id.insert(id.end(), {static_cast<Real>(mesh.fracture_faces[f].id), -1});
+      (mesh.fracture_faces[f].id % 2 ? odd : even).push_back(f);
+    }
+    all.cell_data = {io::data_array("id", 2, id)};
+    io::VtuSeries series(comm, scratch / "out", "fractures", {}, io::VtuSeries::Of::blocks);
+    std::vector<mesh::Intersection> meeting;
+    if (comm->getRank() == 0)
+      meeting = {{{4, 7}, {{0, 0, 0}, {1, 0, 0}}, {0, 0, 2}}, {{7, 9}, {{1, 0, 0}, {3, 0, 0}}, {1, 2}}};
+    series.keep({"meeting", io::intersection_piece(meeting)});
+    const std::string odd_name = "odd < & \"";
+    for (Real time : {0.5, 1.5})
+      series.write(
+          time,
+          {{"even", io::part_of(all, even)}, {odd_name, io::part_of(all, odd)}, {"none", io::part_of(all, none)}});
+    EXPECT_EQ(Contents(scratch / "out/fractures.pvd").steps,
+              (std::map<std::string, double>{{"fractures_0000.vtm", 0.5}, {"fractures_0001.vtm", 1.5}}));
+
+    vtkNew<vtkXMLMultiBlockDataReader> reader;
+    reader->SetFileName((scratch / "out/fractures_0001.vtm").c_str());
+    reader->Update();
+    auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
+    ASSERT_EQ(blocks->GetNumberOfBlocks(), 4u);
+    const auto name = [&](int k) { return std::string(blocks->GetMetaData(k)->Get(vtkCompositeDataSet::NAME())); };
+    EXPECT_EQ(name(0) + name(1) + name(2) + name(3), "even" + odd_name + "nonemeeting");
+    int n_faces = 0;
+    for (int k : {0, 1, 2}) {
+      auto* pieces = vtkMultiPieceDataSet::SafeDownCast(blocks->GetBlock(k));
+      for (unsigned i = 0; i < pieces->GetNumberOfPieces(); ++i) {
+        auto* grid = vtkUnstructuredGrid::SafeDownCast(pieces->GetPiece(i));
+        ASSERT_GT(grid->GetNumberOfCells(), 0);
+        EXPECT_LE(grid->GetNumberOfPoints(), grid->GetNumberOfCells() * mesh::n_face_nodes(shape));
+        const bool tetrahedra = shape == mesh::Shape::tetrahedron;  // see FractureFacesReadBack
+        for (vtkIdType f = 0; f < grid->GetNumberOfCells(); ++f, ++n_faces) {
+          const Real* tuple = grid->GetCellData()->GetArray("id")->GetTuple3(f);
+          EXPECT_EQ(static_cast<int>(tuple[0]) % 2, k);
+          EXPECT_EQ(tuple[1], -1);
+          EXPECT_EQ(grid->GetCell(f)->GetBounds()[0], tuple[0] + tetrahedra);
+        }
+      }
+    }
+    EXPECT_EQ(n_faces, first_block_of(comm->getSize()));
+    auto* kept = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(3));
+    ASSERT_TRUE(kept && kept->GetNumberOfCells() == 2);
+    EXPECT_EQ(kept->GetNumberOfPoints(), 3);
+    const auto value = [&](const char* array, int c) {
+      return kept->GetCellData()->GetArray(array)->GetComponent(c, 0);
+    };
+    EXPECT_EQ(value("fractures", 0), 2);
+    EXPECT_EQ(value("faces", 0), 3);
+    EXPECT_EQ(value("first fracture", 1), 1);
+    EXPECT_EQ(value("last fracture", 1), 2);
+    EXPECT_EQ(measure(kept->GetCell(1)), 2);
   }
 }
 

@@ -1,6 +1,5 @@
 """Directions of fractures: a rose diagram of strikes in 2D, poles in a stereonet in 3D."""
 import numpy as np
-from shapes import Plane
 
 
 def strikes(lines):
@@ -9,16 +8,23 @@ def strikes(lines):
     return np.degrees(np.arctan2(along[:, 0], along[:, 1])) % 180, np.linalg.norm(along, axis=1)
 
 
+def area_vector(polygon):
+    """Area times unit normal of a plane polygon (n, 3)."""
+    x = polygon - np.mean(polygon, axis=0)
+    return 0.5 * np.cross(x, np.roll(x, -1, axis=0)).sum(axis=0)
+
+
 def poles(polygons):
     """Trend (degree, clockwise from north) of the poles that point down, and their distance from the centre of a stereonet of
     radius 1, of the lower hemisphere and equal areas."""
-    normal = np.array([Plane(x).normal for x in polygons])
+    normal = np.array([area_vector(x) for x in polygons])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
     down = np.where(normal[:, 2:] > 0, -normal, normal)
     return np.degrees(np.arctan2(down[:, 0], down[:, 1])) % 360, np.sqrt(np.maximum(1 - abs(down[:, 2]), 0))
 
 
 def draw_rose(ax, sets):
-    """Bars of 10 degrees as long as their share of the length of all fractures, stacked by set: (colour, lines)."""
+    """Bars of 10 degrees as long as their share of the length of all fractures, stacked: (colour, lines) of each part."""
     sides = np.arange(0, 361, 10)
     total = sum(strikes(lines)[1].sum() for _, lines in sets)
     base = np.zeros(36)
@@ -32,7 +38,7 @@ def draw_rose(ax, sets):
 
 
 def draw_stereonet(ax, sets):
-    """Poles of planes, by set: (colour, polygons)."""
+    """Poles of planes: (colour, polygons) of each part."""
     for colour, polygons in sets:
         trend, radius = poles(polygons)
         ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="white", markeredgewidth=0.4)

@@ -1,0 +1,105 @@
+"""Where on the fractures there is slip tendency, slip and opening, and which directions tend to slip."""
+import numpy as np
+import orientations
+import read
+from bulk import rim
+from fractures import scales
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
+from style import FAINT, INK, Quantity, STATE_COLOURS, colour_bar, draw_polygons_3d, limits, plt, without_noise
+
+LARGEST_TENDENCY = 1.5  # that colours tell apart
+LIGHT = np.array([0.3, -0.5, 0.81])  # from where faces are lit
+
+
+def slip_tendency(data):
+    """Shear traction over normal compression; not a number on open faces, which have none."""
+    normal, shear = data["traction local"][:, 0], np.linalg.norm(data["traction local"][:, 1:], axis=1)
+    loaded = (data["state"] > 0) & (normal < -1e-10 * scales(data)[1])
+    return np.where(loaded, shear / np.where(loaded, -normal, 1), np.nan)
+
+
+def panels(data):
+    """(values, norm, colours, label) of each map."""
+    tendency = np.minimum(slip_tendency(data), LARGEST_TENDENCY)
+    colours = plt.get_cmap("plasma").with_extremes(bad=STATE_COLOURS(0))
+    yield tendency, limits(tendency[~np.isnan(tendency)]), colours, "shear traction / normal compression (-)"
+    for name, title, palette in (("slip", "slip", "YlOrRd"), ("opening", "opening, normal jump", "YlGnBu")):
+        values = without_noise(data[name], scales(data)[0])
+        quantity, signed = Quantity(title, "m", values), np.min(values) < 0
+        yield quantity(values), limits(quantity(values), signed), plt.get_cmap("coolwarm" if signed else palette), quantity.label
+
+
+def planes(surface, values):
+    """A polygon of each plane of a fracture, and the mean of the values over its area, of what is a number."""
+    corners = surface.corners()
+    normals = np.array([orientations.area_vector(x) for x in corners])
+    areas = np.linalg.norm(normals, axis=1)
+    normals /= areas[:, None]
+    heights = np.einsum("ij,ij->i", normals, [x[0] for x in corners]) / np.max(np.ptp(surface.points, axis=0))
+    keys = np.column_stack([surface.cell_data["fracture"], np.round(np.column_stack([normals, heights]), 5)])
+    number = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+    for k in range(np.max(number) + 1):
+        loaded = (number == k) & ~np.isnan(values)
+        yield corners[np.argmax(number == k)], np.average(values[loaded], weights=areas[loaded]) if loaded.any() else np.nan
+
+
+def draw_directions(ax, shapes, values, norm, colours):
+    """Rose diagram of lines, stereonet of polygons, coloured by their values."""
+    values = np.array(values)
+    classes = np.where(np.isnan(values), -1, np.clip(np.floor(10 * np.ma.filled(norm(values), 0)), 0, 9))
+    parts = [(colours(np.nan if k < 0 else (k + 0.5) / 10), [shapes[i] for i in np.flatnonzero(classes == k)])
+             for k in range(-1, 10)]
+    orientations.draw(ax, 2 if shapes[0].shape[1] == 2 else 3, [(colour, part) for colour, part in parts if part])
+
+
+def shaded(colours, corners):
+    """The colours of faces in space, darker the more they turn away from the light."""
+    normals = np.array([orientations.area_vector(x) for x in corners])
+    bright = 0.7 + 0.3 * abs(normals @ LIGHT) / np.linalg.norm(normals, axis=1)
+    return np.column_stack([colours[:, :3] * bright[:, None], colours[:, 3]])
+
+
+def draw_faces(ax, surface, colours):
+    """The faces, and the rims of fractures among them, as polygons of two corners that others may hide."""
+    corners, edges = surface.corners(), surface.points[rim(surface, None)]
+    faces = shaded(colours, corners)
+    ink = np.tile(to_rgba(INK), (len(edges), 1))
+    draw_polygons_3d(ax, corners + list(edges), np.concatenate([faces, ink]), np.concatenate([faces, ink]), zoom=1.05)
+
+
+def draw_lines(ax, surface, outline, values, norm, colours):
+    ax.add_collection(LineCollection(outline, colors=FAINT, linewidths=0.7))
+    ends = [x[:2, :2] for x in surface.corners()]
+    ax.add_collection(LineCollection(ends, colors=INK, linewidths=4, capstyle="round"))
+    ax.add_collection(LineCollection(ends, array=np.ma.masked_invalid(values), cmap=colours, norm=norm, linewidths=3, capstyle="round"))
+    ax.set_aspect("equal")
+    ax.margins(0.03)
+    ax.autoscale_view()
+    ax.grid(False)
+    ax.set(xlabel="x (m)", ylabel="y (m)")
+
+
+def of_step(rock, joints, title):
+    """Of the grids of the rock and of the fractures."""
+    plane = read.is_plane(rock)
+    surface = read.segments(joints) if plane else read.surface(joints)
+    skin = read.surface(rock)
+    outline = skin.points[rim(skin, joints)][:, :, :2] if plane else None
+    height = np.clip(np.ptp(skin.points[:, 1]) / np.ptp(skin.points[:, 0]), 0.4, 2) if plane else 1.02
+    figure = plt.figure(figsize=(9, 7.6 * height + 0.8))
+    figure.suptitle(title, fontsize=10)
+    bar = {} if plane else {"location": "bottom", "shrink": 0.7, "pad": 0.1}
+    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data)):
+        ax = figure.add_subplot(2, 2, k, projection=None if plane else "3d")
+        if plane:
+            draw_lines(ax, surface, outline, values, norm, colours)
+        else:
+            draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
+        colour_bar(figure, ax, norm, colours, label, zero=not np.any(values), **bar)
+        if k == 1:
+            shapes = ([x[:2, :2] for x in surface.corners()], values) if plane else zip(*planes(surface, values))
+            draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *map(list, shapes), norm, colours)
+            if np.isnan(values).any():
+                ax.legend([plt.Rectangle((0, 0), 1, 1, color=colours(np.nan))], ["open"], loc="lower left", bbox_to_anchor=(0, 1))
+    return figure

@@ -1,0 +1,127 @@
+#include "mesh/intersections.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <map>
+
+#include "mesh/alike_nodes.hpp"
+
+namespace sprekk::mesh {
+namespace {
+
+using Nodes = std::vector<GlobalIndex>;  ///< of a ridge by their sets of copies: its ends, ascending, and the middle
+
+bool do_meet(std::vector<int>& fractures) {
+  std::sort(fractures.begin(), fractures.end());
+  return fractures.size() > 2 || fractures.front() != fractures.back();
+}
+
+/// The ridges around the fracture faces of one rank.
+class LocalRidges {
+ public:
+  explicit LocalRidges(const Mesh& mesh) : mesh_(mesh), alike_(mesh), in_owned_cell_(mesh.n_nodes(), false) {
+    for (LocalIndex i = 0; i < mesh.n_owned_cells * mesh.nodes_per_cell(); ++i) in_owned_cell_[mesh.cells[i]] = true;
+    for (const auto& face : mesh.fracture_faces) add(face);
+  }
+
+  /// Numbers that tell a ridge of an owned face: its nodes, their places, and the fracture.
+  int n_numbers() const { return 4 * n_ridge_nodes() + 1; }
+
+  /// These numbers of all ridges of owned faces at which, as far as this rank sees, fractures may meet.
+  std::vector<Real> candidates() {
+    std::vector<Real> found;
+    for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f)
+      for (int corner = 0; corner < n_face_corners(mesh_.shape); ++corner) {
+        const auto nodes = ridge(mesh_.fracture_faces[f], minus, corner);
+        auto& seen = ridges_.at(alike(nodes));
+        if (seen.is_whole && !do_meet(seen.fractures)) continue;
+        for (GlobalIndex node : alike(nodes)) found.push_back(static_cast<Real>(node));
+        for (LocalIndex node : nodes)
+          for (int c = 0; c < 3; ++c) found.push_back(c < mesh_.dim() ? mesh_.coordinates[node * mesh_.dim() + c] : 0);
+        found.push_back(mesh_.fracture_faces[f].fracture);
+      }
+    return found;
+  }
+
+ private:
+  struct Seen {
+    std::vector<int> fractures;
+    bool is_whole = true;  ///< this rank has all cells around, and so all faces
+  };
+
+  const Mesh& mesh_;
+  AlikeNodes alike_;
+  std::vector<bool> in_owned_cell_;
+  std::map<Nodes, Seen> ridges_;
+
+  int n_ridge_nodes() const { return mesh_.dim() == 2 ? 1 : order(mesh_.shape) == 1 ? 2 : 3; }
+
+  /// Local nodes of the ridge that starts at a corner of one side of a face, ends ascending by their sets of copies.
+  std::vector<LocalIndex> ridge(const Mesh::FractureFace& face, int side, int corner) const {
+    const int n = n_face_corners(mesh_.shape);
+    const auto& of_face = face.nodes[side];
+    std::vector<LocalIndex> nodes = {of_face[corner], of_face[(corner + 1) % n], of_face[n + corner]};
+    nodes.resize(n_ridge_nodes());
+    if (mesh_.dim() == 3 && alike_[nodes[0]] > alike_[nodes[1]]) std::swap(nodes[0], nodes[1]);
+    return nodes;
+  }
+
+  Nodes alike(const std::vector<LocalIndex>& nodes) const {
+    Nodes sets;
+    for (LocalIndex node : nodes) sets.push_back(alike_[node]);
+    return sets;
+  }
+
+  void add(const Mesh::FractureFace& face) {
+    for (int corner = 0; corner < n_face_corners(mesh_.shape); ++corner) {
+      Seen* seen = nullptr;
+      for (int side : {minus, plus}) {
+        if (face.cell[side] < 0) continue;
+        const auto nodes = ridge(face, side, corner);
+        seen = &ridges_[alike(nodes)];
+        for (LocalIndex node : nodes) seen->is_whole = seen->is_whole && in_owned_cell_[node];
+      }
+      seen->fractures.push_back(face.fracture);
+    }
+  }
+};
+
+/// What all ranks have, one after the other, on rank 0; nothing on others. Collective.
+std::vector<Real> gathered(const Comm& comm, std::vector<Real> here) {
+  int n = static_cast<int>(here.size());
+  if (comm.getRank() > 0) {
+    Teuchos::send(comm, n, 0);
+    if (n > 0) Teuchos::send(comm, n, here.data(), 0);
+    return {};
+  }
+  for (int rank = 1; rank < comm.getSize(); ++rank) {
+    Teuchos::receive(comm, rank, &n);
+    here.resize(here.size() + n);
+    if (n > 0) Teuchos::receive(comm, rank, n, here.data() + here.size() - n);
+  }
+  return here;
+}
+
+}  // namespace
+
+std::vector<Intersection> intersections(const Mesh& mesh) {
+  LocalRidges local(mesh);
+  const int n = local.n_numbers(), n_nodes = n / 4;
+  const auto numbers = gathered(*mesh.comm, local.candidates());
+  std::map<Nodes, Intersection> ridges;
+  for (auto it = numbers.begin(); it != numbers.end(); it += n) {
+    const Nodes nodes(it, it + n_nodes);
+    auto& ridge = ridges[nodes];
+    ridge.nodes = nodes;
+    ridge.x.resize(n_nodes);
+    for (int k = 0; k < n_nodes; ++k) std::copy_n(it + n_nodes + 3 * k, 3, ridge.x[k].begin());
+    ridge.fractures.push_back(static_cast<int>(it[n - 1]));
+  }
+  std::vector<Intersection> result;
+  for (auto& [nodes, ridge] : ridges)
+    if (do_meet(ridge.fractures)) result.push_back(std::move(ridge));
+  return result;
+}
+
+}  // namespace sprekk::mesh

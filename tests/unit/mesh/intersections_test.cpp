@@ -1,0 +1,75 @@
+#include "mesh/intersections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <set>
+
+#include "mesh/distribute.hpp"
+#include "mesh/mesh_info.hpp"
+#include "mesh/refine.hpp"
+#include "meshes.hpp"
+
+namespace sprekk::mesh::testing {
+namespace {
+
+/// Length of all edges; of points how many.
+Real measure(const std::vector<Intersection>& intersections) {
+  Real sum = 0;
+  for (const auto& at : intersections) sum += at.x.size() == 1 ? 1 : norm(at.x[1] - at.x[0]);
+  return sum;
+}
+
+/// Those that a mesh has on rank 0 and no other, as many as mesh-info counts.
+std::vector<Intersection> expect_as_counted(const GlobalMesh& global, const Mesh& mesh) {
+  const auto found = intersections(mesh);
+  EXPECT_EQ(static_cast<GlobalIndex>(found.size()), mesh.comm->getRank() == 0 ? describe(global).n_intersections : 0);
+  std::set<std::vector<GlobalIndex>> nodes;
+  for (const auto& at : found) nodes.insert(at.nodes);
+  EXPECT_EQ(nodes.size(), found.size());
+  return found;
+}
+
+std::vector<int> scattered_parts(const GlobalMesh& mesh, int n) {
+  std::vector<int> part;
+  for (GlobalIndex c = 0; c < mesh.n_cells(); ++c) part.push_back(static_cast<int>(c * c % 7) % n);
+  return part;
+}
+
+TEST(Intersections, AreThoseOfTheMeshHoweverItIsDistributed) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const auto& cell : all_cells)
+    for (int order : {1, 2}) {
+      auto box = crossed(cell);
+      box.order = order;
+      const auto global = make_box(box);
+      const auto found = expect_as_counted(global, *make_distributed(global, comm));
+      const auto other = expect_as_counted(global, *distribute(global, scattered_parts(global, comm->getSize()), comm));
+      ASSERT_EQ(found.size(), other.size());
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        EXPECT_EQ(found[k].nodes, other[k].nodes);
+        EXPECT_EQ(found[k].x, other[k].x);
+        EXPECT_EQ(found[k].fractures, other[k].fractures);
+        EXPECT_EQ(found[k].fractures, found[k].x[0][0] < 3.5 ? (std::vector<int>{0, 0, 1, 1})  // an X and a T
+                                                             : (std::vector<int>{0, 0, 2}));
+        EXPECT_EQ(found[k].nodes.size(), global.dim() == 2 ? 1u : order + 1u);
+        if (found[k].x.size() == 3) EXPECT_LT(norm(found[k].x[0] + found[k].x[1] - 2.0 * found[k].x[2]), 1e-12);
+      }
+      EXPECT_EQ(found.empty(), comm->getRank() > 0);
+    }
+}
+
+TEST(Intersections, OfRefinedCells) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const std::string cell : {"triangle", "tetrahedron"}) {
+    auto global = make_box(crossed(cell));
+    const auto coarse = intersections(*make_distributed(global, comm));
+    turn_for_refinement(global);
+    const auto fine = intersections(*refined(*make_distributed(global, comm), 1));
+    EXPECT_EQ(fine.size(), coarse.size() * (global.dim() - 1));
+    EXPECT_NEAR(measure(fine), measure(coarse), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::mesh::testing
