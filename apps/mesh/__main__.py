@@ -36,7 +36,10 @@ def description(options):
 
 def fingerprint(text, files):
     """Of everything that the mesh depends on."""
-    digest = hashlib.sha256(text.encode())
+    import gmsh
+    import numpy
+    import shapely
+    digest = hashlib.sha256("\n".join((text, *(library.__version__ for library in (gmsh, numpy, shapely)))).encode())
     for path in [*files, *sorted(Path(__file__).parent.glob("*.py"))]:
         digest.update(Path(path).read_bytes())
     return digest.hexdigest()
@@ -69,11 +72,15 @@ def make(options):
     checks.check(plan)
     sizes = Sizes(plan)
     mesh = mesher.make_mesh(plan, sizes)
+    groups = msh_file.groups_of(mesh, plan)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
-    msh_file.write(unfinished, mesh.points, msh_file.groups_of(mesh, plan))
-    content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(), **report.of_mesh(mesh, plan, sizes)}
-    unfinished.replace(options.output)
+    try:
+        msh_file.write(unfinished, mesh.points, groups)
+        content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(), **report.of_mesh(mesh, plan, sizes)}
+        unfinished.replace(options.output)
+    finally:
+        unfinished.unlink(missing_ok=True)
     report_file.write_text(json.dumps(content, indent=1) + "\n")
     if options.picture:
         import picture
@@ -101,8 +108,11 @@ def main(words=None):
     try:
         told = make(options)
     except Exception as error:  # one line for whatever shapely or gmsh throw, too
-        known = isinstance(error, (NetworkError, OSError))
-        reason = in_words(error if known else NetworkError(f"no mesh could be made: {type(error).__name__}: {error}"), options.scene)
+        if isinstance(error, OSError):
+            error = NetworkError(f"{error.filename or options.output}: {error.strerror or error}")
+        elif not isinstance(error, NetworkError):
+            error = NetworkError(f"no mesh could be made: {type(error).__name__}: {error}")
+        reason = in_words(error, options.scene)
         print(f"sprekk: {reason}", file=sys.stderr)
         if options.run:
             end_results(options.output.parent / "results.json", reason)

@@ -17,10 +17,10 @@ def names(plan, one, other):
 
 
 def too_close(plan, pair, gap, where):
-    allowed = plan.network.minimum_distance
+    allowed, tolerance = plan.network.minimum_distance, plan.network.tolerance
+    advice = f"move one, or join them by a larger \"tolerance\" (now {tolerance:.3g} m)" if gap > tolerance else "move one"
     place = ", ".join(f"{x:.6g}" for x in where[:plan.dim])
-    return (f"{pair[0]} and {pair[1]} are {gap:.3g} m apart at ({place}) without meeting; the \"minimum distance\" is {allowed:.3g} m; "
-            f"move one, or join them by a larger \"tolerance\" (now {plan.network.tolerance:.3g} m)")
+    return (f"{pair[0]} and {pair[1]} are {gap:.3g} m apart at ({place}) without meeting; the \"minimum distance\" is {allowed:.3g} m; {advice}")
 
 
 def close_edges(plan):
@@ -34,13 +34,13 @@ def close_edges(plan):
     for k in np.flatnonzero(gap < reach):
         pair = names(plan, owners[i[k]], owners[j[k]])
         if pair:
-            yield too_close(plan, pair, gap[k], segments[i[k], 0] + s[k] * (segments[i[k], 1] - segments[i[k], 0]))
+            yield pair, too_close(plan, pair, gap[k], segments[i[k], 0] + s[k] * (segments[i[k], 1] - segments[i[k], 0]))
     at, length = plan.graph.parents_at(), np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     for k in np.flatnonzero(length < reach):
         a, b = ends[k]
         pair = names(plan, at[a] - at[b] or at[a], at[b] - at[a] or at[b])
         if pair:
-            yield too_close(plan, pair, length[k], segments[k, 0])
+            yield pair, too_close(plan, pair, length[k], segments[k, 0])
 
 
 def close_surfaces(plan):
@@ -58,7 +58,7 @@ def close_surfaces(plan):
         for p in near[over]:
             pair = None if k in at[p] | plan.loose.get(int(p), set()) else names(plan, [k], at[p])
             if pair:
-                yield too_close(plan, pair, abs(surface.plane.height(points[p])), points[p])
+                yield pair, too_close(plan, pair, abs(surface.plane.height(points[p])), points[p])
 
 
 def small_angles(plan):
@@ -74,7 +74,7 @@ def small_angles(plan):
             angle = np.degrees(other - one) % 360
             pair = names(plan, of, others) if len(star) > 1 and angle < minimum else None
             if pair:
-                yield f"{pair[0]} and {pair[1]} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}"
+                yield pair, f"{pair[0]} and {pair[1]} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}"
 
 
 def lying_on(plan):
@@ -83,9 +83,10 @@ def lying_on(plan):
         fractures = plan.fractures_of(of)
         side = next((plan.owners[k] for k in of if plan.owners[k].kind == "boundary"), None)
         if len(fractures) > 1:
-            yield f"{fractures[0].name} and {fractures[1].name} lie on each other; leave one out or make them one"
+            pair = fractures[0].name, fractures[1].name
+            yield pair, f"{pair[0]} and {pair[1]} lie on each other; leave one out or make them one"
         elif fractures and side:
-            yield f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides"
+            yield (fractures[0].name, side.name), f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides"
 
 
 def check(plan):
@@ -93,6 +94,6 @@ def check(plan):
     found = list(lying_on(plan)) + list(small_angles(plan)) if plan.dim == 2 else []
     found = found or list(close_edges(plan)) + (list(close_surfaces(plan)) if plan.dim == 3 else [])
     first = {}
-    for line in found:
-        first.setdefault(line.split(" are ")[0], line)
+    for pair, line in found:
+        first.setdefault(pair, line)
     Errors(first.values()).throw()

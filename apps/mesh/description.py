@@ -1,7 +1,9 @@
 """A network as `sprekk network` prints it: fractures and bodies as features."""
+import csv
 import os
 import xml.etree.ElementTree as xml
 
+import numpy as np
 from domain import Body, rows
 from generator import at_random
 from shapes import Feature, NetworkError, ellipse
@@ -12,8 +14,8 @@ READ = {"int": int, "double": float, "bool": lambda text: text == "true", "strin
 
 def value(kind, text):
     if kind.startswith("Array("):
-        inner = text.strip()[1:-1].strip()
-        return [READ[kind[6:-1]](part.strip()) for part in inner.split(",")] if inner else []
+        inner = text.strip()[1:-1].strip()  # strings with commas are in quotes
+        return [READ[kind[6:-1]](part.strip()) for part in next(csv.reader([inner], skipinitialspace=True))] if inner else []
     return READ[kind](text)
 
 
@@ -21,6 +23,17 @@ def as_dictionary(element):
     """A parameter list with its sections."""
     return {child.get("name"): as_dictionary(child) if child.tag == "ParameterList" else value(child.get("type"), child.get("value"))
             for child in element}
+
+
+def as_known(path):
+    """A path as people know it."""
+    relative = os.path.relpath(path)
+    return path if relative.startswith("..") else relative
+
+
+def opened(ring):
+    """The corners of a polygon, of which the last may repeat the first."""
+    return ring[:-1] if len(ring) > 3 and (ring[0] == ring[-1]).all() else ring
 
 
 class Network:
@@ -38,6 +51,7 @@ class Network:
         self.fractures = self.features("fractures", "fracture")
         self.constraints = self.features("constraints", "constraint")
         self.check_names()
+        self.check_boxes()
         self.check_dimensions()
         self.set_sizes()
 
@@ -48,8 +62,7 @@ class Network:
         return Body(path, entries, kind, group)
 
     def table(self, content):
-        path = os.path.relpath(content["file"])
-        path = content["file"] if path.startswith("..") else path  # as people know it
+        path = as_known(content["file"])
         self.files.append(path)
         domain = self.entries.get("domain")
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
@@ -81,11 +94,26 @@ class Network:
             if "random" in content:
                 found += [Feature(kind, name, f'{kind} {k + 1} at random of "{name}"', x)
                           for k, x in enumerate(at_random(content["random"], self.domain))]
+        for feature in found if self.dim == 3 else ():
+            feature.points = opened(feature.points)
         return found
 
+    def check_boxes(self):
+        """Files that tell a domain must mean that of the scene."""
+        for (section, name), table in self.tables.items():
+            other = table.box and abs(np.array(table.box) - (self.domain.low, self.domain.high)).max() > 1e-9 * self.domain.size
+            if other:
+                path = self.entries[section][name]["file"]
+                said, known = (" to ".join(f"({', '.join(f'{x:g}' for x in corner)})" for corner in box)
+                               for box in (table.box, (self.domain.low, self.domain.high)))
+                raise NetworkError(f"{as_known(path)}: tells of a domain from {said}, the scene's is {known}; leave one out", [as_known(path)])
+
     def check_names(self):
-        """Groups of the mesh must be told apart."""
+        """Groups of the mesh must be told apart, in files of gmsh, too."""
         sides = {side.group for side in self.domain.sides}
+        for name in (*sides, *self.entries["fractures"], *self.entries["regions"]):
+            if '"' in name or not name.isprintable():
+                raise NetworkError(f"{self.place('...')}: the name {name!r} has a quotation mark or what cannot be printed; choose another")
         for name in self.entries["fractures"]:
             if name in sides:
                 raise NetworkError(f"{self.place('fractures > ' + name)}: has the name of a side of the domain; choose another")
@@ -103,8 +131,15 @@ class Network:
     def set_sizes(self):
         e, diagonal = self.entries, self.domain.size
         self.tolerance = e.get("tolerance", 1e-6 * diagonal)
+        if self.tolerance > 0.01 * diagonal:
+            raise NetworkError(f"{self.place('tolerance')}: is {self.tolerance:g} m, must be at most a hundredth of the domain's "
+                               f"diagonal, {0.01 * diagonal:g} m")
         self.minimum_distance = e.get("minimum distance", 1e-4 * diagonal)
         self.minimum_angle = e["minimum angle"]
         self.size = e.get("size", diagonal / 10)
         self.relative_size, self.growth = e["relative size"], e["growth"]
+        self.most_cells = e["most cells"]
+        for entry in ("size", *(f"size at {where}" for where in ("tips", "intersections", "boundary"))):
+            if e.get(entry, np.inf) < 1e-7 * diagonal:
+                raise NetworkError(f"{self.place(entry)}: is {e[entry]:g} m, must be at least 1e-7 of the domain's diagonal, {1e-7 * diagonal:.3g} m")
         self.size_at = {where: e.get(f"size at {where}") for where in ("tips", "intersections", "boundary")}

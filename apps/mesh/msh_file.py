@@ -1,5 +1,6 @@
 """Writes meshes as files of gmsh, version 2.2, binary."""
 import numpy as np
+from shapes import Errors
 
 TYPES = {1: 15, 2: 1, 3: 2, 4: 4}  # gmsh's number of a point, line, triangle, tetrahedron by its nodes
 
@@ -40,6 +41,8 @@ def groups_of(mesh, plan):
     for k, body in enumerate(bodies):
         region[body.holds(centres)] = k + 1
     names = ["bulk"] + [body.place.split(" > ")[-1] for body in bodies]
+    Errors(f"{body.place}: has no cell; it lies outside of the domain, or in regions that come after it"
+           for k, body in enumerate(bodies, 1) if not (region == k).any()).throw()
     found += [(dim, name, mesh.cells[region == k]) for k, name in enumerate(names) if (region == k).any()]
     if len(mesh.intersections):
         found.append((dim - 2, "intersections", mesh.intersections))

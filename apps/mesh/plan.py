@@ -99,9 +99,10 @@ class Plan:
         return owners, np.array(segments), parents, []
 
     def worth(self, line, parts):
-        """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture that has none."""
+        """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture or constraint that has none."""
         length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
-        if line.kind == "fracture" and max(length, default=0) < self.network.minimum_distance:
+        least = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
+        if max(length, default=0) < least:
             refuse(line, "lies outside of the domain")
         for x in length:
             if x < self.network.minimum_distance:
@@ -124,11 +125,16 @@ class Plan:
         check_same(network.fractures, tolerance)
         surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
-            check_polygon(feature, network.tolerance)
-            self.flatten(feature)
-            for part in domain.clip_polygon(Surface.whole(feature), tolerance):
-                level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
-                surfaces += without(part, level, tolerance) if level else [part]
+            with errors.of_one():
+                check_polygon(feature, network.tolerance)
+                self.flatten(feature)
+                parts = domain.clip_polygon(Surface.whole(feature), tolerance)
+                if not parts and feature.kind == "constraint":
+                    refuse(feature, "lies outside of the domain")
+                for part in parts:
+                    level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
+                    surfaces += without(part, level, tolerance) if level else [part]
+        errors.throw()
         segments, parents, touches = [], [], []
         for k, surface in enumerate(surfaces):
             sides = surface.sides()

@@ -1,4 +1,6 @@
 """What a mesh is like: counts, shapes of cells, lengths of edges beside those that were asked for."""
+from collections import defaultdict
+
 import numpy as np
 
 
@@ -49,12 +51,22 @@ def of_sets(mesh, plan, sizes):
     return found
 
 
+def n_intersections(mesh, plan):
+    """As mesh-info counts them: points (3D: edges) of faces of several sets, or of more than two faces."""
+    at, n = defaultdict(list), plan.dim
+    for face, owner in zip(mesh.faces, mesh.face_owner):
+        if plan.is_fracture(owner):
+            for k in range(n):
+                at[tuple(sorted({face[k], face[(k + 1) % n]})) if n == 3 else face[k]].append(plan.owners[owner].group)
+    return sum(len(groups) > 2 or len(set(groups)) > 1 for groups in at.values())
+
+
 def of_mesh(mesh, plan, sizes):
     quality, volume = gamma(mesh.points, mesh.cells)
     worst = mesh.points[mesh.cells[np.argmin(quality)]].mean(axis=0)[:plan.dim]
     return {"dimension": plan.dim, "nodes": len(mesh.points), "cells": len(mesh.cells), "fracture faces": int(sum(
                 plan.is_fracture(k) for k in mesh.face_owner)),
-            "intersections": len(mesh.intersections), "volume": float(volume.sum()),
+            "intersections": n_intersections(mesh, plan), "volume": float(volume.sum()),
             "gamma": {"min": float(quality.min()), "percentile 1": float(np.percentile(quality, 1)), "median": float(np.median(quality)),
                       "worst at": [float(x) for x in worst]},
             "tolerance": plan.network.tolerance, "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
@@ -67,7 +79,7 @@ def as_text(report):
              f"gamma of cells: least {g['min']:.3g}, median {g['median']:.3g}"]
     for name, s in report["sets"].items():
         lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
-                     f"shortest {s['shortest edge']:.3g} m, asked for {s['median size asked for']:.3g} m")
+                     f"shortest {s['shortest edge']:.3g} m, asked for {s['median size asked for']:.3g} m, less towards tips and in gaps")
     shown = report["repairs"][:10]
     lines += [f"  {line}" for line in shown]
     if len(shown) < len(report["repairs"]):

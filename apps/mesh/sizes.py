@@ -5,9 +5,10 @@ import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
 from shapely.geometry import Point
-from shapes import diameter
+from shapes import NetworkError, diameter
 
 TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # size at tips / size at the fracture, where none is given
+CELL = {2: np.sqrt(3) / 4, 3: 1 / (6 * np.sqrt(2))}  # area or volume of a regular cell with edges of 1
 LEAST_RATIO = {2: 1 / 20, 3: 1 / 8}  # narrow gaps are resolved down to this
 
 
@@ -21,7 +22,8 @@ class Sizes:
         self.edges = np.array(list(plan.edges))
         self.segments = plan.graph.segments()
         self.at_edge = np.array([self.edge_size(edge, of) for edge, of in plan.edges.items()])
-        self.found = [], []
+        self.check_number()
+        self.found = [np.empty((0, 3))], [np.empty(0)]
         self.take_edges()
         if plan.dim == 2:
             self.take_points()
@@ -34,6 +36,48 @@ class Sizes:
         x = fracture.points
         length = diameter(x) if self.plan.dim == 3 else np.linalg.norm(np.diff(x, axis=0), axis=1).sum()
         return min(self.network.size, self.network.relative_size * length)
+
+    def expected_cells(self):
+        """About how many cells there will be, by the entry that asks for them: of each edge, point and surface the integral
+        of 1 / (volume of a regular cell) over the space in which edges of cells grow from its size to the largest."""
+        network, dim, largest, found = self.network, self.plan.dim, self.network.size, Counter()
+        found["size"] = network.domain.volume / largest**dim
+
+        def add(entry, size, measure, of_dim):
+            s, g = min(size, largest), network.growth
+            found[entry] += measure * {
+                (2, 1): 2 / g * (1 / s - 1 / largest), (3, 2): 1 / g * (1 / s**2 - 1 / largest**2),
+                (2, 0): 2 * np.pi / g**2 * (np.log(largest / s) + s / largest - 1), (3, 1): np.pi / (g**2 * s) * (1 - s / largest)**2}[dim, of_dim]
+
+        tips = "size at tips" if network.size_at["tips"] else "relative size"
+        length = np.linalg.norm(self.segments[:, 1] - self.segments[:, 0], axis=1)
+        for (edge, of), size, measure in zip(self.plan.edges.items(), self.at_edge, length):
+            around = min(self.of_owner[k] for k in of)
+            entry = tips if edge in self.tips else "size at intersections" if edge in self.intersections else "size at boundary"
+            if dim == 2:
+                add("size at boundary" if size < around else "relative size", size, measure, 1)
+            elif size < around:
+                add(entry, size, measure, 1)
+        if dim == 2:
+            at = self.plan.graph.parents_at()
+            for p in self.tips:
+                add(tips, self.tip_size([k for k in at[p] if self.plan.is_fracture(k)]), 1, 0)
+            if network.size_at["intersections"]:
+                add("size at intersections", network.size_at["intersections"], len(self.intersections), 0)
+        for k, surface in enumerate(self.plan.surfaces or ()):
+            if surface.feature.kind == "boundary" and network.size_at["boundary"]:
+                add("size at boundary", network.size_at["boundary"], 0.5 * surface.shape.area, 2)
+            elif surface.feature.kind == "fracture":
+                add("relative size", self.of_owner[k], surface.shape.area, 2)
+        return {entry: n / CELL[dim] for entry, n in found.items()}
+
+    def check_number(self):
+        """Refuses sizes that ask for more cells than anyone can want."""
+        cells, most = self.expected_cells(), self.network.most_cells
+        n, entry = sum(cells.values()), max(cells, key=cells.get)
+        if n > most:
+            raise NetworkError(f"Sprekk > Mesh file > network: sizes ask for about {n:.2g} cells, {cells[entry] / n:.0%} of them by "
+                               f"\"{entry}\"; \"most cells\" is {most:g}")
 
     def add(self, points, sizes):
         self.found[0].append(np.atleast_2d(points))

@@ -1,4 +1,5 @@
 """Files of fractures as they are exchanged: CSV of lines, polygons and ellipses, and .fab of FracMan."""
+import csv
 import math
 from dataclasses import dataclass, field
 
@@ -18,7 +19,7 @@ def numbers(words, place, table, first=1):
     found = []
     for k, word in enumerate(words, first):
         try:
-            found.append(float(word))
+            found.append(number(word))
         except ValueError:
             table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no number")
             return None
@@ -28,9 +29,14 @@ def numbers(words, place, table, first=1):
     return np.array(found)
 
 
+def number(word):
+    """As float() reads it, but for 1_000."""
+    return float(word.replace("_", "no number"))
+
+
 def is_number(word):
     try:
-        float(word)
+        number(word)
     except ValueError:
         return False
     return True
@@ -42,6 +48,12 @@ def read_lines(path):
             return file.read().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise NetworkError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is no text in UTF-8'}", [path]) from None
+
+
+def columns(line):
+    """The words of a line, which may be in quotes, without a comment; None where there are none."""
+    line = line.partition("#")[0].strip()
+    return next(csv.reader([line], skipinitialspace=True)) if line else None
 
 
 def lines_row(words, place, table):
@@ -85,17 +97,18 @@ def ellipses_row(words, place, table):
 def read_csv(path, row):
     """A table of lines with commas; empty lines and what follows a # are passed over, as is a line of titles."""
     table, is_first = Table(), True
-    for number, line in enumerate(read_lines(path), 1):
-        line = line.partition("#")[0]
-        if not line.strip():
+    for k, line in enumerate(read_lines(path), 1):
+        words = columns(line)
+        if words is None:
             continue
-        words = line.split(",")
+        if ";" in line.partition("#")[0]:
+            raise NetworkError(f"{path}: line {k}: has semicolons; columns are separated by commas, and numbers have decimal points", [path])
         while len(words) > 1 and not words[-1].strip():  # commas at the end
             words.pop()
         is_title = is_first and not any(is_number(word) for word in words)
         is_first = False
         if not is_title:
-            row(words, f"{path}: line {number}", table)
+            row(words, f"{path}: line {k}", table)
     return table
 
 
@@ -135,9 +148,9 @@ def read_fab(path):
 def read_table(path, kind):
     """The fractures in a file; refuses it with a line for each thing that is wrong. A kind None is that of the columns."""
     if kind is None:
-        lines = (line for line in read_lines(path) if line.strip() and not line.lstrip().startswith("#"))
-        first = next((line.split(",") for line in lines), [])
-        words = first if any(is_number(word) for word in first) else next(lines, "").split(",")
+        rows = (words for words in map(columns, read_lines(path)) if words)
+        first = next(rows, [])
+        words = first if any(is_number(word) for word in first) else next(rows, [])
         kind = "lines" if len(words) == 5 else "polygons"
     table = read_fab(path) if kind == "fab" else read_csv(path, {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind])
     if not table.errors and not table.fractures:

@@ -96,6 +96,8 @@ void Network::describe(base::Section& s) {
           "fractures that come closer without being joined are refused; absent: 1e-4 of the domain's diagonal");
   s.entry(minimum_angle, "minimum angle", "degree", base::between(0, 60),
           "fractures that meet at a smaller angle are refused");
+  s.entry(most_cells, "most cells", "-", base::at_least(1),
+          "sizes that ask for more cells than this, by estimate, are refused before the mesh is made");
   if (s.complete() && fractures.empty()) s.fail("fractures", "missing; a network needs a set of fractures");
 }
 

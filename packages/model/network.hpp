@@ -64,6 +64,7 @@ struct Network {
   Real growth = 0.5;
   std::optional<Real> tolerance, minimum_distance;
   Real minimum_angle = 2;
+  int most_cells = 10000000;
   void describe(base::Section& section);
 
   /// Makes names of files absolute, which are relative to `folder`.

@@ -3,7 +3,8 @@
 import unittest
 
 import numpy as np
-from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers
+from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers, planned
+from msh_file import groups_of
 from orientations import poles, strikes
 from report import gamma
 from shapes import NetworkError, ellipse
@@ -80,7 +81,6 @@ class Lines(Conformity):
         seam = {**SQUARE, "lower corner": [0.0, 0.2], "upper corner": [1.0, 0.4]}
         plan, mesh = self.expect({"a": [[0.5, 0.1], [0.5, 0.9]], "on": [[0.6, 0.4], [0.9, 0.4]]}, {"a": 0.8, "on": 0.3}, regions={"seam": seam},
                                  constraints={"line": {"lines": {"1": numbers([[0.1, 0.6], [0.7, 0.9]])}}})
-        from msh_file import groups_of
         groups = {name: elements for dim, name, elements in groups_of(mesh, plan)}
         x = mesh.points[groups["seam"]][:, :, 1]
         self.assertTrue((x > 0.2 - 1e-12).all() and (x < 0.4 + 1e-12).all())
@@ -176,7 +176,6 @@ class Polygons(Conformity):
     def test_regions(self):
         seam = {**CUBE, "upper corner": [1.0, 1.0, 0.5]}
         plan, mesh = self.expect({"on": square_at(2, 0.5), "b": square_at(0, 0.3)}, {"on": 0.36, "b": 0.36}, regions={"seam": seam})
-        from msh_file import groups_of
         from conformity import sizes_of
         groups = {name: elements for _, name, elements in groups_of(mesh, plan)}
         self.assertAlmostEqual(sizes_of(mesh.points, groups["seam"]).sum(), 0.5, 9)
@@ -197,7 +196,8 @@ class Polygons(Conformity):
 class Refusals(unittest.TestCase):
     def refused(self, fractures, *words, domain=None, lines=1, **entries):
         with self.assertRaises(NetworkError) as caught:
-            meshed(network(fractures, domain, **entries))
+            plan, mesh = meshed(network(fractures, domain, **entries))
+            groups_of(mesh, plan)
         told = str(caught.exception)
         for word in words:
             self.assertIn(word, told)
@@ -208,12 +208,29 @@ class Refusals(unittest.TestCase):
         self.refused({"a": a, "b": [[0.3, 0.5], [0.9, 0.5]]}, *both, "lie on each other")
         self.refused({"a": a, "b": a[::-1]}, *both, "are the same")
         self.refused({"a": a, "b": [[0.2, 0.5], [0.8, 0.51]]}, *both, "meet at 0.955 degrees")
+        self.refused({"a": a, "b": [[0.2, 0.495], [0.79, 0.5051]]}, *both, "meet at 0.981 degrees")  # on both sides, told once
         self.refused({"a": a, "b": [[0.5, 0.50005], [0.5, 0.9]]}, *both, "are 5e-05 m apart at (0.5, 0.5)", "minimum distance")
         self.refused({"a": a, "b": [[0.5, 0.49995], [0.5, 0.9]]}, *both, "are 5e-05 m apart")  # sticks out
         self.refused({"a": [[0, 0.2], [0, 0.8]]}, 'fracture "a" of "a": lies on side "west" of domain')
         self.refused({"a": [[1.2, 0.2], [1.5, 0.8]]}, 'fracture "a" of "a": lies outside')
         self.refused({"a": [[0.2, 0.2], [0.2, 0.2]], "b": [[0.1, 0.1], [0.5, 0.1], [0.5, 0.5], [0.2, 0.0]]}, "has no length", "crosses itself", lines=2)
         self.refused({"west": a}, "has the name of a side", domain=SQUARE)
+        self.refused({"a": a}, "tolerance: is 0.5 m, must be at most a hundredth of the domain's diagonal, 0.0141421 m", tolerance=0.5)
+
+    def test_what_is_no_fracture(self):
+        far, square = {"lower corner": [2.0, 2.0], "upper corner": [3.0, 3.0], "corners": [], "faces": {}}, square_at(2, 0.5)
+        self.refused({"a": [[0.2, 0.5], [0.8, 0.5]]}, "regions > seam: has no cell; it lies outside", regions={"seam": far})
+        lines = {"c": {"lines": {"1": numbers([[2, 2], [3, 3]]), "2": numbers([[2, 3], [3, 4]])}}}
+        self.refused({"a": [[0.2, 0.5], [0.8, 0.5]]}, 'constraint "1" of "c": lies outside', 'constraint "2" of "c": lies outside', constraints=lines, lines=2)
+        polygons = {"c": {"polygons": {"1": numbers(square + 2), "2": numbers([[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]])}}}
+        self.refused({"a": square}, 'constraint "1" of "c": lies outside', 'constraint "2" of "c": is not plane', constraints=polygons, lines=2)
+        self.refused({"a": square}, "regions > seam: has no cell", regions={"seam": {**CUBE, "lower corner": [2.0] * 3, "upper corner": [3.0] * 3}})
+
+    def test_advice_is_not_to_join_what_is_closer_than_the_tolerance(self):
+        from checks import too_close
+        plan = planned(network({"a": [[0.2, 0.5], [0.8, 0.5]]}, tolerance=1e-3))[0]
+        self.assertIn("larger", too_close(plan, ("a", "b"), 2e-3, [0, 0]))
+        self.assertNotIn("larger", too_close(plan, ("a", "b"), 1e-4, [0, 0]))
 
     def test_polygons(self):
         a, both = square_at(2, 0.5), ('fracture "a" of "a"', 'fracture "b" of "b"')
@@ -272,15 +289,27 @@ class Random(unittest.TestCase):
         angle = np.degrees(np.arctan2(*(x[:, 1] - x[:, 0]).T))
         self.assertAlmostEqual(angle.mean(), 30, delta=0.5)
 
+    def test_directions_follow_von_mises_distribution(self):
+        """The mean of the cosine of the doubled angle to the mean direction is I1(kappa) / I0(kappa)."""
+        t = np.linspace(0, np.pi, 20001)
+        for kappa in (0.0, 2.0, 20.0):
+            x = self.random(SQUARE, concentration=kappa)
+            cosine = np.cos(2 * (np.arctan2(*(x[:, 1] - x[:, 0]).T) - np.radians(30)))
+            density = np.exp(kappa * (np.cos(t) - 1))
+            mean, square = (np.average(np.cos(t)**k, weights=density) for k in (1, 2))
+            self.assertAlmostEqual(cosine.mean(), mean, delta=4 * np.sqrt((square - mean**2) / len(x)))
+
     def test_poles_follow_fishers_distribution(self):
         """The mean of the cosine of the angle to the mean pole is coth(kappa) - 1/kappa."""
+        def spread(kappa):  # of the cosine: its variance is 1/kappa^2 - 1/sinh(kappa)^2
+            return np.sqrt(1 / kappa**2 - 1 / np.sinh(kappa)**2) if kappa else np.sqrt(1 / 3)
         for kappa in (0.0, 2.0, 20.0):
             x = self.random(CUBE, concentration=kappa)
             normal = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 1])
             normal /= np.linalg.norm(normal, axis=1)[:, None]
             pole = np.array([np.sin(np.pi / 3) * np.cos(np.pi / 6), -np.sin(np.pi / 3) * np.sin(np.pi / 6), np.cos(np.pi / 3)])
             exact = 1 / np.tanh(kappa) - 1 / kappa if kappa else 0
-            self.assertAlmostEqual((normal @ pole).mean(), exact, delta=4 / np.sqrt(len(x)) * (0.6 if kappa < 5 else 0.05))
+            self.assertAlmostEqual((normal @ pole).mean(), exact, delta=4 * spread(kappa) / np.sqrt(len(x)))
         self.assertAlmostEqual(np.linalg.norm(x[0, 0] - x[0, 4]), np.linalg.norm(x[0, 1] - x[0, 5]), 12)
 
     def test_the_seed_fixes_them(self):

@@ -4,8 +4,10 @@ import contextlib
 import importlib.util
 import io
 import json
+import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 from unittest import mock
 
@@ -128,11 +130,44 @@ class Files(MeshTest):
         net = self.write("net.csv", "0.5,0.5,0.5,0.3,0,0,0,0")
         self.refused(net, f"{net}: line 1: has the radii 0.3 and 0", dim=3, kind="ellipses", **self.CUBE)
 
+    def test_numbers_in_quotes(self):
+        self.write("net.csv", 'id,x0,y0,x1,y1', '"a, first","0.2", 0.5,"0.8",0.5')
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 0.6, 9)
+
+    def test_other_numbers_and_columns(self):
+        net = self.write("net.csv", "1,0.2,0.5,0.8,1_0")
+        self.refused(net, f'{net}: line 1: "1_0" in column 5 is no number')
+        for row in ("1;0.2;0.5;0.8;0.5", "1;0,2;0,5;0,8;0,5"):
+            net = self.write("net.csv", "# from a spreadsheet; in metres", row)
+            self.refused(net, f"{net}: line 2: has semicolons; columns are separated by commas")
+
+    def test_closed_rings(self):
+        """The last corner may repeat the first."""
+        ring = "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5"
+        self.write("net.csv", "0,0,0,1,1,1", f"{ring},0.2,0.2,0.5")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36, 9)
+
+    def test_domain_in_the_file_and_in_the_scene(self):
+        net = self.write("net.csv", "0,0,0,2,1,1", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}, domain={"lower corner": [0.0] * 3, "upper corner": [2.0, 1.0, 1.0]}))
+        self.refused(net, f"{net}: tells of a domain from (0, 0, 0) to (2, 1, 1), the scene's is (0, 0, 0) to (1, 1, 1); leave one out", dim=3, **self.CUBE)
+
+    def test_names(self):
+        corners = {"corners": [0.0, 0.0, 1.0, 0.0, 1.0, 1.0], "lower corner": [], "upper corner": []}
+        self.write("net.csv", "1,0.5,0.2,0.8,0.3")
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, domain={**corners, "sides": ["&quot;left, below&quot;", "right", "above"]}))
+        self.assertIn('boundary      "left, below"', self.call("mesh-info", "net.msh", "--fractures", "set")[0])
+        told = self.mesh(self.scene(fractures={'a &quot; b': {"file": "net.csv"}}), expect=1)
+        self.assertIn("has a quotation mark", told)
+
     def test_one_bad_row_of_many(self):
         rows = [f"{k},0.2,{0.2 + 6e-6 * k},0.8,{0.2 + 6e-6 * k}" for k in range(100000)]
         rows[77776] = rows[77776].replace("0.8", "0.8.1")
-        net = self.write("net.csv", *rows)
+        net, begin = self.write("net.csv", *rows), time.monotonic()
         self.refused(net, f'{net}: line 77777: "0.8.1" in column 4 is no number')
+        self.assertLess(time.monotonic() - begin, 20)  # 1 s on an idle machine
 
     def test_bad_fab(self):
         for change, words in (({5: "  1 5 1"}, "line 6: fracture 1 has 5 corners"), ({7: "   2 0.8 x 0.5"}, 'line 8: "x" in column 3 is no number'),
@@ -175,12 +210,63 @@ class Runs(MeshTest):
             self.mesh(scene, output=output)
         self.assertEqual((self.folder / "a.msh").read_bytes(), (self.folder / "b.msh").read_bytes())
 
+    def test_mesh_is_made_again_by_another_gmsh(self):
+        import gmsh
+        scene = self.simple()
+        self.mesh(scene)
+        with mock.patch.object(gmsh, "__version__", "0.1"):
+            self.assertIn("cells", self.mesh(scene))
+
+    def test_output_that_cannot_be_written(self):
+        """One line without Python's words, and nothing left beside it."""
+        (self.folder / "net.msh").mkdir()
+        told = self.mesh(self.simple(), expect=1)
+        self.assertRegex(told, r"^sprekk: .*scene.xml: .*net.msh.*: Is a directory\n$")
+        self.assertEqual([p.name for p in self.folder.glob("net.msh*")], ["net.msh"])
+        self.write("file", "")
+        told = self.mesh(self.simple(), output="file/net.msh", expect=1)
+        self.assertRegex(told, r"^sprekk: .*scene.xml: .*/file[^\n]*: (Not a directory|File exists)\n$")
+        if Path("/dev/full").exists():
+            (self.folder / f"full.msh.{os.getpid()}").symlink_to("/dev/full")
+            told = self.mesh(self.simple(), output="full.msh", expect=1)
+            self.assertRegex(told, r"^sprekk: .*scene.xml: .*full.msh: No space left on device\n$")
+            self.assertEqual(list(self.folder.glob("full.msh*")), [])
+
+    def test_absurd_sizes_are_refused(self):
+        """Before anything is made of them, and with the entry that causes it; the limit can be set."""
+        self.write("net.csv", *self.LINES)
+        for entry, value in (("relative size", 1e-9), ("size", 1e-6), ("size at boundary", 1e-6), ("growth", 1e-9), ("size at tips", 2e-7)):
+            scene = self.scene(fractures={"set": {"file": "net.csv"}}, **{"relative_size": 0.2, "growth": 1e-4 if "tips" in entry else 0.5, entry.replace(" ", "_"): value})
+            begin, told = time.monotonic(), self.mesh(scene, expect=1)
+            self.assertRegex(told, r'network: sizes ask for about [0-9.e+]+ cells, [0-9]+% of them by "[a-z ]+"; "most cells" is 1e\+07')
+            if entry != "growth":
+                self.assertIn(f'by "{entry}"', told)
+            self.assertLess(time.monotonic() - begin, 20)
+        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, size_at_tips=1e-12), expect=1)
+        self.assertIn("network > size at tips: is 1e-12 m, must be at least 1e-7 of the domain's diagonal, 1.41e-07 m", told)
+        told = self.mesh(self.simple(), "--set", "Mesh file.network.most cells=100", expect=1)
+        self.assertIn('"most cells" is 100', told)
+
+    def test_expected_cells_are_about_as_many_as_are_made(self):
+        from conformity import network, planned
+        from mesher import make_mesh
+        square = [[0.2, 0.2, 0.5], [0.8, 0.2, 0.5], [0.8, 0.8, 0.5], [0.2, 0.8, 0.5]]
+        for fractures, sizes in (({"a": [[0.2, 0.5], [0.8, 0.5]], "b": [[0.5, 0.2], [0.5, 0.8]]}, {"relative_size": 0.05, "size_at_tips": 0.002}),
+                                 ({"a": square}, {"relative_size": 0.06, "size_at_tips": 0.02}), ({"a": square}, {"relative_size": 0.9, "size": 0.05})):
+            plan, sizes = planned(network(fractures, **sizes))
+            ratio = sum(sizes.expected_cells().values()) / len(make_mesh(plan, sizes).cells)
+            self.assertTrue(0.4 < ratio < 2.5, ratio)
+
     def test_report(self):
         self.mesh(self.simple())
         report, info = self.report(), self.call("mesh-info", "net.msh", "--fractures", "set")[0]
         self.assertIn(f"{report['cells']} triangles", info)
         self.assertIn("length 1.2", info)
         self.assertTrue(0.3 < report["gamma"]["min"] <= report["gamma"]["median"] <= 1)
+        for rows in (self.LINES, ("1,0.2,0.2,0.5,0.5", "2,0.5,0.5,0.8,0.2"), ("1,0.2,0.2,0.5,0.5", "2,0.5,0.5,0.8,0.2", "3,0.5,0.5,0.5,0.9")):
+            self.write("net.csv", *rows)  # an X, two that meet at their ends, three
+            self.mesh(self.folder / "scene.xml")
+            self.assertIn(f"intersections {self.report()['intersections']} points", self.call("mesh-info", "net.msh", "--fractures", "set")[0])
         self.assertTrue(0 < report["sets"]["set"]["median edge"] <= 1.5 * report["sets"]["set"]["median size asked for"])
 
     def launch(self, *words, expect=0):
@@ -211,6 +297,17 @@ class Runs(MeshTest):
         self.launch("run", scene, "--output", "again", "--set", "Mesh file.order=2")
         self.assertIn("network", (self.folder / "again/effective_input.xml").read_text())
         self.launch("run", "again/effective_input.xml", "--output", "once more")
+
+    def test_a_file_beside_the_network(self):
+        scene = self.simple()
+        self.mesh(scene, output="other.msh")
+        told = self.launch("run", scene, "--output", "out", "--set", "Mesh file.path=other.msh")
+        self.assertIn('"path" is given by --set; the section "network" is ignored', told)
+        self.assertFalse((self.folder / "out/network.msh").exists())
+        both = self.write("both.xml", scene.read_text().replace('<ParameterList name="network">', '<Parameter name="path" type="string" value="other.msh"/><ParameterList name="network">'))
+        for command in ("run", "check"):
+            self.assertIn('both.xml: Sprekk > Mesh file: has both "path" and "network"; leave one out', self.launch(command, both, expect=1))
+        self.launch("run", both, "--output", "out", "--set", "Mesh file.path=other.msh")
 
     def test_errors_reach_the_user_on_any_number_of_ranks(self):
         scene = self.simple()
