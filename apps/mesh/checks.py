@@ -95,5 +95,5 @@ def check(plan):
     found = found or list(close_edges(plan)) + (list(close_surfaces(plan)) if plan.dim == 3 else [])
     first = {}
     for pair, line in found:
-        first.setdefault(pair, line)
+        first.setdefault(frozenset(pair), line)
     Errors(first.values()).throw()

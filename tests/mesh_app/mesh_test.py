@@ -208,7 +208,7 @@ class Refusals(unittest.TestCase):
         self.refused({"a": a, "b": [[0.3, 0.5], [0.9, 0.5]]}, *both, "lie on each other")
         self.refused({"a": a, "b": a[::-1]}, *both, "are the same")
         self.refused({"a": a, "b": [[0.2, 0.5], [0.8, 0.51]]}, *both, "meet at 0.955 degrees")
-        self.refused({"a": a, "b": [[0.2, 0.495], [0.79, 0.5051]]}, *both, "meet at 0.981 degrees")  # on both sides, told once
+        self.refused({"a": a, "b": [[0.2, 0.505], [0.5, 0.495], [0.8, 0.504]]}, *both, "meet at 1.91 degrees")  # and at 1.72: told once
         self.refused({"a": a, "b": [[0.5, 0.50005], [0.5, 0.9]]}, *both, "are 5e-05 m apart at (0.5, 0.5)", "minimum distance")
         self.refused({"a": a, "b": [[0.5, 0.49995], [0.5, 0.9]]}, *both, "are 5e-05 m apart")  # sticks out
         self.refused({"a": [[0, 0.2], [0, 0.8]]}, 'fracture "a" of "a": lies on side "west" of domain')

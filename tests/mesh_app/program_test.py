@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import time
+import unittest
 from pathlib import Path
 from unittest import mock
 
@@ -297,6 +298,33 @@ class Runs(MeshTest):
         self.launch("run", scene, "--output", "again", "--set", "Mesh file.order=2")
         self.assertIn("network", (self.folder / "again/effective_input.xml").read_text())
         self.launch("run", "again/effective_input.xml", "--output", "once more")
+
+    def quarter_points(self, *words):
+        """Ends of the edges whose node is at a quarter of them, the nearer end first; of a run at order 2."""
+        import read  # of apps/plot
+        self.call("run", "scene.xml", "--output", "out", "--set", "Mesh file.path=net.msh", "--set", "Mesh file.order=2", *words)
+        rock = read.grid(self.folder / "out/bulk_0000.pvtu")
+        x, cells = read.vtk_to_numpy(rock.GetPoints().GetData()), np.array(read.cells(rock.GetCells()))
+        edges = {6: [(0, 1, 3), (1, 2, 4), (2, 0, 5)], 10: [(0, 1, 4), (1, 2, 5), (2, 0, 6), (0, 3, 7), (1, 3, 8), (2, 3, 9)]}[cells.shape[1]]
+        ends = np.concatenate([x[cells[:, [a, b]]] for i, j, _ in edges for a, b in ((i, j), (j, i))])
+        middle = np.concatenate([x[cells[:, [m, m]]][:, 0] for _, _, m in edges for _ in range(2)])
+        return ends[np.linalg.norm(middle - (0.75 * ends[:, 0] + 0.25 * ends[:, 1]), axis=1) < 1e-9]
+
+    @unittest.skipUnless(importlib.util.find_spec("vtkmodules"), "VTK's Python is missing")
+    def test_order_2_has_quarter_points_at_tips(self):
+        self.write("net.csv", *self.LINES)
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, relative_size=0.3))
+        tips = {tuple(x) for x in np.round(self.quarter_points()[:, 0, :2], 9)}
+        self.assertEqual(tips, {(0.2, 0.5), (0.8, 0.5), (0.5, 0.2), (0.5, 0.8)})
+        self.assertEqual(len(self.quarter_points("--set", "Mesh file.tips=plain")), 0)
+
+        self.write("net.csv", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}, relative_size=0.3, size_at_tips=0.1,
+                             domain={"lower corner": [0.0] * 3, "upper corner": [1.0] * 3}))
+        ends = self.quarter_points()
+        self.assertGreater(len(ends), 100)
+        self.assertTrue(np.allclose(abs(ends[:, 0] - 0.5).max(axis=1), 0.3) and np.allclose(ends[:, 0, 2], 0.5))  # on the rim
+        self.assertFalse((np.isclose(abs(ends[:, 1] - 0.5).max(axis=1), 0.3) & np.isclose(ends[:, 1, 2], 0.5)).any())
 
     def test_a_file_beside_the_network(self):
         scene = self.simple()
