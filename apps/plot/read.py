@@ -44,14 +44,18 @@ def results(directory):
 
 def written_steps(directory, kind):
     """(time, file) of each step that DIRECTORY/KIND.pvd lists; none if there is no such file."""
-    pvd = Path(directory) / f"{kind}.pvd"
-    if not pvd.is_file():
+    return [(float(entry.get("timestep")), file) for entry, file in listed(Path(directory) / f"{kind}.pvd")]
+
+
+def listed(path):
+    """(entry, file) of each file that a .pvd or .vtm lists; none if there is no such list."""
+    if not path.is_file():
         return []
     try:
-        entries = xml.parse(pvd).getroot().findall(".//DataSet")
+        entries = xml.parse(path).getroot().findall(".//DataSet")
     except xml.ParseError as error:
-        raise PlotError(f"{pvd}: is no XML ({error})") from None
-    return [(float(entry.get("timestep")), pvd.parent / entry.get("file")) for entry in entries]
+        raise PlotError(f"{path}: is no XML ({error})") from None
+    return [(entry, path.parent / entry.get("file")) for entry in entries]
 
 
 def output(reader, file):
@@ -70,17 +74,12 @@ def joined(grids):
     return append.GetOutput()
 
 
-def complete(file):
-    """The .vtm, all of whose pieces are there."""
-    for entry in xml.parse(file).iter("DataSet") if Path(file).is_file() else ():
-        if not (Path(file).parent / entry.get("file")).is_file():
-            raise PlotError(f"{Path(file).parent / entry.get('file')}: no such file")
-    return file
-
-
 def blocks(file):
     """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
-    tree, found = output(vtkXMLMultiBlockDataReader(), complete(file)), {}
+    for _, piece in listed(Path(file)):
+        if not piece.is_file():  # VTK would go on
+            raise PlotError(f"{piece}: no such file")
+    tree, found = output(vtkXMLMultiBlockDataReader(), file), {}
     for k in range(tree.GetNumberOfBlocks()):
         block = tree.GetBlock(k)
         parts = [block.GetPartition(i) for i in range(block.GetNumberOfPartitions())] if hasattr(block, "GetPartition") else [block]
