@@ -31,22 +31,21 @@ def panels(data):
 
 
 def planes(surface, values):
-    """A polygon of each plane of a fracture, and the mean of the values over its area, of what is a number."""
+    """Of each plane of a fracture a polygon, and the mean of the values over its area, of those that are numbers."""
     corners = surface.corners()
     normals = np.array([orientations.area_vector(x) for x in corners])
     areas = np.linalg.norm(normals, axis=1)
     normals /= areas[:, None]
     heights = np.einsum("ij,ij->i", normals, [x[0] for x in corners]) / np.max(np.ptp(surface.points, axis=0))
     keys = np.column_stack([surface.cell_data["fracture"], np.round(np.column_stack([normals, heights]), 5)])
-    number = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
-    for k in range(np.max(number) + 1):
-        loaded = (number == k) & ~np.isnan(values)
-        yield corners[np.argmax(number == k)], np.average(values[loaded], weights=areas[loaded]) if loaded.any() else np.nan
+    _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    loaded = np.where(np.isnan(values), 0, areas)
+    total, loaded = (np.bincount(number.reshape(-1), weights) for weights in (loaded * np.nan_to_num(values), loaded))
+    return [corners[k] for k in first], np.where(loaded > 0, total / np.where(loaded > 0, loaded, 1), np.nan)
 
 
 def draw_directions(ax, shapes, values, norm, colours):
     """Rose diagram of lines, stereonet of polygons, coloured by their values."""
-    values = np.array(values)
     classes = np.where(np.isnan(values), -1, np.clip(np.floor(10 * np.ma.filled(norm(values), 0)), 0, 9))
     parts = [(colours(np.nan if k < 0 else (k + 0.5) / 10), [shapes[i] for i in np.flatnonzero(classes == k)])
              for k in range(-1, 10)]
@@ -98,8 +97,8 @@ def of_step(rock, joints, title):
             draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
         colour_bar(figure, ax, norm, colours, label, zero=not np.any(values), **bar)
         if k == 1:
-            shapes = ([x[:2, :2] for x in surface.corners()], values) if plane else zip(*planes(surface, values))
-            draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *map(list, shapes), norm, colours)
+            shapes = ([x[:2, :2] for x in surface.corners()], values) if plane else planes(surface, values)
+            draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *shapes, norm, colours)
             if np.isnan(values).any():
                 ax.legend([plt.Rectangle((0, 0), 1, 1, color=colours(np.nan))], ["open"], loc="lower left", bbox_to_anchor=(0, 1))
     return figure
