@@ -61,7 +61,9 @@ TEST(Intersections, AreThoseOfTheMeshHoweverItIsDistributed) {
       for (const auto& at : found) {  // an X and a T
         EXPECT_EQ(at.fractures, at.x[0][0] < 3.5 ? (std::vector<int>{0, 0, 1, 1}) : (std::vector<int>{0, 0, 2}));
         EXPECT_EQ(at.nodes.size(), global.dim() == 2 ? 1u : order + 1u);
-        if (at.x.size() == 3) EXPECT_LT(norm(at.x[0] + at.x[1] - 2.0 * at.x[2]), 1e-12);
+        if (at.x.size() == 3) {
+          EXPECT_LT(norm(at.x[0] + at.x[1] - 2.0 * at.x[2]), 1e-12);
+        }
       }
       EXPECT_EQ(found.empty(), comm->getRank() > 0);
     }
