@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::solve {
 namespace {
 
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
+constexpr Real reach = 2;                       // of a node, in distances of its nearest neighbour: the diagonal of a cube is 1.7
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
 View<Real*> diagonal_sizes(const NodeMatrix& A) {
@@ -57,7 +59,8 @@ Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
 
 }  // namespace
 
-Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes) {
+Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
+               const RCP<const fields::MultiVector>& places) {
   const auto& graph = A.graph;
   const int size = A.height;
   const auto n_rows = graph.n_rows();
@@ -70,6 +73,12 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes)
   using Given = decltype(std::declval<const fields::MultiVector&>().getLocalViewHost(Tpetra::Access::ReadOnly));
   const Given given = modes.is_null() ? Given() : modes->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto motion = [&](LocalIndex row, int m) { return modes.is_null() ? Real(row % size == m) : given(row, m); };
+  if (!places.is_null()) {
+    const auto x = places->getLocalViewHost(Tpetra::Access::ReadOnly);
+    nodes.place.resize(n_rows);
+    for (LocalIndex i = 0; i < n_rows; ++i)
+      for (std::size_t k = 0; k < x.extent(1); ++k) nodes.place[i][k] = x(i, k);
+  }
   std::vector<bool> prescribed(size);
   for (LocalIndex i = 0; i < n_rows; ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
@@ -96,8 +105,32 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes)
   return nodes;
 }
 
-Aggregates aggregate(const Nodes& nodes) {
+Neighbours near_neighbours(const Nodes& nodes) {
+  if (nodes.place.empty()) return nodes.neighbours;
   const auto& [start, neighbour] = nodes.neighbours;
+  const auto distance = [&](LocalIndex i, LocalIndex j) {
+    const auto &a = nodes.place[i], &b = nodes.place[j];
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  };
+  std::vector<Real> nearest(nodes.place.size(), std::numeric_limits<Real>::max());
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    for (std::size_t k = start[i]; k < start[i + 1]; ++k)
+      nearest[i] = std::fmin(nearest[i], distance(static_cast<LocalIndex>(i), neighbour[k]));
+  Neighbours result;
+  result.start.push_back(0);
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    for (std::size_t k = start[i]; k < start[i + 1]; ++k) {
+      const LocalIndex j = neighbour[k];
+      if (distance(static_cast<LocalIndex>(i), j) <= reach * std::fmax(nearest[i], nearest[j])) result.node.push_back(j);
+    }
+    result.start.push_back(result.node.size());
+  }
+  return result;
+}
+
+Aggregates aggregate(const Nodes& nodes) {
+  const auto near = near_neighbours(nodes);
+  const auto& [start, neighbour] = near;
   const auto n = static_cast<LocalIndex>(nodes.free.size());
   Aggregates result;
   auto& of = result.of;
@@ -144,6 +177,12 @@ std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& ag
   coarse.neighbours = coarsen(nodes.neighbours, aggregates);
   coarse.free.assign(aggregates.n, true);
   coarse.n_modes = m;
+  if (!nodes.place.empty()) {
+    coarse.place.assign(aggregates.n, {});
+    for (LocalIndex I = 0; I < aggregates.n; ++I)
+      for (LocalIndex i : members[I])
+        for (int k = 0; k < 3; ++k) coarse.place[I][k] += nodes.place[i][k] / static_cast<Real>(members[I].size());
+  }
   coarse.motion.assign(static_cast<std::size_t>(aggregates.n) * m * m, 0);
   for (LocalIndex I = 0; I < aggregates.n; ++I) {
     const std::size_t rows = members[I].size() * size;

@@ -1,6 +1,7 @@
 // Groups of nodes that become the nodes of a coarser level, and the motions of the finer one that they keep.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "solve/node_matrix.hpp"
@@ -19,13 +20,20 @@ struct Nodes {
   std::vector<bool> free;    ///< [node]: couples to others, ghosts included; those that do not are left to smoothing
   std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
   int n_modes = 0;
+  std::vector<std::array<Real, 3>> place;  ///< [node] m; empty: not known
 };
 
 /// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
-/// null for the constant ones. Collective.
-Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes);
+/// null for the constant ones; `places` [node, dim], null if they are not known. Collective.
+Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
+               const RCP<const fields::MultiVector>& places = Teuchos::null);
 
-/// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours are all in no aggregate yet
+/// The neighbours that couple strongly, by distance: those not much farther than the nearest one of either. In cells
+/// that are much longer than wide only the short edges are left, across which a smoother does little; what they join is
+/// less flat on the next level. All, where places are not known. Stored data.
+Neighbours near_neighbours(const Nodes& nodes);
+
+/// The aggregate of each owned node, -1 of one that is not free: a node whose near neighbours are all in no aggregate yet
 /// makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel and Brezina
 /// 1996). Aggregates hold nodes of one rank only. Stored data.
 struct Aggregates {

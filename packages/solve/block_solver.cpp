@@ -141,7 +141,7 @@ class NodeMultigrid : public BlockSolver {
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     if (multigrid_.is_null())
       multigrid_ = rcp(new Multigrid(block.matrix, block.bulk ? *block.bulk() : *block.matrix, block.block.n_components,
-                                     block.block.near_null_space));
+                                     block.block.near_null_space, block.block.coordinates));
     multigrid_->setup(block.matrix, block.symmetric);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();

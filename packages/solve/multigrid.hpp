@@ -18,9 +18,10 @@ class Multigrid : public fields::Operator {
   static bool can_solve(int n_components, int n_modes);
 
   /// Aggregates by `bulk`, which has the graph of the matrices that follow or less, and no edge across an interface,
-  /// so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
+  /// so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones; `places`
+  /// [node, dim], null: near and far neighbours are alike.
   Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
-            const RCP<const fields::MultiVector>& modes);
+            const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null);
 
   /// Makes ready for the values of a matrix with the graph of the first.
   void setup(const RCP<const CrsMatrix>& matrix, bool symmetric);
