@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -35,7 +36,9 @@ class TipCell {
     Real grad_N[n][dim], grad_psi[n][dim];  ///< in space
   };
 
-  TipCell(const mesh::Mesh& mesh, LocalIndex cell) : tips_(n) {
+  /// `rules` may serve several cells.
+  TipCell(const mesh::Mesh& mesh, LocalIndex cell, std::shared_ptr<TipRules> rules = std::make_shared<TipRules>())
+      : rules_(std::move(rules)), tips_(n) {
     gather_host<shape>(mesh, cell, X_);
     for (int a = 0; a < n; ++a) tips_[a] = mesh.tip[mesh.cells[cell * n + a]];
     balance();
@@ -101,7 +104,7 @@ class TipCell {
   template <class Visit>
   void for_each_reference_point(const Visit& visit) const {
     Real xi[dim];
-    for (const auto& point : tip_rule(shape, tips_, n_points)) {
+    for (const auto& point : rules_->of(shape, tips_, n_points)) {
       std::copy_n(point.xi.begin(), dim, xi);
       visit(xi, point.weight);
     }
@@ -144,9 +147,9 @@ class TipCell {
   static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
   static constexpr int n_face_points = 10;  // fewer than those of a cell, and they decide about equilibrium
 
-  static std::vector<RulePoint> face_rule(const std::vector<char>& tips) {
-    if constexpr (dim == 2) return tip_rule_of_edge(tips, n_face_points);
-    return tip_rule(n_face == 3 ? Shape::triangle : Shape::quadrilateral, tips, n_face_points);
+  const TipRules::Rule& face_rule(const std::vector<char>& tips) const {
+    if constexpr (dim == 2) return rules_->of_edge(tips, n_face_points);
+    return rules_->of(n_face == 3 ? Shape::triangle : Shape::quadrilateral, tips, n_face_points);
   }
 
   static void face_functions(const std::array<Real, 3>& xi, Real (&N)[n_face], Real (&dN)[n_face][2]) {
@@ -209,6 +212,7 @@ class TipCell {
       for (int i = 0; i < dim; ++i) std::copy_n(missing[a * dim + i], dim + 1, correction_[a][i]);
   }
 
+  std::shared_ptr<TipRules> rules_;
   std::vector<char> tips_;  // [node]
   Real X_[n][dim], centre_[dim] = {}, correction_[n][dim][dim + 1] = {}, size_ = 0;
 };

@@ -165,4 +165,16 @@ std::vector<RulePoint> tip_rule_of_edge(const std::vector<char>& tips, int n) {
   return rule;
 }
 
+const TipRules::Rule& TipRules::of(Shape shape, const std::vector<char>& tips, int n) {
+  const auto [at, is_new] = rules_.try_emplace({shape, tips, n});
+  if (is_new) at->second = tip_rule(shape, tips, n);
+  return at->second;
+}
+
+const TipRules::Rule& TipRules::of_edge(const std::vector<char>& tips, int n) {
+  const auto [at, is_new] = edges_.try_emplace({tips, n});
+  if (is_new) at->second = tip_rule_of_edge(tips, n);
+  return at->second;
+}
+
 }  // namespace sprekk::assembly

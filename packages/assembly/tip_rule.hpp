@@ -5,6 +5,9 @@
 #include "mesh/shape.hpp"
 
 #include <array>
+#include <map>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -22,5 +25,17 @@ struct RulePoint {
 ///   tips: [corner] 1 for a tip; at least one is and one is not.
 std::vector<RulePoint> tip_rule(mesh::Shape shape, const std::vector<char>& tips, int n);
 std::vector<RulePoint> tip_rule_of_edge(const std::vector<char>& tips, int n);
+
+/// Rules that were asked for before: those of the few ways in which cells and faces have tips.
+class TipRules {
+ public:
+  using Rule = std::vector<RulePoint>;
+  const Rule& of(mesh::Shape shape, const std::vector<char>& tips, int n);
+  const Rule& of_edge(const std::vector<char>& tips, int n);
+
+ private:
+  std::map<std::tuple<mesh::Shape, std::vector<char>, int>, Rule> rules_;
+  std::map<std::pair<std::vector<char>, int>, Rule> edges_;
+};
 
 }  // namespace sprekk::assembly

@@ -93,7 +93,7 @@ class ElasticPlasticJump final : public assembly::Module {
     assembly::FaceValues shares{};
     const LocalIndex cell = face.cell[side];
     if (!assembly::has_tip(*mesh_, cell)) return shares;
-    const auto means = assembly::TipCell<shape>(*mesh_, cell).face_means(face.local_face[side]);
+    const auto means = assembly::TipCell<shape>(*mesh_, cell, rules_).face_means(face.local_face[side]);
     for (int k = 0; k < n; ++k) {
       const int node = mesh::face_nodes(shape)[face.local_face[side]][k];
       for (int l = 0; l < n; ++l)
@@ -112,6 +112,7 @@ class ElasticPlasticJump final : public assembly::Module {
 
   ElasticPlasticJumpParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
+  std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;

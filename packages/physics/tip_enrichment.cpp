@@ -188,21 +188,37 @@ class TipEnrichment final : public assembly::Module {
                                                                          : parameters_.elasticity_of_cell[cell]];
   }
 
+  Tip tip(LocalIndex cell) const { return {*mesh_, cell, rules_}; }
+
   void build_cells() {
     constexpr int size = n * dim;
     cell_ = {View<Real***>("mixed", cell_of_.size(), size, size), View<Real***>("own", cell_of_.size(), size, size)};
     const auto mixed = Kokkos::create_mirror_view(cell_.mixed), own = Kokkos::create_mirror_view(cell_.own);
     for (std::size_t c = 0; c < cell_of_.size(); ++c) {
       const auto& elasticity = law(cell_of_[c]);
-      Tip(*mesh_, cell_of_[c]).for_each_point([&](const auto&, Real volume, const auto&, const auto& v) {
+      Real mixed_moment[n][n][dim][dim] = {}, own_moment[n][n][dim][dim] = {};  // integrals of grad_i grad_j
+      tip(cell_of_[c]).for_each_point([&](const auto&, Real volume, const auto&, const auto& v) {
         for (int a = 0; a < n; ++a)
-          for (int b = 0; b < n; ++b)
-            for (int i = 0; i < dim; ++i)
+          for (int i = 0; i < dim; ++i) {
+            const Real N = volume * v.grad_N[a][i], psi = volume * v.grad_psi[a][i];
+            for (int b = 0; b < n; ++b)
               for (int j = 0; j < dim; ++j) {
-                mixed(c, a * dim + i, b * dim + j) += volume * elasticity.stiffness(v.grad_N[a], v.grad_psi[b], i, j);
-                own(c, a * dim + i, b * dim + j) += volume * elasticity.stiffness(v.grad_psi[a], v.grad_psi[b], i, j);
+                mixed_moment[a][b][i][j] += N * v.grad_psi[b][j];
+                own_moment[a][b][i][j] += psi * v.grad_psi[b][j];
               }
+          }
       });
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b) {
+          Real of_mixed[dim][dim], of_own[dim][dim];
+          elasticity.stiffness(mixed_moment[a][b], of_mixed);
+          elasticity.stiffness(own_moment[a][b], of_own);
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j) {
+              mixed(c, a * dim + i, b * dim + j) = of_mixed[i][j];
+              own(c, a * dim + i, b * dim + j) = of_own[i][j];
+            }
+        }
     }
     Kokkos::deep_copy(cell_.mixed, mixed);
     Kokkos::deep_copy(cell_.own, own);
@@ -220,7 +236,7 @@ class TipEnrichment final : public assembly::Module {
       const auto& face = mesh_->fracture_faces[f];
       const int local_face = face.local_face[side];
       const auto& elasticity = law(face.cell[side]);
-      const Tip tip(*mesh_, face.cell[side]);
+      const Tip tip = this->tip(face.cell[side]);
       tip.for_each_point([&](const Real(&xi)[dim], Real volume, const auto&, const auto& v) {
         Real db[dim], gb[dim] = {};
         Tip::Cell::bubble(local_face, xi, db);
@@ -257,7 +273,7 @@ class TipEnrichment final : public assembly::Module {
     const auto& stress = parameters_.initial_stress;
     if (parameters_.body_force.empty() && stress.empty()) return;
     Real sigma[dim][dim] = {};
-    Tip(*mesh_, cell).for_each_point([&](const auto&, Real volume, const auto& x, const auto& v) {
+    tip(cell).for_each_point([&](const auto&, Real volume, const auto& x, const auto& v) {
       if (!stress.empty()) stress.at(x, sigma);
       for (int i = 0; i < dim; ++i) {
         const Real force = parameters_.body_force.empty() ? 0 : parameters_.body_force(i, cell, x, t);
@@ -276,13 +292,13 @@ class TipEnrichment final : public assembly::Module {
       if (face.boundary != traction.boundary ||
           (traction.region >= 0 && mesh_->cell_region[face.cell] != traction.region))
         continue;
-      Tip(*mesh_, face.cell)
-          .for_each_face_point(face.local_face, [&](const auto&, const auto& psi, const auto& area, const auto& x) {
-            for (int k = 0; k < Tip::n_face; ++k)
-              for (int i = 0; i < dim; ++i)
-                add(load, face.cell, mesh::face_nodes(shape)[face.local_face][k], i,
-                    psi[k] * mesh::norm(area) * traction.value[i](x, t));
-          });
+      tip(face.cell).for_each_face_point(face.local_face,
+                                         [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+                                           for (int k = 0; k < Tip::n_face; ++k)
+                                             for (int i = 0; i < dim; ++i)
+                                               add(load, face.cell, mesh::face_nodes(shape)[face.local_face][k], i,
+                                                   psi[k] * mesh::norm(area) * traction.value[i](x, t));
+                                         });
     }
   }
 
@@ -294,14 +310,14 @@ class TipEnrichment final : public assembly::Module {
     const auto& stress = parameters_.initial_stress;
     const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
     const Real sign = side == mesh::plus ? 1 : -1;
-    Tip(*mesh_, cell)
-        .for_each_face_point(face.local_face[side], [&](const auto&, const auto& psi, const auto& area, const auto& x) {
-          const auto traction = stress.template traction<dim>(x, face.frame[0]);
-          for (int k = 0; k < Tip::n_face; ++k)
-            for (int i = 0; i < dim; ++i)
-              add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i,
-                  -sign * psi[k] * mesh::norm(area) * (traction[i] - mean[i]));
-        });
+    tip(cell).for_each_face_point(face.local_face[side],
+                                  [&](const auto&, const auto& psi, const auto& area, const auto& x) {
+                                    const auto traction = stress.template traction<dim>(x, face.frame[0]);
+                                    for (int k = 0; k < Tip::n_face; ++k)
+                                      for (int i = 0; i < dim; ++i)
+                                        add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i,
+                                            -sign * psi[k] * mesh::norm(area) * (traction[i] - mean[i]));
+                                  });
   }
 
   /// The fluid pushes the sides apart with its mean pressure over the face.
@@ -319,6 +335,7 @@ class TipEnrichment final : public assembly::Module {
   int q_ = -1;
   bool loaded_ = false;
   std::vector<LocalIndex> cell_of_;  // [entity of tip_cells]
+  std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   EnrichedCell<shape> cell_;
   EnrichedSide<shape> side_;
   std::unique_ptr<Cells> cells_;

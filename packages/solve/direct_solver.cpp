@@ -112,7 +112,10 @@ class DirectSolver : public LinearSolver {
   }
 
   /// All rows of the matrix on rank 0.
-  void gather() { factored_ = Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(matrix_, *to_root_); }
+  void gather() {
+    factored_ = matrix_;
+    if (comm_->getSize() > 1) factored_ = Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(matrix_, *to_root_);
+  }
 
   /// Starts MUMPS on its own communicator and tells it the graph.
   void start(const LinearSystem& system) {

@@ -83,14 +83,17 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
   return chosen;
 }
 
+}  // namespace
+
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> smoother,
+  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> smoother, bool exact,
         RCP<const Operator> order_one)
       : A_(system.joined_operator()),
         rows_(smoothed.rows()),
         smoothed_map_(smoothed.matrix()->getRowMap()),
         smoother_(smoother),
+        exact_(exact),
         order_one_(order_one),
         P_(system.diagonal.front().block.interpolation),
         map_(system.joined->map(0)),
@@ -100,12 +103,19 @@ class Cycle : public Operator {
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
     MultiVector x(b.getMap(), b.getNumVectors()), r(b.getMap(), b.getNumVectors());
-    smooth(b, x);
-    residual(b, x, r);
-    correct(r, x);
+    if (!exact_) {
+      smooth(b, x);
+      residual(b, x, r);
+    }
+    correct(exact_ ? b : r, x);
     residual(b, x, r);
     smooth(r, x);
     y.update(alpha, x, beta);
+  }
+
+  void start(const Vector& b, Vector& x) const {
+    x.putScalar(0);
+    if (exact_) smooth(b, x);
   }
 
  private:
@@ -155,13 +165,13 @@ class Cycle : public Operator {
   RCP<const Operator> A_;
   View<LocalIndex*> rows_;
   RCP<const Map> smoothed_map_;
-  RCP<const Operator> smoother_, order_one_;
+  RCP<const Operator> smoother_;
+  bool exact_;  // the smoother leaves no residual in its rows
+  RCP<const Operator> order_one_;
   RCP<const CrsMatrix> P_;
   RCP<const Map> map_;
   Real scale_;
 };
-
-}  // namespace
 
 bool have_fine_level(const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
@@ -173,7 +183,7 @@ bool have_fine_level(const std::vector<Block>& blocks) {
 FineLevel::FineLevel(const ParameterList& muelu, const std::vector<Block>& blocks)
     : order_one_(make_multigrid(muelu, blocks.front())) {}
 
-void FineLevel::setup(const LinearSystem& system) {
+void FineLevel::set_up_order_one(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
   const auto& P = first.block.interpolation;
   std::function<RCP<CrsMatrix>()> bulk;
@@ -185,8 +195,13 @@ void FineLevel::setup(const LinearSystem& system) {
     matrix = product_;
   }
   order_one_->setup({first.block, matrix, bulk, system.symmetric});
+}
+
+void FineLevel::setup(const LinearSystem& system, bool keeps) {
+  if (!keeps) set_up_order_one(system);
   if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
   smoothed_->update();
+  const auto& P = system.diagonal.front().block.interpolation;
   RCP<const Operator> smoother;
   if (P.is_null()) {
     if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips"));
@@ -195,7 +210,11 @@ void FineLevel::setup(const LinearSystem& system) {
   } else {
     smoother = gauss_seidel(smoothed_->matrix());
   }
-  cycle_ = rcp(new Cycle(system, *smoothed_, smoother, order_one_->inverse()));
+  cycle_ = rcp(new Cycle(system, *smoothed_, smoother, P.is_null(), order_one_->inverse()));
 }
+
+RCP<const Operator> FineLevel::inverse() const { return cycle_; }
+
+void FineLevel::start(const Vector& b, Vector& x) const { cycle_->start(b, x); }
 
 }  // namespace sprekk::solve

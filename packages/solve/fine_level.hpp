@@ -9,26 +9,34 @@ namespace sprekk::solve {
 /// Whether the first of these blocks has a finer level than order 1, and all others enrich it.
 bool have_fine_level(const std::vector<Block>& blocks);
 
+class Cycle;
+
 /// The symmetric two-level cycle for a system of such blocks,
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
 /// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
 /// enrich it. S works on the unknowns that order 1 does not have, and on those that couple to them: of order 2 on all,
 /// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve on
-/// rank 0.
+/// rank 0. This one leaves no residual in its rows, so the next cycle would find none there: a Krylov method that
+/// starts from S b does without the first of the two, and finds the same.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);
-  /// Makes ready for these values. Throws where a library does. Collective.
-  void setup(const LinearSystem& system);
-  RCP<const fields::Operator> inverse() const { return cycle_; }
+  /// Makes ready for these values; `keeps`: multigrid stays that of earlier ones. Throws where a library does.
+  /// Collective.
+  void setup(const LinearSystem& system, bool keeps = false);
+  RCP<const fields::Operator> inverse() const;
+  /// x <- where Krylov's method must start from: S b where that is exact, else 0.
+  void start(const Vector& b, Vector& x) const;
   SolverCost order_one_cost() const { return order_one_->costs().front(); }
 
  private:
+  void set_up_order_one(const LinearSystem& system);
+
   RCP<BlockSolver> order_one_;
   RCP<CrsMatrix> product_;                  // P^T A P
   std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   RCP<DirectInverse> direct_;               // their inverse, of blocks that enrich
-  RCP<const fields::Operator> cycle_;
+  RCP<const Cycle> cycle_;
 };
 
 }  // namespace sprekk::solve

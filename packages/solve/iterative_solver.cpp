@@ -2,6 +2,8 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <MueLu_MasterList.hpp>
+#include <Teuchos_CommHelpers.hpp>
+#include <cmath>
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
@@ -18,7 +20,7 @@ using Teuchos::ParameterList;
 ParameterList krylov_defaults() {
   ParameterList list("Belos");
   list.set("Maximum Iterations", 500);
-  list.set("Num Blocks", 200, "basis of GMRES");
+  list.set("Num Blocks", 60, "basis of GMRES");
   list.set("Implicit Residual Scaling", "Norm of RHS");
   list.set("Explicit Residual Scaling", "Norm of RHS");
   return list;
@@ -79,28 +81,16 @@ class IterativeSolver : public LinearSolver {
 
   bool reads_matrix() const override { return coarse_ != nullptr; }
 
+  /// Multigrid of an earlier matrix stays, as long as solves with it are worth it.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
+    kept_ = !renew_ && !preconditioner_.is_null() && solvers_.size() <= 1 && system.symmetric == system_.symmetric &&
+            n_changed(*system.diagonal.front().matrix) <= most_changed;
+    system_ = system;
     symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
-    failure_.clear();
-    for (std::size_t r = 0; r < solvers_.size() && failure_.empty(); ++r)
-      prepare(system.diagonal[r].block.name, [&] { solvers_[r]->setup(system.diagonal[r]); });
-    if (fine_level_)
-      prepare(system.diagonal.front().block.name,
-              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system); }); });
-    if (!failure_.empty()) {
-      make_solvers(blocks_);  // what the libraries left may differ among ranks
-      preconditioner_ = Teuchos::null;
-      return failure_;
-    }
-    if (fine_level_) {
-      ++fine_cost_->n_setups;
-      preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
-    } else {
-      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system, solvers_);
-    }
+    make_preconditioner();
     return failure_;
   }
 
@@ -108,17 +98,24 @@ class IterativeSolver : public LinearSolver {
     if (coarse_) return coarse_->solve(b, x, tolerance);
     LinearReport report;
     x.putScalar(0);
-    report.reason = failure_;
     if (!failure_.empty() || b.normInf() == 0) {
+      report.reason = failure_;
       report.converged = failure_.empty();
       return report;
     }
-    try {
-      base::collectively(*comm_, [&] { refine(b, x, tolerance, report); });
-    } catch (const Error& error) {
-      report.reason = fmt::format("iterative solve: {}", gist(error.what()));
-      return report;
+    const int expected = static_cast<int>(std::ceil(-pace_ * std::log10(tolerance)));
+    iterate(b, x, tolerance, kept_ ? expected + most_more : 0, report);
+    if (kept_ && report.reason.empty() && !(report.residual <= 2 * tolerance)) {
+      kept_ = false;
+      make_preconditioner();
+      report.reason = failure_;
+      if (failure_.empty()) iterate(b, x, tolerance, 0, report);
+    } else if (kept_) {
+      renew_ = report.iterations > expected + most_more / 2;
+    } else if (report.residual < 0.1) {
+      pace_ = -report.iterations / std::log10(std::max(report.residual, tolerance));
     }
+    if (!report.reason.empty()) return report;
     report.converged = report.residual <= std::max(10 * tolerance, acceptable_linear_residual);
     if (!report.converged)
       report.reason = fmt::format("iterative solve: relative residual {:.1e} after {} iterations, {:.0e} was asked for",
@@ -163,6 +160,52 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
+  /// How many rows have another diagonal than when multigrid was made.
+  GlobalIndex n_changed(const CrsMatrix& matrix) const {
+    Vector diagonal(matrix.getRowMap());
+    matrix.getLocalDiagCopy(diagonal);
+    const auto now = diagonal.getLocalViewHost(Tpetra::Access::ReadOnly),
+               then = diagonal_->getLocalViewHost(Tpetra::Access::ReadOnly);
+    GlobalIndex here = 0, anywhere = 0;
+    for (std::size_t i = 0; i < now.extent(0); ++i)
+      here += std::fabs(now(i, 0) - then(i, 0)) > much * std::fabs(then(i, 0));
+    Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 1, &here, &anywhere);
+    return anywhere;
+  }
+
+  /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
+  void make_preconditioner() {
+    failure_.clear();
+    if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null()) {
+      diagonal_ = rcp(new Vector(first->getRowMap()));
+      first->getLocalDiagCopy(*diagonal_);
+    }
+    for (std::size_t r = 0; r < solvers_.size() && failure_.empty() && !kept_; ++r)
+      prepare(system_.diagonal[r].block.name, [&] { solvers_[r]->setup(system_.diagonal[r]); });
+    if (fine_level_)
+      prepare(system_.diagonal.front().block.name,
+              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system_, kept_); }); });
+    renew_ = false;
+    if (!failure_.empty()) {
+      make_solvers(blocks_);  // what the libraries left may differ among ranks
+      preconditioner_ = Teuchos::null;
+    } else if (fine_level_) {
+      ++fine_cost_->n_setups;
+      preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
+    } else if (!kept_) {
+      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system_, solvers_);
+    }
+  }
+
+  /// Goes on from x. Leaves a reason only where the library gives up.
+  void iterate(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
+    try {
+      base::collectively(*comm_, [&] { refine(b, x, tolerance, most, report); });
+    } catch (const Error& error) {
+      report.reason = fmt::format("iterative solve: {}", gist(error.what()));
+    }
+  }
+
   template <class Work>
   void prepare(const std::string& block, const Work& work) {
     try {
@@ -174,21 +217,23 @@ class IterativeSolver : public LinearSolver {
 
   /// Krylov's method updates its residual, which rounding drives away from the true one where the matrix is nearly
   /// singular. Then it solves for what is left, as long as that helps.
-  void refine(const Vector& b, Vector& x, Real tolerance, LinearReport& report) {
+  void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
     Vector r(b, Teuchos::Copy), dx(b.getMap());
     Real before = 1;
-    bool ended = false;
-    do {
-      if (report.iterations > 0) before = report.residual;
+    if (fine_level_ && report.iterations == 0) fine_level_->start(b, x);
+    if (fine_level_ || report.iterations > 0) report.residual = before = relative_residual(*matrix_, b, x, r);
+    for (bool ended = true; ended && before > tolerance;) {
       dx.putScalar(0);
-      ended = iterate(r, dx, tolerance / before, report.iterations);
+      ended = krylov(r, dx, tolerance / before, most, report.iterations);
       x.update(1, dx, 1);
       report.residual = relative_residual(*matrix_, b, x, r);
-    } while (ended && report.residual > 2 * tolerance && report.residual < 0.1 * before);
+      if (report.residual <= 2 * tolerance || report.residual >= 0.1 * before) break;
+      before = report.residual;
+    }
   }
 
-  /// Adds to the iterations; false where there are too many.
-  bool iterate(const Vector& b, Vector& x, Real tolerance, int& iterations) {
+  /// Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are too many.
+  bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
         rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
@@ -199,6 +244,7 @@ class IterativeSolver : public LinearSolver {
     list->remove("Solver Type");
     if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
     list->get("Convergence Tolerance", tolerance);
+    if (most > 0) list->set("Maximum Iterations", std::min(most, list->get<int>("Maximum Iterations")));
     Belos::SolverFactory<Real, MultiVector, Operator> factory;
     const auto solver = factory.create(method, list);
     solver->setProblem(problem);
@@ -216,7 +262,13 @@ class IterativeSolver : public LinearSolver {
   RCP<const Comm> comm_;
   RCP<const Operator> matrix_;
   RCP<const Operator> preconditioner_;
-  bool symmetric_ = false;
+  static constexpr Real much = 0.1;        // that a diagonal may change,
+  static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
+  static constexpr int most_more = 4;      // iterations that it may then take more
+  LinearSystem system_;
+  RCP<Vector> diagonal_;                                   // when multigrid was made
+  bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
+  Real pace_ = 0;                                          // iterations for a digit, with new multigrid
   std::string failure_ = "the matrix was not set up";
 };
 

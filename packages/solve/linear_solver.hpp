@@ -27,7 +27,7 @@ struct LinearSolverOptions {
   Real tolerance = 1e-12;              ///< relative residual that is asked for
   bool forcing = true;                 ///< less is asked for while faces still change state
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
-  long long direct_limit_3d = 20000;   ///< auto: the same in 3D
+  long long direct_limit_3d = 5000;    ///< auto: the same in 3D
   std::optional<bool> reproducible;    ///< the direct solver factors on one rank; absent: no
   Teuchos::ParameterList mumps, belos, muelu;
 

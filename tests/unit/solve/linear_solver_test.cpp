@@ -132,6 +132,31 @@ TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
   }
 }
 
+/// Diagonals of so many first rows of each rank are raised by a half; the number of multigrids made till then.
+int setups_after(LocalIndex n_changed) {
+  Grid grid(48);
+  const auto& block = grid.problem.blocks()[0];
+  const auto solver = solve::make_iterative_solver({}, grid.problem.blocks());
+  Vector b(grid.matrix->getRangeMap()), x(grid.matrix->getDomainMap());
+  b.putScalar(1);
+  for (const LocalIndex n : {LocalIndex(0), n_changed}) {
+    const auto local = grid.matrix->getLocalMatrixHost();
+    const auto &rows = *grid.matrix->getRowMap(), &columns = *grid.matrix->getColMap();
+    for (LocalIndex row = 0; row < std::min(n, local.numRows()); ++row)
+      for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+        if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= 1.5;
+    EXPECT_EQ(solver->setup(system_of(grid.matrix, block, true)), "");
+    const auto report = solver->solve(b, x, 1e-10);
+    EXPECT_TRUE(report.converged && report.residual < 1e-9) << report.residual;
+  }
+  return solver->costs().front().n_setups;
+}
+
+TEST(IterativeSolver, KeepsMultigridWhileFewRowsChange) {
+  EXPECT_EQ(setups_after(4), 1);
+  EXPECT_EQ(setups_after(40), 2);
+}
+
 TEST(IterativeSolver, SolvesLessThanACoarseLevel) {
   Grid grid(4);
   const auto solver = solve::make_iterative_solver({}, grid.problem.blocks());

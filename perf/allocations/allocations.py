@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""What the program allocates in a step: at the beginning of a run, and after a thousand steps.
+
+A run of N steps less one of N - 2 steps is what two steps allocate, there and back of a cycle; counter.cpp counts."""
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "perf/krylov"))
+
+import linear  # noqa: E402
+
+SCENE = "contact/cycles_2d.xml"
+SERIES = {"direct": ((), 1000), "iterative": (("Mesh.cells={24, 24}", "Solver.Linear solver.type=iterative"), 200)}  # and the late step
+EARLY, QUICK_LATE = 10, 100
+REPEATED = 3  # results.json is written after five seconds as well: the smallest counts
+MORE = 0.01  # that a late step may allocate, of an early one's: names of more digits, longer texts
+COLUMNS = {"solver": "", "step": "d", "calls": ".0f", "kB": ".0f"}
+
+
+def total(options, sets, steps):
+    """(calls, bytes) of a whole run, of whose steps only the last is written."""
+    return min(run(options, sets, steps) for _ in range(REPEATED))
+
+
+def run(options, sets, steps):
+    file, directory = options.output / "total.json", options.output / "run"
+    entries = (*sets, *options.set, f"Time.end={steps}", f"Time.steps={steps}", f"Output.every={steps}")
+    file.unlink(missing_ok=True)
+    done = subprocess.run([str(options.binary), "run", str(ROOT / "xml" / SCENE), "--output", str(directory), *(word for entry in entries for word in ("--set", entry))],
+                          capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env={**os.environ, "OMP_NUM_THREADS": "1", "LD_PRELOAD": str(options.counter), "SPREKK_ALLOCATIONS": str(file.resolve())})
+    if done.returncode:
+        sys.exit(f"allocations: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+    told = [json.loads(line) for line in file.read_text().splitlines()]
+    return max((process["calls"], process["bytes"]) for process in told)  # MPI's own processes do less
+
+
+def of_step(options, sets, step):
+    """(calls, bytes) of a step, the mean of two."""
+    return [(after - before) / 2 for after, before in zip(total(options, sets, step), total(options, sets, step - 2))]
+
+
+def main(words):
+    parser = linear.parser("allocations", __doc__)
+    parser.add_argument("--counter", type=Path, default=ROOT / "build/perf/allocations/liballocations.so", help="what counter.cpp became")
+    options = parser.parse_args(words)
+    chosen = linear.matching(options, SERIES)
+    options.output.mkdir(parents=True, exist_ok=True)
+    table, most = linear.Table(COLUMNS, 22), 0
+    for name in chosen:
+        sets, last = SERIES[name]
+        found = {step: of_step(options, sets, step) for step in (EARLY, QUICK_LATE if options.quick else last)}
+        for step, (calls, size) in found.items():
+            table.add([name, step, calls, size / 1e3])
+        early, late = found.values()
+        most = max([most, *(b / max(a, 1) - 1 for a, b in zip(early, late))])
+    table.write(options.output / "allocations.csv")
+    wrong = linear.missed({"growth": most}, {"growth": MORE})
+    print("\n".join(["", *wrong, f"allocations.csv in {options.output}", f"growth={most:.4f}"]))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
