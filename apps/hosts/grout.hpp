@@ -48,7 +48,8 @@ struct GroutedSide {
 inline auto make_grout(const mesh::Mesh& mesh, Real h, Real K, const std::string& local_group = "fracture face") {
   const fields::Field pressure{"grout pressure", fields::Entity::fracture_face, 1, "Pa"};
   assembly::Description grout{"grout", fmt::format("h = {} m, K = {} Pa", h, K)};
-  grout.unknowns = {{pressure, assembly::Quantity::stress, assembly::Quantity::volume, false, local_group}};
+  grout.unknowns = {
+      {pressure, assembly::Quantity::stress, assembly::Quantity::volume, assembly::NearNullSpace::none, local_group}};
   grout.linear = true;  // and symmetric
   return mesh::for_shape(mesh.shape, [&](auto shape) {
     return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes<shape()>(mesh), h / K});

@@ -1,6 +1,7 @@
 #include "assembly/constraints.hpp"
 
 #include "base/check.hpp"
+#include "mesh/facets.hpp"
 
 #include <fmt/ranges.h>
 
@@ -54,10 +55,28 @@ Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                    [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
 }
 
+/// Of a field on facets: one entry for each, at the mean of its corners.
+Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
+                      const std::vector<DirichletCondition>& conditions) {
+  Held held;
+  for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
+    for (const auto& face : mesh.boundary_faces) {
+      const int region = conditions[k].region;
+      if (face.boundary != conditions[k].boundary || (region >= 0 && mesh.cell_region[face.cell] != region)) continue;
+      const LocalIndex facet = mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face];
+      const auto x = mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face));
+      for (int c = 0; c < n_components && (facet + 1) * n_components <= n_owned; ++c)
+        if (conditions[k].values[c]) held.entries.push_back({GlobalIndex(facet) * n_components + c, k, c, x});
+    }
+  return held;
+}
+
 /// Of a field on enriched nodes: those of faces with a tip, for it vanishes on others.
 Held find_held(const mesh::Mesh& mesh, const fields::Layout& layout,
                const std::vector<DirichletCondition>& conditions) {
   const int n_components = layout.field().n_components;
+  if (layout.field().entity == fields::Entity::facet)
+    return find_held_facets(mesh, n_components, layout.n_owned(), conditions);
   if (layout.field().entity != fields::Entity::enriched_node)
     return find_held_nodes(mesh, n_components, layout.n_owned(), conditions);
   return find_held(mesh, n_components, layout.n_owned(), conditions, [&](const auto& face, LocalIndex node) {

@@ -147,6 +147,25 @@ Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
   return stencils.of_cells(cells);
 }
 
+/// Of fields on cells and on facets.
+Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& field) {
+  const int n_faces = mesh::n_faces(mesh.shape), width = field.n_components;
+  const bool on_cells = field.entity == Entity::cell;
+  if (loop == Loop::boundary_faces) {
+    TableBuilder table(mesh.boundary_faces.size(), 1);
+    for (const auto& face : mesh.boundary_faces)
+      table.add((on_cells ? face.cell : mesh.facets->of_cell[face.cell * n_faces + face.local_face]) * width);
+    return {table.finish(), width};
+  }
+  SPREKK_CHECK(loop == Loop::cells, "field {}: no stencil in a loop over fracture faces", field.name);
+  TableBuilder table(mesh.n_cells(), on_cells ? 1 : n_faces);
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
+    if (on_cells) table.add(cell * width);
+    for (int k = 0; k < n_faces && !on_cells; ++k) table.add(mesh.facets->of_cell[cell * n_faces + k] * width);
+  }
+  return {table.finish(), width};
+}
+
 Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
   if (loop == Loop::fracture_sides || loop == Loop::tip_sides) {
     const bool two_sided = n_components == 2 * mesh.dim();
@@ -166,9 +185,15 @@ Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
 
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
   const auto& field = layout.field();
-  if (field.entity == Entity::node || field.entity == Entity::enriched_node) return node_stencil(mesh, loop, field);
-  SPREKK_CHECK(field.entity == Entity::fracture_face, "field {}: no stencil for cell fields", field.name);
-  return face_stencil(mesh, loop, field.n_components);
+  switch (field.entity) {
+    case Entity::cell:
+    case Entity::facet:
+      return cell_stencil(mesh, loop, field);
+    case Entity::fracture_face:
+      return face_stencil(mesh, loop, field.n_components);
+    default:
+      return node_stencil(mesh, loop, field);
+  }
 }
 
 }  // namespace sprekk::assembly

@@ -39,6 +39,9 @@ bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 /// | fracture_faces            | face nodes of side minus, then plus  | all components                              |
 /// | boundary_faces            | the face's nodes                     | -                                           |
 ///
+/// A field on cells has one group in cells and boundary_faces, that of the cell; one on facets all of the cell's, or
+/// the face's.
+///
 /// A two-sided field has 2 dim components per face: those of side minus, then those of side plus. A field on enriched
 /// nodes is a node field, absent (first = -1) on nodes that are not enriched, and on faces without a tip: there
 /// operators read zero, and what they write is dropped.

@@ -17,19 +17,25 @@ namespace sprekk::assembly {
 
 /// What a number measures; from it follow its scale under the present loads and thereby scaling and convergence.
 enum class Quantity {
-  length,  ///< displacement scale, m
-  stress,  ///< traction scale, Pa
-  force,   ///< traction scale times the area of a typical face, N
-  volume   ///< displacement scale times that area, m^3
+  length,    ///< displacement scale, m
+  stress,    ///< traction scale, Pa
+  force,     ///< traction scale times the area of a typical face, N
+  volume,    ///< displacement scale times that area, m^3
+  pressure,  ///< of a fluid, Pa
+  flow       ///< pressure scale times mobility over length, times that area, m^3/s
 };
+
+/// Functions that a block's matrix takes to almost nothing, which multigrid is told of; none: it has no use for
+/// multigrid.
+enum class NearNullSpace { none, rigid_motions, constants };
 
 /// A field that a module adds to the problem. It becomes a block of the same name.
 struct Unknown {
   fields::Field field;
-  Quantity value, row;            ///< what the unknown and its equation are measured in
-  bool rigid_body_modes = false;  ///< the near-null space that multigrid is told of
-  std::string local_group = "";   ///< fields with one group name are eliminated together, entity by entity; "" stays
-  std::string enriches = "";      ///< the field that a field on enriched nodes adds to: zero where that is prescribed
+  Quantity value, row;  ///< what the unknown and its equation are measured in
+  NearNullSpace near_null_space = NearNullSpace::none;
+  std::string local_group = "";  ///< fields with one group name are eliminated together, entity by entity; "" stays
+  std::string enriches = "";     ///< the field that a field on enriched nodes adds to: zero where that is prescribed
 };
 
 /// Rows that the module adds to in a loop, and the fields that those rows then depend on.
@@ -97,7 +103,7 @@ using Rows = std::vector<View<Real*>>;
 
 /// Sizes that solvers and tests of convergence are relative to: they grow with the loads met so far and never shrink.
 struct Scales {
-  Real stress = 0, length = 0;  ///< Pa, m
+  Real stress = 0, length = 0, pressure = 0;  ///< Pa, m, Pa
 };
 
 class Module {
@@ -119,6 +125,9 @@ class Module {
   virtual bool holds_bodies() const { return false; }
   /// The largest prescribed stress at time t, Pa, on this rank: boundary traction, weight of the domain.
   virtual Real load(Real t) const { return 0; }
+  /// The largest pressure of a fluid that it starts with, or that its sources and gravity make at time t, Pa, on this
+  /// rank.
+  virtual Real fluid_load(Real t) const { return 0; }
   /// The residual at x = 0 is the same at all times.
   virtual bool constant_load() const { return true; }
   /// Called at the start of a step, before any residual at its end t.

@@ -4,6 +4,7 @@
 #include "assembly/order_one.hpp"
 #include "base/check.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -66,14 +67,22 @@ void check_names(std::vector<std::string> names, const char* what) {
   SPREKK_CHECK(twice == names.end(), "modules declare the {} \"{}\" twice", what, *twice);
 }
 
-/// Node coordinates of this rank's owned nodes, [node, component].
+/// Places of this rank's owned nodes or facets (the mean of the corners), [entity, component].
 RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout& layout) {
+  const bool on_facets = layout.field().entity == Entity::facet;
+  const auto& all = on_facets ? mesh.facets->id : mesh.node_id;
   const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  const Teuchos::ArrayView<const GlobalIndex> ids(mesh.node_id.data(), layout.n_owned_entities());
+  const Teuchos::ArrayView<const GlobalIndex> ids(all.data(), layout.n_owned_entities());
   auto coordinates = rcp(new MultiVector(rcp(new const fields::Map(unknown, ids, 0, mesh.comm)), mesh.dim()));
   auto view = coordinates->getLocalViewHost(Tpetra::Access::OverwriteAll);
-  for (LocalIndex n = 0; n < layout.n_owned_entities(); ++n)
+  for (LocalIndex n = 0; n < layout.n_owned_entities() && !on_facets; ++n)
     for (int i = 0; i < mesh.dim(); ++i) view(n, i) = mesh.coordinates[n * mesh.dim() + i];
+  const int n_faces = mesh::n_faces(mesh.shape);
+  for (LocalIndex face = 0; face < mesh.n_owned_cells * n_faces && on_facets; ++face)
+    if (const LocalIndex facet = mesh.facets->of_cell[face]; facet < layout.n_owned_entities()) {
+      const auto x = mesh::face_centre(mesh::face_corners(mesh, face / n_faces, face % n_faces));
+      for (int i = 0; i < mesh.dim(); ++i) view(facet, i) = x[i];
+    }
   return coordinates;
 }
 
@@ -124,7 +133,7 @@ void System::declare_fields() {
     const auto& layout = layouts_[b];
     fields::Block block{layout.field().name, layout.owned(), layout.field().n_components, 1, 1, {}, {}};
     block.enriches = unknowns_[b].enriches;
-    if (unknowns_[b].rigid_body_modes) set_multigrid(layout, block);
+    if (unknowns_[b].near_null_space != NearNullSpace::none) set_multigrid(unknowns_[b], layout, block);
     blocks_.push_back(block);
     ghosted_.push_back(rcp(new Vector(layout.ghosted())));
     weights_.push_back(rcp(new Vector(layout.owned())));
@@ -134,8 +143,9 @@ void System::declare_fields() {
   face_area_ = typical_face_area(*mesh_);
 }
 
-void System::set_multigrid(const fields::Layout& layout, fields::Block& block) const {
+void System::set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const {
   block.coordinates = owned_coordinates(*mesh_, layout);
+  if (unknown.near_null_space == NearNullSpace::constants) return;  // what multigrid assumes if it is told of none
   if (mesh::order(mesh_->shape) == 2) {
     block.interpolation = interpolation_from_corners(*mesh_, layout);
     block.coordinates = at_corners(*mesh_, *block.coordinates);
@@ -245,7 +255,7 @@ void System::set_merit_weights() {
 void System::watch_pieces() {
   const bool held = std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies(); });
   for (int b = 0; b < static_cast<int>(blocks_.size()) && !held; ++b)
-    if (unknowns_[b].rigid_body_modes) displacement_ = b;
+    if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement_ = b;
   if (displacement_ < 0) return;
   loose_ = std::make_unique<LoosePieces>(mesh_, layouts_[displacement_], constraints_[displacement_]);
   if (!loose_->possible()) return;

@@ -15,13 +15,15 @@ namespace sprekk::assembly {
 
 /// What the loads are related to when typical sizes are estimated: u = sigma L / E, and back.
 struct Reference {
-  Real modulus;  ///< E, Pa
-  Real length;   ///< L, m
+  Real modulus;       ///< E, Pa
+  Real length;        ///< L, m
+  Real mobility = 0;  ///< of a fluid, k/mu, m^2/(Pa s): q = k/mu p/L
 };
 
-/// What the supports of a boundary condition do to the body.
+/// What the supports of a boundary condition do to the body. Of a pressure, what flows in: m^3/s (2D: m^2/s), without
+/// moment.
 struct Reaction {
-  std::string condition;
+  std::string condition, field;
   std::vector<Real> force;       ///< [component] N; N/m in 2D
   std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D the last alone, N
 };
@@ -91,7 +93,7 @@ class System : public fields::BlockProblem {
   void declare_fields();
   std::vector<DirichletCondition> conditions_on(std::size_t block,
                                                 const std::vector<DirichletCondition>& conditions) const;
-  void set_multigrid(const fields::Layout& layout, fields::Block& block) const;
+  void set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const;
   void declare_groups();
   void bind_modules();
   void create_matrices();

@@ -68,23 +68,38 @@ void System::damp(Real everywhere, const std::vector<Real>& here) {
 
 /// Evaluates the loads at time t and lets the scales grow with them.
 void System::update_scales(Real t) {
-  Real here[2] = {0, 0}, all[2];
+  Real here[3] = {0, 0, 0}, all[3];
   base::collectively(*comm(), [&] {
-    for (auto& constraints : constraints_) {
-      constraints.evaluate(t);
-      here[0] = std::max(here[0], constraints.largest());
+    for (std::size_t b = 0; b < constraints_.size(); ++b) {
+      constraints_[b].evaluate(t);
+      Real& largest = here[unknowns_[b].value == Quantity::pressure ? 2 : 0];
+      largest = std::max(largest, constraints_[b].largest());
     }
-    for (const auto& module : modules_) here[1] = std::max(here[1], module->load(t));
+    for (const auto& module : modules_) {
+      here[1] = std::max(here[1], module->load(t));
+      here[2] = std::max(here[2], module->fluid_load(t));
+    }
   });
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 2, here, all);
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 3, here, all);
   const Real E = reference_.modulus, L = reference_.length;
   scales_.stress = std::max({scales_.stress, all[1], E * all[0] / L, 1e-12 * E});
   scales_.length = std::max({scales_.length, all[0], scales_.stress * L / E});
+  scales_.pressure = std::max({scales_.pressure, all[2], 1e-12 * E});
   const auto scale = [&](Quantity q) {
-    return q == Quantity::length   ? scales_.length
-           : q == Quantity::stress ? scales_.stress
-           : q == Quantity::force  ? scales_.stress * face_area_
-                                   : scales_.length * face_area_;
+    switch (q) {
+      case Quantity::length:
+        return scales_.length;
+      case Quantity::stress:
+        return scales_.stress;
+      case Quantity::force:
+        return scales_.stress * face_area_;
+      case Quantity::volume:
+        return scales_.length * face_area_;
+      case Quantity::pressure:
+        return scales_.pressure;
+      default:
+        return reference_.mobility * scales_.pressure / L * face_area_;
+    }
   };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     blocks_[b].kinematic_scale = scale(unknowns_[b].value);
@@ -344,7 +359,7 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
     Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
     for (std::size_t c = 0; c < conditions.size(); ++c) {
       const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
-      result.push_back({conditions[c].name, {sums, sums + n_components}});
+      result.push_back({conditions[c].name, conditions[c].field, {sums, sums + n_components}});
       std::copy_n(sums + n_components, 3, result.back().moment.begin());
     }
   }

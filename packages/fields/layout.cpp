@@ -1,5 +1,7 @@
 #include "fields/layout.hpp"
 
+#include "base/check.hpp"
+
 #include <Tpetra_Distributor.hpp>
 
 namespace sprekk::fields {
@@ -12,6 +14,8 @@ std::string name_of(Entity entity) {
       return "cell";
     case Entity::enriched_node:
       return "enriched node";
+    case Entity::facet:
+      return "facet";
     default:
       return "fracture face";
   }
@@ -25,6 +29,9 @@ LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts) {
       return with_ghosts ? mesh.n_cells() : mesh.n_owned_cells;
     case Entity::enriched_node:
       return with_ghosts ? static_cast<LocalIndex>(mesh.enriched_id.size()) : mesh.n_owned_enriched;
+    case Entity::facet:
+      SPREKK_CHECK(!mesh.facets.is_null(), "a field lives on facets, which the mesh does not have");
+      return with_ghosts ? static_cast<LocalIndex>(mesh.facets->id.size()) : mesh.facets->n_owned;
     default:
       return with_ghosts ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
   }
@@ -40,6 +47,8 @@ GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
       return mesh.cell_id[i];
     case Entity::enriched_node:
       return mesh.enriched_id[i];
+    case Entity::facet:
+      return mesh.facets->id[i];
     default:
       return mesh.fracture_faces[i].id;
   }

@@ -12,7 +12,8 @@ enum class Entity {
   node,
   cell,
   fracture_face,
-  enriched_node  ///< nodes around crack tips, see mesh::Mesh::enriched
+  enriched_node,  ///< nodes around crack tips, see mesh::Mesh::enriched
+  facet           ///< faces of cells, see mesh::Facets
 };
 
 std::string name_of(Entity entity);

@@ -31,6 +31,15 @@ std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, Gl
   return nodes;
 }
 
+FaceCorners face_corners(const Mesh& mesh, LocalIndex cell, int local_face) {
+  FaceCorners result{{}, n_face_corners(mesh.shape)};
+  for (int k = 0; k < result.n; ++k) {
+    const LocalIndex node = mesh.cells[cell * mesh.nodes_per_cell() + face_nodes(mesh.shape)[local_face][k]];
+    std::copy_n(&mesh.coordinates[node * mesh.dim()], mesh.dim(), result.x[k].begin());
+  }
+  return result;
+}
+
 Vector area_vector(const FaceCorners& corners) {
   const auto edge = [&](int from, int to) { return corners.x[to] - corners.x[from]; };
   switch (corners.n) {

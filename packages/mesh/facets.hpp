@@ -31,6 +31,8 @@ struct FaceCorners {
   int n;
 };
 
+FaceCorners face_corners(const Mesh& mesh, LocalIndex cell, int local_face);
+
 /// Area times unit normal of a face, outward where the corners are ordered as in face_nodes(); in 2D length times
 /// normal. Exact for plane faces.
 Vector area_vector(const FaceCorners& corners);

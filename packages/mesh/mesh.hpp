@@ -58,6 +58,14 @@ struct PartitionReport {
   GlobalIndex separated_faces;  ///< fracture faces whose two cells are in different parts
 };
 
+/// The faces of cells as entities of their own: one between two cells, one on each side of a fracture, one on the
+/// boundary. A facet belongs to the rank of that one of its cells that has the lower number.
+struct Facets {
+  std::vector<GlobalIndex> id;      ///< [facet] global number, the same for any partition; owned ones first
+  std::vector<LocalIndex> of_cell;  ///< [cell * n_faces(shape) + local face] facet
+  LocalIndex n_owned = 0;
+};
+
 /// One rank's part. Owned entities come first in every list, ghosts follow; "n_" counts both, "n_owned_" the first
 /// part.
 ///
@@ -109,6 +117,7 @@ struct Mesh {
   LocalIndex n_owned_enriched = 0;
   GlobalIndex n_global_enriched = 0;
   PartitionReport partition{};  ///< of the whole mesh
+  RCP<const Facets> facets;     ///< null where no field lives on them, see with_facets()
 
   int dim() const { return dimension(shape); }
   int nodes_per_cell() const { return mesh::n_nodes(shape); }

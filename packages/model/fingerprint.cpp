@@ -82,6 +82,7 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"Tables", json::object()}};
   for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
     result[name] = base::to_xml(sections.sublist(name));
+  if (scene.flow) result["Flow"] = base::to_xml(sections.sublist("Flow"));
   for (const auto& module : system.modules())
     result["module \"" + module->name() + "\""].push_back(module->fingerprint());
   for (const auto& [name, table] : scene.tables)

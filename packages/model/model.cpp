@@ -4,9 +4,12 @@
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
 #include "model/uniqueness.hpp"
+#include "physics/darcy_flow.hpp"
+#include "physics/fluid_storage.hpp"
 #include "physics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -110,7 +113,25 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   return force;
 }
 
+/// Materials of the mesh's regions, by their numbers.
+template <class Of>
+auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
+  std::vector<decltype(of(scene.material_of("")))> values;
+  for (const auto& name : mesh.region_names) values.push_back(of(scene.material_of(name)));
+  return values;
+}
+
+assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh) {
+  Real largest = 0;
+  for (const auto& mobility :
+       by_region(scene, mesh, [&](const Material& m) { return m.mobility(mesh.dim(), scene.flow->viscosity); }))
+    for (int i = 0; i < mesh.dim(); ++i) largest = std::max(largest, mobility.value[i][i]);
+  const auto extents = mesh::domain_extents(mesh);
+  return {1, *std::max_element(extents.begin(), extents.end()), largest};
+}
+
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
+  if (scene.flow) return reference_of_flow(scene, mesh);
   Real here = 0, modulus = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
@@ -149,7 +170,32 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto& flow = *scene.flow;
+  physics::DarcyFlowParameters darcy{
+      by_region(scene, mesh, [&](const Material& m) { return m.mobility(mesh.dim(), flow.viscosity); })};
+  darcy.scheme = physics::flux_scheme(flow.scheme, mesh, darcy.mobility);
+  for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
+  if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.flux)
+      darcy.fluxes.push_back({index_of(mesh.boundary_names, condition.boundary), *condition.flux,
+                              condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+  const auto storage =
+      by_region(scene, mesh, [&](const Material& m) { return m.compressibility + m.porosity * flow.compressibility; });
+  std::vector<std::unique_ptr<assembly::Module>> modules;
+  modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
+  if (std::any_of(storage.begin(), storage.end(), [](Real s) { return s > 0; }))
+    modules.push_back(physics::make_fluid_storage({storage, {}, flow.initial_pressure}));
+  return modules;
+}
+
+}  // namespace
+
 std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
+  if (scene.flow) return make_flow(scene, mesh);
   const auto rock = elasticity(scene, mesh);
   physics::BulkMomentumParameters bulk{rock.values, body_force(scene, mesh), {}, scene.initial_stress(), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
@@ -177,6 +223,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     const auto scope = timers_->scope("mesh");
     mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
     mesh = draft.value.refined(mesh);
+    if (draft.value.flow) mesh = mesh::with_facets(mesh);
   }
   scene_ = std::move(draft.value);
   std::vector<std::unique_ptr<assembly::Module>> modules;
@@ -187,10 +234,12 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     const bool held = std::any_of(modules.begin(), modules.end(), [](const auto& m) { return m->holds_bodies(); });
     SPREKK_CHECK(unheld.empty() || held, "{}: {}", scene_.origin, unheld);
   });
-  system_ = std::make_unique<assembly::System>(
-      mesh, std::move(modules),
-      dirichlet_conditions(scene_.boundary_conditions, mesh->boundary_names, mesh->region_names),
-      reference(scene_, *mesh), timers_);
+  std::vector<assembly::DirichletCondition> conditions;
+  for (const char* field : {"displacement", "face pressure"})
+    for (auto& condition :
+         dirichlet_conditions(scene_.boundary_conditions, mesh->boundary_names, mesh->region_names, field))
+      conditions.push_back(std::move(condition));
+  system_ = std::make_unique<assembly::System>(mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_);
   x_ = system_->initial();
   start_solver();
 }

@@ -290,19 +290,25 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   return contact_counts(*model_.mesh().comm, outputs);
 }
 
-/// Forces and moments of the supports, by boundary.
+/// Forces and moments of the supports, and what flows in at prescribed pressures, by boundary.
 json Results::reactions() const {
-  json forces = json::object(), moments = json::object();
+  json forces = json::object(), moments = json::object(), flows = json::object();
   const auto add = [](json& sum, const auto& values) {
     for (std::size_t i = 0; i < values.size(); ++i) sum[i] = values[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
   };
   for (const auto& reaction : model_.system().reactions(model_.state())) {
     const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;
     const auto& m = reaction.moment;
+    if (reaction.field != "displacement") {
+      add(flows[boundary], reaction.force);
+      continue;
+    }
     add(forces[boundary], reaction.force);
     add(moments[boundary], model_.mesh().dim() == 2 ? std::vector<Real>{m[2]} : std::vector<Real>(m.begin(), m.end()));
   }
-  return {{"reactions", forces}, {"reaction_moments", moments}};
+  json all = {{"reactions", forces}, {"reaction_moments", moments}};
+  if (!flows.empty()) all["inflows"] = flows;
+  return all;
 }
 
 /// Counts the faces that found no state, and writes which they are beside the state that they left.

@@ -6,6 +6,8 @@
 #include "model/material_library.hpp"
 #include "model/scene_check.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -59,8 +61,15 @@ void Material::describe(base::Section& s) {
     s.entry(lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
     s.entry(K, "bulk modulus", "Pa", base::positive(), "K");
     s.entry(density, "density", "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
+    s.entry(permeability, "permeability", "m^2", base::any(),
+            "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ "
+            "in 3D");
+    s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
+    s.entry(compressibility, "compressibility of pores", "1/Pa", base::at_least(0),
+            "growth of the porosity with the fluid's pressure; with it the specific storage is this + porosity x "
+            "compressibility of the fluid");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
-    if (type == "elastic" && s.complete() && n != 2)
+    if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
   }
   if (type != "elastic") {
@@ -121,6 +130,21 @@ laws::Elasticity Material::elasticity(const Point& x) const {
   return laws::lame_constants({at(E), at(nu), at(G), at(lambda), at(K)});
 }
 
+laws::Mobility Material::mobility(int dim, Real viscosity) const {
+  const auto& k = permeability;
+  const auto n = static_cast<int>(k.size()), n_all = dim * (dim + 1) / 2;
+  SPREKK_CHECK(n == 1 || n == dim || n == n_all, "material: \"permeability\" has {}, must have 1, {} or {} in {}D",
+               base::counted(k.size(), "value"), dim, n_all, dim);
+  laws::Mobility m;
+  for (int i = 0; i < dim; ++i) m.value[i][i] = k[n == 1 ? 0 : i] / viscosity;
+  for (int i = dim; i < n; ++i) {
+    const int row = i == 4 ? 1 : 0, column = i == 3 || dim == 2 ? 1 : 2;
+    m.value[row][column] = m.value[column][row] = k[i] / viscosity;
+  }
+  SPREKK_CHECK(m.is_positive(dim), "material: \"permeability\" = {{{}}} is not positive definite", fmt::join(k, ", "));
+  return m;
+}
+
 physics::JointParameters Material::joint(const Point& x) const {
   check(x);
   physics::JointParameters joint;
@@ -155,6 +179,23 @@ void Lithostatic::describe(base::Section& s) {
   s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "horizontal over vertical stress");
 }
 
+void Flow::describe(base::Section& s) {
+  s.entry(rigid_rock, "rigid rock", "-", "the rock does not deform: flow alone, without displacements");
+  s.entry(viscosity, "viscosity", "Pa s", base::positive(), "mu of the fluid");
+  s.entry(density, "density", "kg/m^3", base::at_least(0),
+          "of the fluid; its weight counts where \"Bulk\" has gravity");
+  s.entry(compressibility, "compressibility", "1/Pa", base::at_least(0), "of the fluid");
+  s.entry(source, "source", "1/s", base::any(),
+          "volume of fluid per volume of rock and time, an expression of x, y, z, t");
+  s.entry(initial_pressure, "initial pressure", "Pa", base::any(), "at the start, where fluid is stored; of x, y, z");
+  s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
+           "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
+           "orthogonal, else mimetic");
+  check_constant_in_time(s, "initial pressure", initial_pressure);
+  if (s.complete() && !rigid_rock)
+    s.fail("rigid rock", "must be true: flow through rock that deforms is not available yet");
+}
+
 void Region::describe(base::Section& s) {
   s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
 }
@@ -173,7 +214,14 @@ void BoundaryCondition::describe(base::Section& s) {
           "per direction a value, an expression of x, y, z, t, or free");
   s.entry(traction, "traction", "Pa",
           "force per area on the body, per direction a value or an expression of x, y, z, t");
-  if (s.complete() && displacement.empty() == traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
+  s.entry(pressure, "pressure", "Pa", base::any(),
+          "of the fluid, with \"Flow\": a value or an expression of x, y, z, t");
+  s.entry(flux, "flux", "m/s", base::any(), "volume of fluid that leaves per area and time, with \"Flow\"");
+  if (!s.complete()) return;
+  if (!displacement.empty() && !traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
+  if (pressure && flux) s.fail("give either \"pressure\" or \"flux\"");
+  if (displacement.empty() && traction.empty() && !pressure && !flux)
+    s.fail("give either \"displacement\" or \"traction\"; with \"Flow\" also \"pressure\" or \"flux\"");
 }
 
 void Time::describe(base::Section& s) {
@@ -255,6 +303,7 @@ void Scene::describe(base::Section& s) {
   s.named_sections(materials, "Materials",
                    "rock and joints, by names of your choice; those of the material library need no section");
   s.section(bulk, "Bulk", "the rock");
+  s.section(flow, "Flow", "a fluid that flows through the rock");
   s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
   s.named_sections(boundary_conditions, "Boundary conditions",

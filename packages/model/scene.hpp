@@ -4,6 +4,7 @@
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
 #include "base/table.hpp"
+#include "laws/darcy.hpp"
 #include "laws/elasticity.hpp"
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
@@ -31,6 +32,8 @@ struct Material {
 
   std::optional<Value> E, nu, G, lambda, K;  ///< exactly two for rock
   std::optional<Value> density;              ///< needed with gravity
+  std::vector<Real> permeability;            ///< one value, or those of a tensor; needed with flow
+  Real porosity = 0, compressibility = 0;    ///< of rock
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint
@@ -43,6 +46,8 @@ struct Material {
   /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
   laws::Elasticity elasticity(const Point& x) const;
   physics::JointParameters joint(const Point& x) const;
+  /// k/mu of the flow through rock. Throws an Error where k is no positive definite tensor of that dimension.
+  laws::Mobility mobility(int dim, Real viscosity) const;
 
  private:
   /// Calls visit(name, value, least, least itself is allowed, upper limit) for each of the values that are given.
@@ -85,6 +90,15 @@ struct MeshFile {
   void describe(base::Section& section);
 };
 
+/// A fluid that flows through the rock.
+struct Flow {
+  bool rigid_rock = false;  ///< the rock does not deform: no mechanics
+  Real viscosity = 1e-3, density = 1000, compressibility = 0;
+  base::Expression source = 0, initial_pressure = 0;
+  std::string scheme = "auto";
+  void describe(base::Section& section);
+};
+
 struct Region {
   std::string material;
   void describe(base::Section& section);
@@ -101,6 +115,7 @@ struct BoundaryCondition {
   std::optional<std::string> region;           ///< only where the boundary touches this region
   std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
   std::vector<base::Expression> traction;
+  std::optional<base::Expression> pressure, flux;  ///< of the fluid
   void describe(base::Section& section);
 };
 
@@ -134,6 +149,7 @@ struct Scene {
   std::optional<MeshFile> mesh_file;  ///< used instead of `mesh` if it is there
   std::map<std::string, Material> materials;
   Bulk bulk;
+  std::optional<Flow> flow;
   std::map<std::string, Region> regions;
   std::map<std::string, Fracture> fractures;
   std::map<std::string, BoundaryCondition> boundary_conditions;
@@ -153,6 +169,7 @@ struct Scene {
   int refinements() const;             ///< of the mesh that is used
   const std::string& tips() const;     ///< the same
   const Material& material_of(const std::string& region) const;
+  bool deforms() const { return !flow || !flow->rigid_rock; }
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;
 };

@@ -51,6 +51,7 @@ class Comparison {
     compare_boundary_conditions();
     compare_gravity();
     compare_lithostatic_stress();
+    compare_flow();
     return std::move(errors_);
   }
 
@@ -131,7 +132,7 @@ class Comparison {
   }
 
   void compare_gravity() {
-    if (scene_.bulk.gravity.empty() || !names_.regions || !is_sound("Regions")) return;
+    if (scene_.bulk.gravity.empty() || !scene_.deforms() || !names_.regions || !is_sound("Regions")) return;
     std::set<const Material*> heavy;
     for (const auto& name : *names_.regions) heavy.insert(rock_of(name));
     if (scene_.bulk.lithostatic_stress) heavy.insert(rock_of("bulk"));  // whose density it takes
@@ -148,6 +149,51 @@ class Comparison {
       fail(place, "needs a density that is a number; give an \"initial stress\" instead");
     if (std::any_of(gravity.begin(), gravity.end() - 1, [](Real g) { return g != 0; }))
       fail(place, "needs gravity along the last coordinate only");
+  }
+
+  void compare_flow() {
+    for (const auto& [name, condition] : scene_.boundary_conditions) {
+      const std::string place = "Boundary conditions > " + name;
+      if (!scene_.flow && is_absent(draft_, "Flow") && (condition.pressure || condition.flux))
+        fail(place + (condition.pressure ? " > \"pressure\"" : " > \"flux\""), "needs the section \"Flow\"");
+      if (!scene_.deforms() && !(condition.displacement.empty() && condition.traction.empty()))
+        fail(place, "moves or loads the rock, which \"Flow > rigid rock\" says does not deform");
+    }
+    if (!scene_.flow) return;
+    if (scene_.output.error_estimate && !scene_.deforms())
+      fail("Output > \"error estimate\"", "is of stress and jumps; with \"Flow > rigid rock\" there are none");
+    compare_pressure();
+    if (names_.fractures && !names_.fractures->empty())
+      fail("Flow", "the mesh has fractures; flow along and across them is not available yet");
+    for (const auto& name : names_.regions.value_or(Names()))
+      if (const auto* rock = rock_of(name)) compare_permeability(*rock);
+  }
+
+  /// Flow that no pressure and no storage ties to a level has none, or any.
+  void compare_pressure() {
+    const auto& conditions = scene_.boundary_conditions;
+    const bool given = std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.second.pressure; });
+    const bool stored = std::any_of(scene_.materials.begin(), scene_.materials.end(), [&](const auto& m) {
+      return m.second.compressibility > 0 || m.second.porosity * scene_.flow->compressibility > 0;
+    });
+    const bool known = is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
+    if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
+      fail("Flow", "nothing says how high the pressure is: give a \"pressure\" on a boundary, or storage (\"compressibility of "
+                   "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
+  }
+
+  void compare_permeability(const Material& rock) {
+    const auto of = [&](const auto& entry) { return &entry.second == &rock; };
+    const std::string name = std::find_if(scene_.materials.begin(), scene_.materials.end(), of)->first;
+    const std::string place = fmt::format("Materials > {} > \"permeability\"", name);
+    if (rock.permeability.empty() && is_sound("Materials > " + name))
+      fail(place, "missing; it is required with \"Flow\"");
+    if (rock.permeability.empty() || !names_.dim) return;
+    try {
+      rock.mobility(*names_.dim, scene_.flow->viscosity);
+    } catch (const Error& error) {
+      fail(place, error.what());
+    }
   }
 
   const Draft& draft_;
@@ -187,6 +233,7 @@ std::vector<std::string> conflicts(const Draft& draft, const mesh::GlobalMesh& m
 /// What nothing holds, if all conditions are known.
 std::string unheld_rock(const Draft& draft, const mesh::GlobalMesh& mesh,
                         const std::map<std::string, BoundaryCondition>& conditions) {
+  if (!draft.value.deforms()) return "";
   const bool all = conditions.size() == draft.value.boundary_conditions.size() &&
                    (conditions.empty() ? is_absent : is_sound)(draft, "Boundary conditions");
   return all ? assembly::unheld(mesh, dirichlet_conditions(conditions, mesh.boundary_names, mesh.region_names)) : "";
@@ -224,13 +271,17 @@ std::vector<std::string> misfits(const Draft& draft, const MeshNames& names) {
 }
 
 std::vector<assembly::DirichletCondition> dirichlet_conditions(const std::map<std::string, BoundaryCondition>& given,
-                                                               const Names& boundary_names, const Names& region_names) {
+                                                               const Names& boundary_names, const Names& region_names,
+                                                               const std::string& field) {
   std::vector<assembly::DirichletCondition> conditions;
   for (const auto& [name, one] : given) {
-    if (one.displacement.empty()) continue;
-    assembly::DirichletCondition condition{name, "displacement", index_of(boundary_names, one.boundary), {}};
+    const auto values = field == "displacement" ? one.displacement
+                        : one.pressure          ? std::vector{*one.pressure}
+                                                : std::vector<base::Expression>();
+    if (values.empty()) continue;
+    assembly::DirichletCondition condition{name, field, index_of(boundary_names, one.boundary), {}};
     if (one.region) condition.region = index_of(region_names, *one.region);
-    for (const auto& value : one.displacement)
+    for (const auto& value : values)
       condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
     conditions.push_back(condition);
   }

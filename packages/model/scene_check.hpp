@@ -24,10 +24,12 @@ MeshNames names_in_scene(const base::Draft<Scene>& draft);
 /// no misfit.
 std::vector<std::string> misfits(const base::Draft<Scene>& draft, const MeshNames& names);
 
-/// The prescribed displacements, by the numbers of names of a mesh that has all those of the conditions.
+/// The prescribed displacements, or values of "face pressure", by the numbers of names of a mesh that has all those of
+/// the conditions.
 std::vector<assembly::DirichletCondition> dirichlet_conditions(const std::map<std::string, BoundaryCondition>& given,
                                                                const std::vector<std::string>& boundary_names,
-                                                               const std::vector<std::string>& region_names);
+                                                               const std::vector<std::string>& region_names,
+                                                               const std::string& field = "displacement");
 
 /// The scene's mesh. Throws one Error with a line for each thing that is wrong: all in the draft's report, the mesh,
 /// the misfits, conditions that conflict at the end of the first step, and rock that nothing holds; the last is told by

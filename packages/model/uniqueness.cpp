@@ -11,6 +11,7 @@ namespace {
 
 /// The most compliant in compression and the stiffest in shear of a scene's rocks, if they are uniform.
 std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
+  if (!scene.deforms()) return {};
   std::vector<const Material*> rocks = {&scene.materials.at(scene.bulk.material)};
   for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.materials.at(region.material));
   Real shear = 0, uniaxial = std::numeric_limits<Real>::infinity();

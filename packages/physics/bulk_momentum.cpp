@@ -29,7 +29,7 @@ class BulkMomentum final : public assembly::Module {
     assembly::Declaration d;
     assembly::Unknown u{
         {"displacement", fields::Entity::node, dim, "m"}, assembly::Quantity::length, assembly::Quantity::force};
-    u.rigid_body_modes = true;
+    u.near_null_space = assembly::NearNullSpace::rigid_motions;
     d.unknowns = {u};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     d.outputs = {{"displacement", "m", fields::Entity::node, dim}, {"stress", "Pa", fields::Entity::cell, 6}};

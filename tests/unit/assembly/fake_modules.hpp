@@ -48,7 +48,10 @@ class Springs final : public assembly::Module {
   std::string name() const override { return "springs"; }
   Declaration declare() const override {
     Declaration d;
-    d.unknowns = {{{"displacement", fields::Entity::node, dim, "m"}, Quantity::length, Quantity::force, true}};
+    d.unknowns = {{{"displacement", fields::Entity::node, dim, "m"},
+                   Quantity::length,
+                   Quantity::force,
+                   NearNullSpace::rigid_motions}};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     d.outputs = {{"displacement", "m", fields::Entity::node, dim}};
     d.linear = true;

@@ -1,0 +1,223 @@
+#include "physics/darcy_flow.hpp"
+
+#include "base/check.hpp"
+#include "mesh/extents.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+
+namespace {
+
+template <class T>
+ConstView<T*> to_device(const std::vector<T>& from, const char* name) {
+  View<T*> to(std::string(name), from.size());
+  const auto host = Kokkos::create_mirror_view(to);
+  for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
+  Kokkos::deep_copy(to, host);
+  return to;
+}
+
+template <Shape shape>
+class DarcyFlow final : public assembly::Module {
+ public:
+  using Op = HybridCell<shape>;
+  static constexpr int dim = Op::dim, n_faces = Op::n;
+
+  explicit DarcyFlow(DarcyFlowParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "Darcy flow, " + name_of(parameters_.scheme); }
+
+  assembly::Declaration declare() const override {
+    using assembly::Quantity;
+    assembly::Declaration d;
+    assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, Quantity::pressure, Quantity::flow};
+    cells.local_group = "fluid in cells";
+    assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, Quantity::pressure, Quantity::flow};
+    facets.near_null_space = assembly::NearNullSpace::constants;
+    d.unknowns = {cells, facets};
+    for (const char* row : {"pressure", "face pressure"})
+      d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
+    d.outputs = {{"pressure", "Pa", fields::Entity::cell, 1}, {"Darcy velocity", "m/s", fields::Entity::cell, 3}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    const auto extents = mesh::domain_extents(*mesh_);
+    size_ = *std::max_element(extents.begin(), extents.end());
+    const auto& weight = parameters_.weight;
+    const auto numbers = parameters_.mobility_of_cell.empty() ? context.geometry().region
+                                                              : to_device(parameters_.mobility_of_cell, "mobility");
+    op_ = std::make_unique<Op>(Op{context.geometry(),
+                                  to_device(parameters_.mobility, "mobilities"),
+                                  numbers,
+                                  {weight[0], weight[1], weight[2]},
+                                  parameters_.scheme});
+    blocks_ = {context.field("pressure"), context.field("face pressure")};
+    assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_, Assembler::Positions::once);
+    for (int k = 0; k < 2; ++k) load_[k] = View<Real*>("load", context.layout(blocks_[k]).n_owned());
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_->add_residual(*op_, state, r);
+    for (int k = 0; k < 2; ++k) {
+      const auto rows = r[blocks_[k]];
+      const auto load = load_[k];
+      Kokkos::parallel_for(
+          "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) += load(i); });
+    }
+  }
+
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    assembler_->add_jacobian(*op_, state, J);
+  }
+
+  bool constant_load() const override {
+    const auto constant = [](const auto& flux) { return flux.value.constant_in_time(); };
+    return std::all_of(parameters_.fluxes.begin(), parameters_.fluxes.end(), constant) &&
+           (parameters_.source.empty() || parameters_.source[0].constant_in_time());
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (loaded_ && constant_load()) return;
+    const auto cells = Kokkos::create_mirror_view(load_[0]), facets = Kokkos::create_mirror_view(load_[1]);
+    Kokkos::deep_copy(cells, 0.0);
+    Kokkos::deep_copy(facets, 0.0);
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells && !parameters_.source.empty(); ++c)
+      assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real volume, const auto& x) {
+        cells(c) -= volume * parameters_.source[0](x, t);
+      });
+    for_each_flux([&](const BoundaryFlux& flux, LocalIndex facet, Real area, const auto& x) {
+      if (facet < mesh_->facets->n_owned) facets(facet) += area * flux.value(x, t);
+    });
+    Kokkos::deep_copy(load_[0], cells);
+    Kokkos::deep_copy(load_[1], facets);
+    loaded_ = true;
+  }
+
+  /// What prescribed flow and gravity make of pressure over the size of the domain.
+  Real fluid_load(Real t) const override {
+    Real flux = 0, weight = 0, mobility = 0;
+    for_each_flux([&](const BoundaryFlux& f, LocalIndex, Real, const auto& x) {
+      flux = std::max(flux, std::abs(f.value(x, t)));
+    });
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells && !parameters_.source.empty(); ++c)
+      assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real, const auto& x) {
+        flux = std::max(flux, size_ * std::abs(parameters_.source[0](x, t)));
+      });
+    for (Real component : parameters_.weight) weight += component * component;
+    for (const auto& each : parameters_.mobility) mobility = std::max(mobility, each.template trace<dim>() / dim);
+    return size_ * (std::sqrt(weight) + flux / mobility);
+  }
+
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
+    const auto trace = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    Real X[mesh::n_nodes(shape)][dim], x[1 + n_faces], q[n_faces];
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
+      assembly::gather_host<shape>(*mesh_, c, X);
+      const CellFaces<shape> faces(X);
+      x[0] = p(c);
+      for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
+      op_->flow(faces, FlowMatrix<shape>(faces, mobility_of(c), parameters_.scheme), x, q);
+      fields[0].values.push_back(p(c));
+      for (int i = 0; i < 3; ++i) {
+        Real v = 0;
+        for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] / faces.volume;
+        fields[1].values.push_back(v);
+      }
+    }
+  }
+
+ private:
+  using Assembler = assembly::Assembler<Op>;
+
+  const laws::Mobility& mobility_of(LocalIndex cell) const {
+    const auto& of_cell = parameters_.mobility_of_cell;
+    return parameters_.mobility[of_cell.empty() ? mesh_->cell_region[cell] : of_cell[cell]];
+  }
+
+  /// Calls visit(flux, facet, area, x) at the quadrature points of all boundary faces with a prescribed flow.
+  template <class Visit>
+  void for_each_flux(const Visit& visit) const {
+    for (const auto& flux : parameters_.fluxes)
+      for (const auto& face : mesh_->boundary_faces) {
+        if (face.boundary != flux.boundary || (flux.region >= 0 && mesh_->cell_region[face.cell] != flux.region))
+          continue;
+        const LocalIndex facet = mesh_->facets->of_cell[face.cell * n_faces + face.local_face];
+        assembly::for_each_face_point<shape>(
+            *mesh_, face.cell, face.local_face,
+            [&](const auto&, Real area, const auto& x) { visit(flux, facet, area, x); });
+      }
+  }
+
+  DarcyFlowParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<int> blocks_;  // pressure, face pressure
+  Real size_ = 0;            // largest extent of the domain, m
+  bool loaded_ = false;
+  std::unique_ptr<Op> op_;
+  std::unique_ptr<Assembler> assembler_;
+  std::array<View<Real*>, 2> load_;  // [owned row], m^3/s
+};
+
+}  // namespace
+
+namespace {
+
+/// Whether (k/mu) A is parallel to d on all faces of a cell.
+template <Shape shape>
+bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility) {
+  constexpr int dim = mesh::dimension(shape);
+  for (int f = 0; f < faces.n; ++f) {
+    Real flux[dim] = {}, flux2 = 0, distance2 = 0, dot = 0;
+    for (int i = 0; i < dim; ++i) {
+      for (int j = 0; j < dim; ++j) flux[i] += mobility.value[i][j] * faces.area[f][j];
+      flux2 += flux[i] * flux[i];
+      distance2 += faces.centre[f][i] * faces.centre[f][i];
+      dot += flux[i] * faces.centre[f][i];
+    }
+    if (!(dot > 0 && flux2 * distance2 - dot * dot <= 1e-10 * flux2 * distance2)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility) {
+  const bool simplices = mesh::is_simplex(mesh.shape);
+  SPREKK_CHECK(name != "rt0" || simplices,
+               "scheme \"rt0\" takes triangles and tetrahedra; others take tpfa or mimetic");
+  if (name == "tpfa") return FluxScheme::tpfa;
+  if (name == "mimetic") return FluxScheme::mimetic;
+  if (simplices) return FluxScheme::rt0;
+  int here = 0, anywhere = 0;  // cells that are not
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    Real X[mesh::n_nodes(shape())][mesh::dimension(shape())];
+    for (LocalIndex c = 0; c < mesh.n_owned_cells && !here; ++c) {
+      assembly::gather_host<shape()>(mesh, c, X);
+      here = !is_orthogonal(CellFaces<shape()>(X), mobility[mesh.cell_region[c]]);
+    }
+  });
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &anywhere);
+  return anywhere ? FluxScheme::mimetic : FluxScheme::tpfa;
+}
+
+std::string name_of(FluxScheme scheme) {
+  return scheme == FluxScheme::rt0 ? "rt0" : scheme == FluxScheme::tpfa ? "tpfa" : "mimetic";
+}
+
+std::unique_ptr<assembly::Module> make_darcy_flow(Shape shape, DarcyFlowParameters parameters) {
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<DarcyFlow<s()>>(std::move(parameters));
+  });
+}
+
+}  // namespace sprekk::physics

@@ -1,0 +1,230 @@
+// Flow through the faces of one cell, from its pressure and those on its faces.
+#pragma once
+
+#include "assembly/assembler.hpp"
+#include "assembly/geometry.hpp"
+#include "laws/darcy.hpp"
+
+#include <cmath>
+
+namespace sprekk::physics {
+
+using mesh::Shape;
+
+/// How flows through a cell's faces follow from pressures: q_i = sum_j T_ij (p - p_j). All are exact for constant
+/// gradients where faces are plane, but tpfa.
+enum class FluxScheme {
+  rt0,   ///< lowest-order Raviart-Thomas-Nedelec on simplices
+  tpfa,  ///< two points, T diagonal: exact where (k/mu) n is parallel to the line from the cell's centre to the face's
+  mimetic  ///< any cell, with the quasi-RT inner product of Lie et al. (2012)
+};
+
+/// | symbol   | shape       | unit        |                                                       |
+/// | area     | [face, dim] | m^2 (2D: m) | outward area vectors A_i                              |
+/// | centre   | [face, dim] | m           | centres of the faces, seen from that of the cell, d_i |
+/// | volume   |             | m^3 (m^2)   | V                                                     |
+/// | corners  | [corner, dim] | m         | seen from the centre of the cell                      |
+template <Shape shape>
+struct CellFaces {
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_faces(shape), n_corners = mesh::n_corners(shape);
+  static constexpr int n_face_corners = mesh::n_face_corners(shape);
+  Real area[n][dim], centre[n][dim], corners[n_corners][dim], volume = 0;
+
+  /// From the nodes of the cell.
+  template <int n_nodes>
+  KOKKOS_INLINE_FUNCTION explicit CellFaces(const Real (&X)[n_nodes][dim]) {
+    Real mean[dim] = {};
+    for (int k = 0; k < n_corners; ++k)
+      for (int i = 0; i < dim; ++i) mean[i] += X[k][i] / n_corners;
+    for (int k = 0; k < n_corners; ++k)
+      for (int i = 0; i < dim; ++i) corners[k][i] = X[k][i] - mean[i];
+    Real moved[dim] = {};  // from the mean of the corners to the centre: of pyramids over the faces
+    for (int f = 0; f < n; ++f) {
+      measure(f);
+      Real height = 0;
+      for (int i = 0; i < dim; ++i) height += area[f][i] * centre[f][i] / dim;
+      volume += height;
+      for (int i = 0; i < dim; ++i) moved[i] += height * centre[f][i] * dim / (dim + 1.0);
+    }
+    for (int i = 0; i < dim; ++i) {
+      moved[i] /= volume;
+      for (int f = 0; f < n; ++f) centre[f][i] -= moved[i];
+      for (int k = 0; k < n_corners; ++k) corners[k][i] -= moved[i];
+    }
+  }
+
+ private:
+  /// Area vector and centre of a face, of triangles around its first corner in 3D.
+  KOKKOS_INLINE_FUNCTION void measure(int f) {
+    const auto& nodes = mesh::face_nodes(shape)[f];
+    const auto& a = corners[nodes[0]];
+    const auto& b = corners[nodes[1]];
+    if constexpr (dim == 2) {
+      area[f][0] = b[1] - a[1];
+      area[f][1] = a[0] - b[0];
+      for (int i = 0; i < dim; ++i) centre[f][i] = (a[i] + b[i]) / 2;
+    } else {
+      Real part[n_face_corners - 2][3], size[n_face_corners - 2], total = 0;
+      for (int i = 0; i < 3; ++i) area[f][i] = centre[f][i] = 0;
+      for (int k = 0; k < n_face_corners - 2; ++k) {
+        cross(a, corners[nodes[k + 1]], corners[nodes[k + 2]], part[k]);
+        for (int i = 0; i < 3; ++i) area[f][i] += part[k][i];
+      }
+      for (int k = 0; k < n_face_corners - 2; ++k) {
+        size[k] = 0;
+        for (int i = 0; i < 3; ++i) size[k] += part[k][i] * area[f][i];
+        total += size[k];
+      }
+      for (int k = 0; k < n_face_corners - 2; ++k)
+        for (int i = 0; i < 3; ++i)
+          centre[f][i] += size[k] / total * (a[i] + corners[nodes[k + 1]][i] + corners[nodes[k + 2]][i]) / 3;
+    }
+  }
+
+  /// Half of (b - a) x (c - a).
+  KOKKOS_INLINE_FUNCTION static void cross(const Real (&a)[dim], const Real (&b)[dim], const Real (&c)[dim],
+                                           Real (&result)[3]) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      result[i] = ((b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j])) / 2;
+    }
+  }
+};
+
+/// T of a cell, m^3/(Pa s), symmetric positive definite: A (k/mu) A^T / V, which gives the flow of a constant gradient,
+/// and a part that is zero for those.
+template <Shape shape>
+struct FlowMatrix {
+  using Faces = CellFaces<shape>;
+  static constexpr int dim = Faces::dim, n = Faces::n;
+  Real T[n][n] = {};
+
+  KOKKOS_INLINE_FUNCTION FlowMatrix(const Faces& faces, const laws::Mobility& mobility, FluxScheme scheme) {
+    if (scheme == FluxScheme::tpfa) {
+      for (int f = 0; f < n; ++f) {
+        Real distance = 0;
+        for (int i = 0; i < dim; ++i) distance += faces.centre[f][i] * faces.centre[f][i];
+        T[f][f] = mobility.product<dim>(faces.area[f], faces.centre[f]) / distance;
+      }
+      return;
+    }
+    for (int f = 0; f < n; ++f)
+      for (int g = 0; g < n; ++g) T[f][g] = mobility.product<dim>(faces.area[f], faces.area[g]) / faces.volume;
+    if (scheme == FluxScheme::rt0)
+      add_rt0(faces, mobility);
+    else
+      add_mimetic(faces, mobility);
+  }
+
+ private:
+  /// On simplices the functions phi_i = (x - x_i)/(d V) have M_ij = integral phi_i . (k/mu)^-1 phi_j, and T = M^-1.
+  /// Since the centres of faces add up to zero, T is A (k/mu) A^T / V + a 1 1^T, with 1/a = 1^T M 1.
+  KOKKOS_INLINE_FUNCTION void add_rt0(const Faces& faces, const laws::Mobility& mobility) {
+    Real S[dim][dim] = {};  // mean of x x^T around the centre
+    for (int k = 0; k < dim + 1; ++k)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) S[i][j] += faces.corners[k][i] * faces.corners[k][j] / ((dim + 1) * (dim + 2));
+    const Real a = dim * dim * faces.volume / ((dim + 1) * (dim + 1) * mobility.resistance<dim>(S));
+    for (int f = 0; f < n; ++f)
+      for (int g = 0; g < n; ++g) T[f][g] += a;
+  }
+
+  /// 6 tr(k/mu)/(d V) |A| (I - Q Q^T) |A|, with Q an orthonormal basis of the columns of |A| d.
+  KOKKOS_INLINE_FUNCTION void add_mimetic(const Faces& faces, const laws::Mobility& mobility) {
+    Real size[n], Q[dim][n];
+    for (int f = 0; f < n; ++f) {
+      size[f] = 0;
+      for (int i = 0; i < dim; ++i) size[f] += faces.area[f][i] * faces.area[f][i];
+      size[f] = std::sqrt(size[f]);
+      for (int i = 0; i < dim; ++i) Q[i][f] = size[f] * faces.centre[f][i];
+    }
+    for (int i = 0; i < dim; ++i) {
+      for (int twice = 0; twice < 2; ++twice)
+        for (int k = 0; k < i; ++k) {
+          Real dot = 0;
+          for (int f = 0; f < n; ++f) dot += Q[i][f] * Q[k][f];
+          for (int f = 0; f < n; ++f) Q[i][f] -= dot * Q[k][f];
+        }
+      Real norm = 0;
+      for (int f = 0; f < n; ++f) norm += Q[i][f] * Q[i][f];
+      norm = std::sqrt(norm);
+      for (int f = 0; f < n; ++f) Q[i][f] /= norm;
+    }
+    const Real a = 6 * mobility.trace<dim>() / (dim * faces.volume);
+    for (int f = 0; f < n; ++f)
+      for (int g = 0; g < n; ++g) {
+        Real rest = f == g ? 1 : 0;
+        for (int i = 0; i < dim; ++i) rest -= Q[i][f] * Q[i][g];
+        T[f][g] += a * size[f] * rest * size[g];
+      }
+  }
+};
+
+/// The balance of one cell, sum_i q_i, and the flow into it through its faces, -q_i, with
+/// q_i = sum_j T_ij (p - p_j + rho g . d_j).
+///
+/// | symbol   | shape         | unit          |                                            |
+/// | x        | 1 + faces     | Pa            | pressure of the cell, pressures on faces   |
+/// | r        | 1 + faces     | m^3/s         | (2D: m^2/s)                                |
+/// | mobility | [number]      | m^2/(Pa s)    | k/mu                                       |
+/// | number   | [cell]        | -             | which mobility                             |
+/// | weight   | [dim]         | N/m^3         | rho g                                      |
+template <Shape shape>
+struct HybridCell {
+  using Faces = CellFaces<shape>;
+  static constexpr int dim = Faces::dim, n = Faces::n;
+  using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<n, 1>>;
+  using Rows = Columns;
+
+  assembly::Geometry geometry;
+  ConstView<laws::Mobility*> mobility;
+  ConstView<int*> number;
+  Kokkos::Array<Real, 3> weight;
+  FluxScheme scheme;
+
+  KOKKOS_INLINE_FUNCTION Faces faces(int cell) const {
+    Real X[mesh::n_nodes(shape)][dim];
+    geometry.gather(cell, X);
+    return Faces(X);
+  }
+
+  /// Outward flow through each face.
+  KOKKOS_INLINE_FUNCTION void flow(const Faces& faces, const FlowMatrix<shape>& matrix, const Real (&x)[1 + n],
+                                   Real (&q)[n]) const {
+    for (int i = 0; i < n; ++i) {
+      q[i] = 0;
+      for (int j = 0; j < n; ++j) {
+        Real drop = x[0] - x[1 + j];
+        for (int k = 0; k < dim; ++k) drop += weight[k] * faces.centre[j][k];
+        q[i] += matrix.T[i][j] * drop;
+      }
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
+    const Faces of_cell = faces(cell);
+    Real q[n];
+    flow(of_cell, FlowMatrix<shape>(of_cell, mobility(number(cell)), scheme), x, q);
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      r[0] += q[i];
+      r[1 + i] = -q[i];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    const FlowMatrix<shape> matrix(faces(cell), mobility(number(cell)), scheme);
+    J[0][0] = 0;
+    for (int i = 0; i < n; ++i) {
+      J[0][1 + i] = 0;
+      for (int j = 0; j < n; ++j) {
+        J[0][1 + i] -= matrix.T[j][i];
+        J[1 + i][1 + j] = matrix.T[i][j];
+      }
+      J[1 + i][0] = J[0][1 + i];
+      J[0][0] -= J[0][1 + i];
+    }
+  }
+};
+
+}  // namespace sprekk::physics
