@@ -9,7 +9,7 @@ namespace {
 
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
-constexpr Real reach = 2;                       // of a node, in distances of its nearest neighbour: the diagonal of a cube is 1.7
+constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
 View<Real*> diagonal_sizes(const NodeMatrix& A) {
@@ -24,6 +24,10 @@ View<Real*> diagonal_sizes(const NodeMatrix& A) {
   }
   graph.columns->exchange(size, 1);
   return size;
+}
+
+Real distance(const std::array<Real, 3>& a, const std::array<Real, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 Real largest(const Real* values, int n) {
@@ -105,38 +109,26 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
   return nodes;
 }
 
-Neighbours near_neighbours(const Nodes& nodes) {
-  if (nodes.place.empty()) return nodes.neighbours;
-  const auto& [start, neighbour] = nodes.neighbours;
-  const auto distance = [&](LocalIndex i, LocalIndex j) {
-    const auto &a = nodes.place[i], &b = nodes.place[j];
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-  };
-  std::vector<Real> nearest(nodes.place.size(), std::numeric_limits<Real>::max());
-  for (std::size_t i = 0; i < nearest.size(); ++i)
-    for (std::size_t k = start[i]; k < start[i + 1]; ++k)
-      nearest[i] = std::fmin(nearest[i], distance(static_cast<LocalIndex>(i), neighbour[k]));
-  Neighbours result;
-  result.start.push_back(0);
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    for (std::size_t k = start[i]; k < start[i + 1]; ++k) {
-      const LocalIndex j = neighbour[k];
-      if (distance(static_cast<LocalIndex>(i), j) <= reach * std::fmax(nearest[i], nearest[j])) result.node.push_back(j);
-    }
-    result.start.push_back(result.node.size());
-  }
+std::vector<Real> reach(const Nodes& nodes) {
+  std::vector<Real> result(nodes.free.size(), std::numeric_limits<Real>::infinity());
+  for (std::size_t i = 0; i < nodes.place.size(); ++i)
+    for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
+      result[i] = std::fmin(result[i], steps * distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
   return result;
 }
 
 Aggregates aggregate(const Nodes& nodes) {
-  const auto near = near_neighbours(nodes);
-  const auto& [start, neighbour] = near;
+  const auto& [start, neighbour] = nodes.neighbours;
+  const auto reaches = reach(nodes);
   const auto n = static_cast<LocalIndex>(nodes.free.size());
   Aggregates result;
   auto& of = result.of;
   of.assign(n, -1);
   const auto each = [&, &start = start, &neighbour = neighbour](LocalIndex i, const auto& work) {
-    for (std::size_t k = start[i]; k < start[i + 1]; ++k) work(neighbour[k]);
+    for (std::size_t k = start[i]; k < start[i + 1]; ++k)
+      if (const LocalIndex j = neighbour[k];
+          nodes.place.empty() || distance(nodes.place[i], nodes.place[j]) <= std::fmax(reaches[i], reaches[j]))
+        work(j);
   };
   const auto make = [&](LocalIndex i) {
     of[i] = result.n++;

@@ -28,14 +28,14 @@ struct Nodes {
 Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
                const RCP<const fields::MultiVector>& places = Teuchos::null);
 
-/// The neighbours that couple strongly, by distance: those not much farther than the nearest one of either. In cells
-/// that are much longer than wide only the short edges are left, across which a smoother does little; what they join is
-/// less flat on the next level. All, where places are not known. Stored data.
-Neighbours near_neighbours(const Nodes& nodes);
+/// How far each node reaches, [node] m: not much farther than to its nearest neighbour. Nodes couple strongly that one
+/// of the two reaches: in cells that are much longer than wide, those across short edges, where a smoother does little;
+/// what they join is less flat on the next level. Without limit where places are not known. Stored data.
+std::vector<Real> reach(const Nodes& nodes);
 
-/// The aggregate of each owned node, -1 of one that is not free: a node whose near neighbours are all in no aggregate yet
-/// makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel and Brezina
-/// 1996). Aggregates hold nodes of one rank only. Stored data.
+/// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours in reach are all in no
+/// aggregate yet makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel
+/// and Brezina 1996). Aggregates hold nodes of one rank only. Stored data.
 struct Aggregates {
   LocalIndex n = 0;
   std::vector<LocalIndex> of;

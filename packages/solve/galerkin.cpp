@@ -1,6 +1,7 @@
 #include "solve/galerkin.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solve/node_kernels.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 using fields::Map;
 using Policy = Kokkos::RangePolicy<Execution>;
 
-constexpr std::uint16_t nowhere = 0xffff;
+constexpr std::uint16_t nowhere = 0xffff, out_of_reach = 0x8000;
 
 /// Sets of nodes, one for each row.
 template <class Node>
@@ -77,8 +78,8 @@ std::uint16_t slot_in(const Rows<Node>& rows, LocalIndex row, Node node) {
   const auto begin = rows.node.data() + rows.start(row), end = rows.node.data() + rows.start(row + 1);
   const auto at = std::lower_bound(begin, end, node);
   if (at == end || *at != node) return nowhere;
-  SPREKK_CHECK(at - begin < nowhere, "multigrid: a node couples to {} others; allowed are less than {}", end - begin,
-               nowhere);
+  SPREKK_CHECK(at - begin < out_of_reach - 1, "multigrid: a node couples to {} others; allowed are less than {}",
+               end - begin, out_of_reach - 1);
   return static_cast<std::uint16_t>(at - begin);
 }
 
@@ -86,6 +87,25 @@ View<std::uint16_t*> to_view(const std::vector<std::uint16_t>& from) {
   const View<std::uint16_t*> view("slots", from.size());
   std::copy(from.begin(), from.end(), view.data());
   return view;
+}
+
+/// The entries of a graph between nodes out of each other's reach. Collective.
+std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
+  std::vector<bool> far(graph.n_entries(), false);
+  const auto& halo = *graph.columns;
+  const View<Real*> ball("place and reach", static_cast<std::size_t>(halo.n_all()) * 4);
+  const auto reaches = reach(nodes);
+  for (std::size_t i = 0; i < nodes.place.size(); ++i) {
+    for (int k = 0; k < 3; ++k) ball(4 * i + k) = nodes.place[i][k];
+    ball(4 * i + 3) = reaches[i];
+  }
+  halo.exchange(ball, 4);
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i)
+    for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
+      const Real *const a = &ball(4 * i), *const b = &ball(4 * graph.column(e));
+      far[e] = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
+    }
+  return far;
 }
 
 /// to[q] += sum over c < b of a[c] from[c * stride + q], q < m.
@@ -100,11 +120,13 @@ KOKKOS_INLINE_FUNCTION void add_row(const Real* a, const Real* from, std::size_t
 
 }  // namespace
 
-Galerkin::Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_modes, const std::vector<Real>& tentative)
+Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& aggregates,
+                   const std::vector<Real>& tentative)
     : fine_(A.graph) {
   const auto& halo = *fine_.columns;
   const LocalIndex n_owned = halo.n_owned(), n_all = halo.n_all(), n_coarse = aggregates.n;
-  const int size = A.height;
+  const int size = A.height, n_modes = nodes.n_modes;
+  const auto far = far_entries(fine_, nodes);
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const auto coarse_map = rcp(new Map(invalid, n_coarse, 0, halo.owned()->getComm()));
 
@@ -122,8 +144,8 @@ Galerkin::Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_mode
   const auto P = with_ghosts(make_rows<GlobalIndex>(n_owned,
                                                     [&](LocalIndex i, auto& set) {
                                                       if (aggregate(i) < 0) return;
-                                                      entries(i, [&](LocalIndex j, std::size_t) {
-                                                        if (aggregate(j) >= 0) set.push_back(aggregate(j));
+                                                      entries(i, [&](LocalIndex j, std::size_t e) {
+                                                        if (aggregate(j) >= 0 && !far[e]) set.push_back(aggregate(j));
                                                       });
                                                     }),
                              halo);
@@ -170,8 +192,10 @@ Galerkin::Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_mode
       const bool free = aggregate(i) >= 0;
       entries(i, [&](LocalIndex j, std::size_t e) {
         const bool both = free && aggregate(j) >= 0;
-        slot_P_(e) = both ? slot_in(P, i, aggregate(j)) : nowhere;
-        slot_R_(e) = both ? slot_in(R, aggregate_here(i), j) : nowhere;
+        const Slot mark = far[e] ? out_of_reach : 0;
+        const LocalIndex to = far[e] ? i : j;
+        slot_P_(e) = both ? slot_in(P, i, aggregate(to)) | mark : nowhere;
+        slot_R_(e) = both ? slot_in(R, aggregate_here(i), to) | mark : nowhere;
         for (std::size_t s = P.start(j); free && s < P.start(j + 1); ++s) slots.push_back(slot_in(AP, i, P.node(s)));
       });
       first_slot_AP_(i + 1) = slots.size();
@@ -244,12 +268,13 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
           Real* const row = &p(b * m * first);
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           for (std::size_t k = 0; k < n_a; ++k) {
-            if (slot(begin + k) == nowhere) continue;
+            const Slot s = slot(begin + k);
+            if (s == nowhere) continue;
             const LocalIndex j = graph.column(begin + k);
-            const Real* const from = &t(static_cast<std::size_t>(j) * b * m);
+            const Real* const from = &t(static_cast<std::size_t>(s & out_of_reach ? i : j) * b * m);
             for (int r = 0; r < b; ++r) {
               const Real* const a_r = &a(b * b * begin + (r * n_a + k) * b);
-              Real* const to = row + (r * n + slot(begin + k)) * m;
+              Real* const to = row + (r * n + (s & ~out_of_reach)) * m;
               const Real w = inverse_diagonal(static_cast<std::size_t>(i) * b + r);
               for (int c = 0; c < b; ++c)
                 for (int q = 0; q < m; ++q) to[q] -= w * a_r[c] * from[c * m + q];
@@ -300,15 +325,17 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
             const std::size_t begin = graph.start(j), n_a = graph.start(j + 1) - begin;
             const Real* const from = &t(static_cast<std::size_t>(j) * b * m);
             for (std::size_t k = 0; k < n_a; ++k) {
-              if (slot(begin + k) == nowhere) continue;
-              const LocalIndex column = graph.column(begin + k);
+              const Slot s = slot(begin + k);
+              if (s == nowhere) continue;
+              const bool own = graph.column(begin + k) == j;
+              const LocalIndex column = s & out_of_reach ? j : graph.column(begin + k);
               for (int q = 0; q < m; ++q) {
-                Real* const to = row + (q * n + slot(begin + k)) * b;
+                Real* const to = row + (q * n + (s & ~out_of_reach)) * b;
                 for (int c = 0; c < b; ++c) {
                   Real sum = 0;
                   for (int d = 0; d < b; ++d) sum += from[d * m + q] * a(b * b * begin + (d * n_a + k) * b + c);
-                  to[c] += (column == j ? from[c * m + q] : 0) -
-                           sum * inverse_diagonal(static_cast<std::size_t>(column) * b + c);
+                  to[c] +=
+                      (own ? from[c * m + q] : 0) - sum * inverse_diagonal(static_cast<std::size_t>(column) * b + c);
                 }
               }
             }

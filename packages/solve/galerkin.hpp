@@ -7,14 +7,15 @@ namespace sprekk::solve {
 
 /// P = (I - w D^-1 A) T, R = T^T (I - w A D^-1) and R A P of a matrix A whose values change and whose graph does not,
 /// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
-/// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). Where numbers go is found once, with
-/// the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. R has the graph
-/// of P^T.
+/// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). In P and R, blocks of A between nodes
+/// out of each other's reach are added to the diagonal, or levels would fill up where cells are flat. Where numbers go
+/// is found once, with the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. R
+/// has the graph of P^T.
 class Galerkin {
  public:
-  /// Makes the graphs. `tentative` [owned node, unknown, mode]. Throws where a node couples to 65535 others or more.
+  /// Makes the graphs. `tentative` [owned node, unknown, mode]. Throws where a node couples to 32767 others or more.
   /// Collective.
-  Galerkin(const NodeMatrix& A, const Aggregates& aggregates, int n_modes, const std::vector<Real>& tentative);
+  Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& aggregates, const std::vector<Real>& tentative);
 
   /// Makes the matrices for the present values of A; `inverse_diagonal` [all nodes, unknown] is w D^-1. Collective.
   void update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric);
@@ -25,7 +26,7 @@ class Galerkin {
   std::size_t bytes() const;  ///< of values and places of products
 
  private:
-  using Slot = std::uint16_t;  // a place in a row
+  using Slot = std::uint16_t;  // a place in a row; in slot_P_ and slot_R_ perhaps marked as out of reach
   using Slots = View<Slot*>;
 
   void smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;

@@ -54,7 +54,7 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, 
     const auto aggregates = aggregate(nodes);
     Nodes coarse;
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
-    auto galerkin = std::make_unique<Galerkin>(A, aggregates, nodes.n_modes, tentative);
+    auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
     if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
     levels_.back().smoother = std::make_unique<Chebyshev>(A);
     levels_.back().to_coarse = std::move(galerkin);

@@ -51,7 +51,7 @@ class Springs final : public assembly::Module {
     d.unknowns = {{{"displacement", fields::Entity::node, dim, "m"},
                    Quantity::length,
                    Quantity::force,
-                   NearNullSpace::rigid_motions}};
+                   assembly::NearNullSpace::rigid_motions}};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     d.outputs = {{"displacement", "m", fields::Entity::node, dim}};
     d.linear = true;

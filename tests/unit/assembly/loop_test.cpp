@@ -125,7 +125,7 @@ TEST(Stencil, FieldsOutOfReachAreRefused) {
   const Problem p("triangle");
   const Layout pressure({"pressure", Entity::cell, 1, "Pa"}, *p.mesh);
   EXPECT_THROW(make_stencil(*p.mesh, Loop::cells, p.beta), Error);
-  EXPECT_THROW(make_stencil(*p.mesh, Loop::cells, pressure), Error);
+  EXPECT_THROW(make_stencil(*p.mesh, Loop::fracture_faces, pressure), Error);
 }
 
 void add_pairs(const std::vector<GlobalIndex>& rows, int row_width, const std::vector<GlobalIndex>& columns,
