@@ -26,7 +26,7 @@ def panels(data):
     yield tendency, limits(tendency[~np.isnan(tendency)]), colours, "shear traction / normal compression (-)"
     for name, title, palette in (("slip", "slip", "YlOrRd"), ("opening", "opening, normal jump", "YlGnBu")):
         values = without_noise(data[name], scales(data)[0])
-        quantity, signed = Quantity(title, "m", values), np.min(values) < 0
+        quantity, signed = Quantity(title, "m", values), np.min(values) < -1e-9 * np.max(np.abs(values))
         yield quantity(values), limits(quantity(values), signed), plt.get_cmap("coolwarm" if signed else palette), quantity.label
 
 

@@ -249,7 +249,8 @@ class Distributor {
   }
 };
 
-/// Calls put(x) for each member of a mesh but its communicator and its facets, which come later; a new member that is not listed here does not compile.
+/// Calls put(x) for each member of a mesh but its communicator and its facets, which come later; a new member that is
+/// not listed here does not compile.
 template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,

@@ -10,37 +10,85 @@
 namespace sprekk::mesh {
 namespace {
 
-/// The nodes with unknowns at a face's corners, sorted; -1 where there are fewer than four.
-std::array<LocalIndex, 4> corners_of(const Mesh& mesh, LocalIndex face) {
+/// The nodes at a face's corners, sorted; -1 where there are fewer than four. `free`: of tied ones those that they are
+/// tied to.
+std::array<LocalIndex, 4> corners_of(const Mesh& mesh, LocalIndex face, bool free) {
   const auto& nodes = face_nodes(mesh.shape)[face % n_faces(mesh.shape)];
   const LocalIndex first = face / n_faces(mesh.shape) * mesh.nodes_per_cell();
   std::array<LocalIndex, 4> corners{-1, -1, -1, -1};
   const int n = n_face_corners(mesh.shape);
-  for (int k = 0; k < n; ++k) corners[k] = mesh.free_node(mesh.cells[first + nodes[k]]);
+  for (int k = 0; k < n; ++k) {
+    const LocalIndex node = mesh.cells[first + nodes[k]];
+    corners[k] = free ? mesh.free_node(node) : node;
+  }
   std::sort(corners.begin(), corners.begin() + n);
   return corners;
 }
 
-/// For each face of a local cell [cell * n_faces + local face] the same face of the local cell across it, -1 for none.
+/// Faces by their corners: hashed by the lowest one, a chain per node, first[node] -> next[face] -> ... -> -1.
+class FaceTable {
+ public:
+  FaceTable(const Mesh& mesh, bool free)
+      : mesh_(mesh), free_(free), first_(mesh.n_nodes(), -1), next_(mesh.n_cells() * n_faces(mesh.shape), -1) {}
+  void add(LocalIndex face) { next_[face] = std::exchange(first_[corners_of(mesh_, face, free_)[0]], face); }
+  /// The next face after `from` (-1: the first) with the corners of this one; -1 for none.
+  LocalIndex find(LocalIndex face, LocalIndex from = -1) const {
+    const auto corners = corners_of(mesh_, face, free_);
+    LocalIndex other = from < 0 ? first_[corners[0]] : next_[from];
+    while (other >= 0 && corners_of(mesh_, other, free_) != corners) other = next_[other];
+    return other;
+  }
+
+ private:
+  const Mesh& mesh_;
+  bool free_;
+  std::vector<LocalIndex> first_, next_;
+};
+
+/// Pairs faces that lie on tied sides with those that they are tied to.
+void pair_tied(const Mesh& mesh, const std::vector<LocalIndex>& faces, std::vector<LocalIndex>& across) {
+  const auto is_tied = [&](LocalIndex face) {
+    const auto corners = corners_of(mesh, face, false);
+    return *std::min_element(corners.begin(), corners.begin() + n_face_corners(mesh.shape)) >= mesh.n_free_nodes;
+  };
+  FaceTable table(mesh, true);
+  for (const LocalIndex face : faces)
+    if (!is_tied(face)) table.add(face);
+  for (const LocalIndex face : faces) {
+    if (!is_tied(face)) continue;
+    const LocalIndex other = table.find(face);
+    if (other < 0) continue;
+    SPREKK_CHECK(table.find(face, other) < 0,
+                 "mesh: faces of a periodic side have the same corners; it needs three cells "
+                 "or more in each direction");
+    across[face] = other;
+    across[other] = face;
+  }
+}
+
+/// For each face of a local cell [cell * n_faces + local face] the same face of the local cell across it, -1 for none;
+/// across tied sides, too.
 std::vector<LocalIndex> faces_across(const Mesh& mesh) {
   const int n_faces = mesh::n_faces(mesh.shape);
-  std::vector<LocalIndex> across(static_cast<std::size_t>(mesh.n_cells()) * n_faces, -1);
+  std::vector<LocalIndex> across(static_cast<std::size_t>(mesh.n_cells()) * n_faces, -1), alone;
   std::vector<char> on_fracture(across.size(), 0);
   for (const auto& face : mesh.fracture_faces)
     for (int side : {minus, plus})
       if (face.cell[side] >= 0) on_fracture[face.cell[side] * n_faces + face.local_face[side]] = 1;
-  // faces hashed by their lowest corner: a chain per node, first[node] -> next[face] -> ... -> -1
-  std::vector<LocalIndex> first(mesh.n_nodes(), -1), next(across);
+  FaceTable table(mesh, false);
   for (LocalIndex face = 0; face < static_cast<LocalIndex>(across.size()); ++face) {
     if (on_fracture[face]) continue;
-    const auto corners = corners_of(mesh, face);
-    LocalIndex other = first[corners[0]];
-    while (other >= 0 && corners_of(mesh, other) != corners) other = next[other];
-    if (other < 0)
-      next[face] = std::exchange(first[corners[0]], face);
-    else
-      across[face] = std::exchange(across[other], face) < 0 ? other : -1;
+    const LocalIndex other = table.find(face);
+    if (other < 0) {
+      table.add(face);
+      continue;
+    }
+    across[face] = other;
+    across[other] = face;
   }
+  for (LocalIndex face = 0; face < static_cast<LocalIndex>(across.size()) && !mesh.tied_to.empty(); ++face)
+    if (across[face] < 0 && !on_fracture[face]) alone.push_back(face);
+  pair_tied(mesh, alone, across);
   return across;
 }
 
@@ -78,7 +126,8 @@ std::vector<GlobalIndex> facet_ids(const Mesh& mesh, const std::vector<LocalInde
 }  // namespace
 
 RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
-  const auto across = faces_across(*mesh);
+  std::vector<LocalIndex> across;
+  base::collectively(*mesh->comm, [&] { across = faces_across(*mesh); });
   const auto gives = find_givers(*mesh, across);
   const auto ids = facet_ids(*mesh, across, gives);
   const auto facets = rcp(new Facets);

@@ -6,7 +6,7 @@
 namespace sprekk::mesh {
 
 /// The mesh with its facets. Cells across a tied (periodic) side share a facet; those across a fracture do not.
-/// Collective.
+/// Throws an Error where a tied side has so few cells that its faces have the same corners. Collective.
 RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh);
 
 }  // namespace sprekk::mesh

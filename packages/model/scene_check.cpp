@@ -105,6 +105,8 @@ class Comparison {
   }
 
   void compare_fractures() {
+    if (scene_.fractures.count("intersections"))
+      fail("Fractures > \"intersections\"", "is how files of results call what fractures meet in; choose another name");
     for (const auto& [name, fracture] : scene_.fractures)
       if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
         check_material("Fractures > " + name, fracture.material, "joint");
@@ -160,6 +162,9 @@ class Comparison {
         fail(place, "moves or loads the rock, which \"Flow > rigid rock\" says does not deform");
     }
     if (!scene_.flow) return;
+    const auto& bulk = scene_.bulk;
+    if (!scene_.deforms() && (!bulk.body_force.empty() || !bulk.initial_stress.empty() || bulk.lithostatic_stress))
+      fail("Bulk", "has a force or stress of the rock, which \"Flow > rigid rock\" says does not deform");
     if (scene_.output.error_estimate && !scene_.deforms())
       fail("Output > \"error estimate\"", "is of stress and jumps; with \"Flow > rigid rock\" there are none");
     compare_pressure();
@@ -172,14 +177,19 @@ class Comparison {
   /// Flow that no pressure and no storage ties to a level has none, or any.
   void compare_pressure() {
     const auto& conditions = scene_.boundary_conditions;
-    const bool given = std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.second.pressure; });
-    const bool stored = std::any_of(scene_.materials.begin(), scene_.materials.end(), [&](const auto& m) {
-      return m.second.compressibility > 0 || m.second.porosity * scene_.flow->compressibility > 0;
+    const bool given =
+        std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.second.pressure; });
+    if (!names_.regions) return;
+    const bool stored = std::any_of(names_.regions->begin(), names_.regions->end(), [&](const auto& name) {
+      const auto* rock = rock_of(name);
+      return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0;
     });
-    const bool known = is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
+    const bool known =
+        is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
-      fail("Flow", "nothing says how high the pressure is: give a \"pressure\" on a boundary, or storage (\"compressibility of "
-                   "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
+      fail("Flow",
+           "nothing says how high the pressure is: give a \"pressure\" on a boundary, or storage (\"compressibility of "
+           "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
   }
 
   void compare_permeability(const Material& rock) {

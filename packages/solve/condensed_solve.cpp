@@ -48,7 +48,9 @@ LinearSystem CondensedSolve::system() {
   const auto blocks = remaining();
   for (int r = 0; r < static_cast<int>(blocks.size()); ++r) {
     system.diagonal.push_back({blocks[r], elimination_.condensed(r, r), {}, symmetric_});
-    if (with_bulk) system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };
+    // of displacements, whose aggregates must not cross fractures; other fields couple by what was eliminated
+    if (with_bulk && !blocks[r].near_null_space.is_null())
+      system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };
   }
   return system;
 }

@@ -180,7 +180,7 @@ def main(arguments):
     for name in ("outcrop 2D",) if options.quick else ("outcrop 2D", "shapes 3D"):
         failed += [what for run in runs if run.scene.name == name for what in energies(options, run.scene)]
     newton = [count for run in runs for count in run.newton]
-    values = {"newton_median": np.median(newton), "newton_max": max(newton),
+    values = {"newton_median": np.median(newton), "newton_max": max(newton, default=0),
               "balance": max((run.budget.balance for run in runs if run.budget), default=np.inf)}
     missed = linear.missed(values, BOUNDS)
     print()

@@ -91,7 +91,8 @@ TEST(LinearSolvers, ForcingSavesIterations) {
 
 TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
   const std::string name = "seed/immersed_3d.xml";
-  const auto few = run(name, {}, 1), many = run(name, {"Solver.Linear solver.direct limit 3D=100"}, 1);
+  const auto few = run(name, {"Solver.Linear solver.direct limit 3D=20000"}, 1),
+             many = run(name, {"Solver.Linear solver.direct limit 3D=100"}, 1);
   EXPECT_EQ(few.model->newton().linear().solver().reason.substr(0, 6), "direct");
   EXPECT_EQ(many.model->newton().linear().solver().reason.substr(0, 9), "iterative");
 }

@@ -67,9 +67,13 @@ TEST(NumberFacets, OneBetweenCellsAndOneOnEachSideOfAFracture) {
 }
 
 TEST(NumberFacets, CellsAcrossATiedSideShareOne) {
-  auto mesh = make_box(unit_steps("quadrilateral", {3, 2}));
-  mesh = tie_periodic(mesh, {{"west", "east"}});
-  EXPECT_EQ(places(mesh, true).size(), 3u * 2 + 3 * 3);
+  for (unsigned n : {1, 2, 3})
+    for (const char* cell : {"quadrilateral", "triangle"}) {
+      auto mesh = make_box(unit_steps(cell, {static_cast<int>(n), 2}));
+      mesh = tie_periodic(mesh, {{"west", "east"}});
+      const unsigned diagonals = cell[0] == 't' ? 2 * n : 0;
+      EXPECT_EQ(places(mesh, true).size(), 2 * n + 3 * n + diagonals) << cell << ' ' << n;
+    }
 }
 
 }  // namespace

@@ -120,6 +120,24 @@ TEST(Flow, IsInBalance) {
   }
 }
 
+/// The count hardly grows with the mesh, whatever the scheme couples on faces.
+TEST(Flow, MultigridSolvesPressures) {
+  for (const auto& [cell, scheme] : std::vector<std::array<std::string, 2>>{
+           {"triangle", "rt0"}, {"tetrahedron", "rt0"}, {"quadrilateral", "tpfa"}, {"hexahedron", "mimetic"}}) {
+    std::vector<int> counts;
+    for (int n : {1, 2}) {
+      auto scene = scene_of(cell, n * (is_flat(cell) ? 32 : 8), scheme);
+      scene.solver.linear_solver.type = "iterative";
+      model::Model model(scene, Tpetra::getDefaultComm());
+      const auto report = model.step_to(1);
+      EXPECT_TRUE(report.converged) << cell;
+      counts.push_back(solve::iterations(report.linear_solves));
+    }
+    EXPECT_LE(counts[1], 25) << cell << ' ' << scheme;
+    EXPECT_LE(counts[1], counts[0] + 6) << cell << ' ' << scheme;
+  }
+}
+
 /// In a closed box the source fills what the pressure stores: S dp/dt = source.
 TEST(Flow, AClosedBoxFillsUp) {
   for (const std::string cell : all_cells) {
