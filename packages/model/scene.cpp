@@ -65,7 +65,7 @@ void Material::describe(base::Section& s) {
             "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ "
             "in 3D");
     s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
-    s.entry(compressibility, "compressibility of pores", "1/Pa", base::at_least(0),
+    s.entry(compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
             "growth of the porosity with the fluid's pressure; with it the specific storage is this + porosity x "
             "compressibility of the fluid");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
@@ -181,11 +181,11 @@ void Lithostatic::describe(base::Section& s) {
 
 void Flow::describe(base::Section& s) {
   s.entry(rigid_rock, "rigid rock", "-", "the rock does not deform: flow alone, without displacements");
-  s.entry(viscosity, "viscosity", "Pa s", base::positive(), "mu of the fluid");
+  s.entry(viscosity, "viscosity", "Pa*s", base::positive(), "mu of the fluid");
   s.entry(density, "density", "kg/m^3", base::at_least(0),
           "of the fluid; its weight counts where \"Bulk\" has gravity");
-  s.entry(compressibility, "compressibility", "1/Pa", base::at_least(0), "of the fluid");
-  s.entry(source, "source", "1/s", base::any(),
+  s.entry(compressibility, "compressibility", "Pa^-1", base::at_least(0), "of the fluid");
+  s.entry(source, "source", "s^-1", base::any(),
           "volume of fluid per volume of rock and time, an expression of x, y, z, t");
   s.entry(initial_pressure, "initial pressure", "Pa", base::any(), "at the start, where fluid is stored; of x, y, z");
   s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
