@@ -300,6 +300,9 @@ class Scenes(BadInput):
         self.refuse(["Flow: nothing says how high the pressure is"], "check", "a.xml")
         fracture = ("Mesh.fractures.f.lower corner={0.25, 0.5}", "Mesh.fractures.f.upper corner={0.75, 0.5}", "Fractures.f.material=fresh granite joint")
         refuse(["Flow: the mesh has fractures; flow along and across them is not available yet"], *fracture)
+        refuse(['Bulk: has a force or stress of the rock'], "Bulk.body force={1, 0}")
+        (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
+        self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
 
