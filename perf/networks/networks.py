@@ -5,7 +5,7 @@ import argparse
 import json
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,28 +38,9 @@ class Network:
 
 
 @dataclass
-class Run:
-    """A network's run on so many ranks; `failures` says in words what is wrong."""
-    scene: Network
-    directory: Path
-    results: dict = field(default_factory=dict)
-    failures: list = field(default_factory=list)
-    seconds: float = 0
-    faces: list = field(default_factory=list)  # from here on as contact.compare wants them
-    scales: object = None
-    worst: object = None
+class Run(contact.Run):
+    """Of a network on so many ranks."""
     budget: object = None
-
-    @property
-    def steps(self):
-        return self.results.get("steps", [])
-
-    @property
-    def newton(self):
-        return [step["newton_iterations"] for step in self.steps]
-
-    def fraction(self, state):
-        return linear.Run(self.results).fraction(state)
 
 
 def networks():
