@@ -85,7 +85,7 @@ class IterativeSolver : public LinearSolver {
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
     kept_ = !renew_ && !preconditioner_.is_null() && solvers_.size() <= 1 && system.symmetric == system_.symmetric &&
-            n_changed(*system.diagonal.front().matrix) <= most_changed;
+            !system.diagonal.front().matrix.is_null() && n_changed(*system.diagonal.front().matrix) <= most_changed;
     system_ = system;
     symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
     comm_ = system.joined->map()->getComm();
@@ -105,8 +105,12 @@ class IterativeSolver : public LinearSolver {
     }
     const int expected = static_cast<int>(std::ceil(-pace_ * std::log10(tolerance)));
     iterate(b, x, tolerance, kept_ ? expected + most_more : 0, report);
-    if (kept_ && report.reason.empty() && !(report.residual <= 2 * tolerance)) {
+    if (kept_ && !(report.reason.empty() && report.residual <= 2 * tolerance)) {
       kept_ = false;
+      if (!report.reason.empty() || !std::isfinite(report.residual)) {  // what the library left is no start
+        x.putScalar(0);
+        report = {};
+      }
       make_preconditioner();
       report.reason = failure_;
       if (failure_.empty()) iterate(b, x, tolerance, 0, report);
