@@ -36,12 +36,12 @@ class Balance(ProgramTest):
             self.assertGreater(b.late[-1], 1e-3 * b.heat[-1])
 
     def test_heat_of_a_known_path(self):
-        """Cyclic shear of a unit area at constant load: between steps 2 and 3, and 7 and 8, nothing; reversed: 0.18 times the slip."""
+        """Cyclic shear of a unit area at constant load: the steps that slide turn 0.18 times the slip into heat, others nothing."""
         b = self.budget(*CASES[0])
         slips = [step["fractures"]["fracture"]["mean_plastic_jump"]["local"][1] for step in self.told["steps"]]
-        tractions = [step["fractures"]["fracture"]["mean_traction"]["local"][1] for step in self.told["steps"]]
-        increments = np.diff([0, *slips])
-        self.assertTrue(np.allclose(np.diff(b.heat), increments * tractions, rtol=0, atol=1e-12))
+        slides = np.array([0, 1, 0, 0, 1, 0, 1, 0])
+        self.assertTrue(np.allclose(np.diff(b.heat), 0.18 * slides * abs(np.diff([0, *slips])), rtol=0, atol=1e-12))
+        self.assertGreater(np.diff(b.heat)[slides == 1].min(), 1e-3)
 
     def test_what_is_wrong_is_seen(self):
         for scene, cell in CASES:
