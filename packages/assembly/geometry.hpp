@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace sprekk::assembly {
 
@@ -24,6 +26,20 @@ struct Geometry {
       for (int i = 0; i < dim; ++i) X[a][i] = coordinates(cells(cell, a), i);
   }
 };
+
+template <class T>
+ConstView<T*> to_device(const std::vector<T>& from, const std::string& name) {
+  View<T*> to(name, from.size());
+  const auto host = Kokkos::create_mirror_view(to);
+  for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
+  Kokkos::deep_copy(to, host);
+  return to;
+}
+
+/// Which of the different materials each local cell has: as told, or, if nothing is, the number of its region.
+inline ConstView<int*> material_numbers(const Geometry& geometry, const std::vector<int>& of_cell) {
+  return of_cell.empty() ? geometry.region : to_device(of_cell, "material of cells");
+}
 
 /// The coordinates of a cell's nodes, on the host.
 template <Shape shape>

@@ -41,11 +41,8 @@ class BulkMomentum final : public assembly::Module {
     mesh_ = context.mesh();
     const auto extents = mesh::domain_extents(*mesh_);
     size_ = *std::max_element(extents.begin(), extents.end());
-    View<laws::Elasticity*> material("material", parameters_.elasticity.size());
-    const auto host = Kokkos::create_mirror_view(material);
-    std::copy(parameters_.elasticity.begin(), parameters_.elasticity.end(), host.data());
-    Kokkos::deep_copy(material, host);
-    op_ = std::make_unique<Op>(Op{context.geometry(), material, law_numbers(context)});
+    op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity, "material"),
+                                  assembly::material_numbers(context.geometry(), parameters_.elasticity_of_cell)});
     displacement_ = context.field("displacement");
     if (mesh_->n_global_enriched > 0) tip_displacement_ = context.field("tip displacement");
     using Assembler = assembly::Assembler<Op>;
@@ -128,15 +125,6 @@ class BulkMomentum final : public assembly::Module {
   }
   int law_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
-  }
-
-  ConstView<int*> law_numbers(const assembly::Context& context) const {
-    if (parameters_.elasticity_of_cell.empty()) return context.geometry().region;
-    View<int*> numbers("law", mesh_->n_cells());
-    const auto host = Kokkos::create_mirror_view(numbers);
-    std::copy(parameters_.elasticity_of_cell.begin(), parameters_.elasticity_of_cell.end(), host.data());
-    Kokkos::deep_copy(numbers, host);
-    return numbers;
   }
 
   Real largest_initial_stress(const std::array<Real, 3>& x) const {

@@ -14,15 +14,6 @@ using assembly::Loop;
 
 namespace {
 
-template <class T>
-ConstView<T*> to_device(const std::vector<T>& from, const char* name) {
-  View<T*> to(std::string(name), from.size());
-  const auto host = Kokkos::create_mirror_view(to);
-  for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
-  Kokkos::deep_copy(to, host);
-  return to;
-}
-
 template <Shape shape>
 class DarcyFlow final : public assembly::Module {
  public:
@@ -53,11 +44,9 @@ class DarcyFlow final : public assembly::Module {
     const auto extents = mesh::domain_extents(*mesh_);
     size_ = *std::max_element(extents.begin(), extents.end());
     const auto& weight = parameters_.weight;
-    const auto numbers = parameters_.mobility_of_cell.empty() ? context.geometry().region
-                                                              : to_device(parameters_.mobility_of_cell, "mobility");
     op_ = std::make_unique<Op>(Op{context.geometry(),
-                                  to_device(parameters_.mobility, "mobilities"),
-                                  numbers,
+                                  assembly::to_device(parameters_.mobility, "mobility"),
+                                  assembly::material_numbers(context.geometry(), parameters_.mobility_of_cell),
                                   {weight[0], weight[1], weight[2]},
                                   parameters_.scheme});
     blocks_ = {context.field("pressure"), context.field("face pressure")};
