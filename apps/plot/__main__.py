@@ -2,7 +2,8 @@
 
 PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
 as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
-error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps.
+error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps. Of a
+run with flow alone flow.png, with pressure and velocity, takes the place of the first three and of the loops.
 """
 import argparse
 import sys
@@ -38,6 +39,7 @@ def of_run(directory, options):
     import bulk
     import convergence
     import error
+    import flow
     import fractures
     import loops
     import maps
@@ -55,12 +57,17 @@ def of_run(directory, options):
         rock, joints = read.grid(file), None
         for file in [file for t, file in fracture_steps if t == time]:
             joints = read.grid(file)
-        yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
-        if joints and joints.GetNumberOfCells() > 0:
+        if rock.GetCellData().HasArray("pressure"):
+            yield "flow", flow.of_step(rock, joints if joints and joints.GetNumberOfCells() else None, title, options.whole)
+        deforms = rock.GetPointData().HasArray("displacement")
+        if deforms:
+            yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
+        if deforms and joints and joints.GetNumberOfCells() > 0:
             yield "fractures", fractures.of_step(joints, names, title)
             yield "maps", maps.of_step(rock, joints, title)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
+    names = [name for name in names if "mean_jump" in states[-1]["fractures"][name]]
     if names and len(states) > 1:
         yield "loops", loops.of_fractures(states, names, name)
     elif names:

@@ -73,6 +73,8 @@ def write(directory, folder):
     if not steps:
         raise PlotError(f'{directory}: holds no bulk.pvd; the scene\'s Output has "vtu" false')
     rock = grid(steps[-1][1])
+    if not rock.GetPointData().HasArray("displacement"):
+        raise PlotError(f"{directory}: a state for ParaView is written of runs that deform; open bulk.pvd and fractures.pvd")
     warp = warp_factor(vtk_to_numpy(rock.GetPoints().GetData()), arrays(rock.GetPointData())["displacement"])
     solid, run = not is_plane(rock), Path(directory).resolve()
     state = Path(folder) / "paraview.py"

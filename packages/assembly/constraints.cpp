@@ -15,24 +15,37 @@ namespace sprekk::assembly {
 
 namespace {
 
+/// Collects entries, one per unknown.
+class Collector {
+ public:
+  Collector(Held& held, GlobalIndex n_owned) : held_(held), n_owned_(n_owned) {}
+  void add(const Held::Entry& entry) {
+    if (entry.unknown < 0 || entry.unknown >= n_owned_) return;
+    const auto [found, is_new] = first_.emplace(entry.unknown, static_cast<int>(held_.entries.size()));
+    if (is_new)
+      held_.entries.push_back(entry);
+    else if (held_.entries[found->second].condition != entry.condition)
+      held_.repeated.emplace_back(found->second, entry);
+  }
+
+ private:
+  Held& held_;
+  GlobalIndex n_owned_;
+  std::unordered_map<GlobalIndex, int> first_;  // entry of an unknown
+};
+
 /// What conditions on a field hold of the unknowns below n_owned, on a mesh or a rank's part of it. Nodes are those of
 /// faces, of the cell that has the face; entity_of(face, node) is what carries the unknowns there, -1 for nothing.
 template <class AnyMesh, class EntityOf>
 Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
   Held held;
-  std::unordered_map<GlobalIndex, int> first;  // entry of an unknown
+  Collector collector(held, n_owned);
   const int dim = mesh.dim();
   const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component) {
-    const GlobalIndex unknown = entity * n_components + component;
-    if (entity < 0 || unknown >= n_owned) return;
-    Held::Entry entry{unknown, condition, component, {0, 0, 0}};
+    Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, {0, 0, 0}};
     std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
-    const auto [found, is_new] = first.emplace(unknown, static_cast<int>(held.entries.size()));
-    if (is_new)
-      held.entries.push_back(entry);
-    else if (held.entries[found->second].condition != condition)
-      held.repeated.emplace_back(found->second, entry);
+    collector.add(entry);
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
     for (const auto& face : mesh.boundary_faces) {
@@ -55,19 +68,27 @@ Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                    [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
 }
 
-/// Of a field on facets: one entry for each, at the mean of its corners.
+/// Of a field on facets, at the mean of their corners.
 Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
                       const std::vector<DirichletCondition>& conditions) {
   Held held;
-  for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
-    for (const auto& face : mesh.boundary_faces) {
-      const int region = conditions[k].region;
-      if (face.boundary != conditions[k].boundary || (region >= 0 && mesh.cell_region[face.cell] != region)) continue;
-      const LocalIndex facet = mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face];
-      const auto x = mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face));
-      for (int c = 0; c < n_components && (facet + 1) * n_components <= n_owned; ++c)
-        if (conditions[k].values[c]) held.entries.push_back({GlobalIndex(facet) * n_components + c, k, c, x});
-    }
+  Collector collector(held, n_owned);
+  const auto add = [&](int k, LocalIndex facet, const mesh::Vector& x) {
+    for (int c = 0; c < n_components; ++c)
+      if (conditions[k].values[c]) collector.add({GlobalIndex(facet) * n_components + c, k, c, x});
+  };
+  for (int k = 0; k < static_cast<int>(conditions.size()); ++k) {
+    const auto& [name, field, boundary, values, region, fracture] = conditions[k];
+    for (const auto& face : mesh.boundary_faces)
+      if (fracture < 0 && face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region))
+        add(k, mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face],
+            mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face)));
+    for (const auto& rim : mesh.facets->rims)
+      if (rim.boundary == boundary && region < 0 &&
+          (fracture < 0 || mesh.fracture_faces[rim.face].fracture == fracture))
+        add(k, mesh.facets->ridge[rim.face * mesh::n_face_corners(mesh.shape) + rim.ridge],
+            mesh::ridge_centre(mesh, rim.face, rim.ridge));
+  }
   return held;
 }
 

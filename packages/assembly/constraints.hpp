@@ -12,13 +12,14 @@
 
 namespace sprekk::assembly {
 
-/// Values of a node field on a boundary, per component; a component without value is free.
+/// Values of a field on nodes or facets on a boundary, per component; a component without value is free.
 struct DirichletCondition {
   std::string name;  ///< how messages call it
   std::string field;
   int boundary;  ///< number of the mesh's boundary
   std::vector<std::optional<base::Expression>> values;
-  int region = -1;  ///< only on faces of cells of this region; -1: all
+  int region = -1;    ///< only on faces of cells of this region; -1: all
+  int fracture = -1;  ///< only where this fracture ends; -1: on faces, and, if no region is named, where fractures end
 };
 
 /// The unknowns that conditions on one node field hold.

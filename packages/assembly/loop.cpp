@@ -157,6 +157,17 @@ Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
       table.add((on_cells ? face.cell : mesh.facets->of_cell[face.cell * n_faces + face.local_face]) * width);
     return {table.finish(), width};
   }
+  if (!on_cells && (loop == Loop::fracture_cells || loop == Loop::fracture_faces)) {
+    const bool ends = loop == Loop::fracture_cells;
+    const LocalIndex n = ends ? mesh.n_fracture_faces() : mesh.n_owned_fracture_faces;
+    const int n_ridges = ends ? mesh::n_face_corners(mesh.shape) : 0;
+    TableBuilder table(n, 1 + n_ridges);
+    for (LocalIndex f = 0; f < n; ++f) {
+      table.add(mesh.facets->fracture_face[f] * width);
+      for (int k = 0; k < n_ridges; ++k) table.add(mesh.facets->ridge[f * n_ridges + k] * width);
+    }
+    return {table.finish(), width};
+  }
   SPREKK_CHECK(loop == Loop::cells, "field {}: no stencil in a loop over fracture faces", field.name);
   TableBuilder table(mesh.n_cells(), on_cells ? 1 : n_faces);
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {

@@ -11,12 +11,13 @@
 namespace sprekk::assembly {
 
 /// What a kernel runs over. A contact law is evaluated on fracture_faces, each by its owner alone. The linear operators
-/// run over cells and fracture_sides, ghosts included, and write the rows that this rank owns, so assembly sends
-/// nothing.
+/// run over cells, fracture_cells and fracture_sides, ghosts included, and write the rows that this rank owns, so
+/// assembly sends nothing.
 enum class Loop {
   cells,           ///< all local cells
   fracture_sides,  ///< one side of a fracture face, wherever that side's cell is local
   fracture_faces,  ///< owned fracture faces
+  fracture_cells,  ///< all local fracture faces, as cells of the fracture
   boundary_faces,  ///< boundary faces of all local cells
   tip_cells,       ///< those of cells that have a crack tip, see mesh::Mesh::tip
   tip_sides        ///< those of fracture_sides whose cell has one
@@ -40,7 +41,7 @@ bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 /// | boundary_faces            | the face's nodes                     | -                                           |
 ///
 /// A field on cells has one group in cells and boundary_faces, that of the cell; one on facets all of the cell's, or
-/// the face's.
+/// the face's; in fracture_faces the face itself, in fracture_cells the face, then its ridges.
 ///
 /// A two-sided field has 2 dim components per face: those of side minus, then those of side plus. A field on enriched
 /// nodes is a node field, absent (first = -1) on nodes that are not enriched, and on faces without a tip: there

@@ -83,6 +83,12 @@ RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout&
       const auto x = mesh::face_centre(mesh::face_corners(mesh, face / n_faces, face % n_faces));
       for (int i = 0; i < mesh.dim(); ++i) view(facet, i) = x[i];
     }
+  const int n_ridges = mesh::n_face_corners(mesh.shape);
+  for (LocalIndex ridge = 0; ridge < mesh.n_owned_fracture_faces * n_ridges && on_facets; ++ridge)
+    if (const LocalIndex facet = mesh.facets->ridge[ridge]; facet < layout.n_owned_entities()) {
+      const auto x = mesh::ridge_centre(mesh, ridge / n_ridges, ridge % n_ridges);
+      for (int i = 0; i < mesh.dim(); ++i) view(facet, i) = x[i];
+    }
   return coordinates;
 }
 

@@ -217,23 +217,29 @@ void System::commit(const BlockVector& x) {
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
-  Real farthest = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (unknowns_[b].value == Quantity::length) farthest = std::max<Real>(farthest, x[b]->normInf());
-  const Real rounding = 64 * std::numeric_limits<Real>::epsilon() * farthest;
+  const auto rounding_of = [&](Quantity value) {
+    if (value != Quantity::length && value != Quantity::pressure) return Real(0);
+    Real farthest = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      if (unknowns_[b].value == value) farthest = std::max<Real>(farthest, x[b]->normInf());
+    return 64 * std::numeric_limits<Real>::epsilon() * farthest;
+  };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
     const auto diagonal = const_view(*diagonals_[b]);
-    const Real rounding_of_block = unknowns_[b].value == Quantity::length ? rounding : 0;
+    const Real rounding_of_block = rounding_of(unknowns_[b].value);
+    const bool of_flow = unknowns_[b].row == Quantity::flow;  // some rows let much less through than others
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
           const Real noise = mask(i) ? 0 : rounding_of_block * diagonal(i), size_of_row = row(i) < 0 ? -row(i) : row(i);
-          const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / (mask(i) ? held_scale : free_scale);
+          const Real weak = of_flow ? diagonal(i) * held_scale : free_scale;
+          const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
+          const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
         Kokkos::Max<Real>(largest));

@@ -13,7 +13,7 @@ enum class Entity {
   cell,
   fracture_face,
   enriched_node,  ///< nodes around crack tips, see mesh::Mesh::enriched
-  facet           ///< faces of cells, see mesh::Facets
+  facet           ///< what cells and fracture faces end in, see mesh::Facets
 };
 
 std::string name_of(Entity entity);

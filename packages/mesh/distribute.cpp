@@ -45,7 +45,11 @@ class Distributor {
  public:
   /// Keeps references to the arguments.
   Distributor(const GlobalMesh& global, const std::vector<int>& part, int n_ranks)
-      : global_(global), part_(part), nodes_per_cell_(n_nodes(global.shape)), pieces_(find_pieces(global)) {
+      : global_(global),
+        part_(part),
+        nodes_per_cell_(n_nodes(global.shape)),
+        pieces_(find_pieces(global)),
+        ridges_(find_ridges(global)) {
     check(n_ranks);
     node_owner_ = node_owners(n_ranks);
     report_ = report(global, part, n_ranks);
@@ -79,6 +83,7 @@ class Distributor {
   const std::vector<int>& part_;
   const int nodes_per_cell_;
   const Bodies pieces_;
+  const std::vector<std::vector<GlobalIndex>> ridges_;
   int rank_ = 0;
   std::vector<int> node_owner_;
   PartitionReport report_;
@@ -108,7 +113,8 @@ class Distributor {
     return result;
   }
 
-  /// Cells that share a node with an owned cell (hence the owned ones too), and those opposite to owned fracture faces.
+  /// Cells that share a node with an owned cell (hence the owned ones too), those opposite to owned fracture faces, and
+  /// those on side minus of faces that end where an owned one does.
   std::vector<bool> local_cells() const {
     const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
     std::vector<bool> result(global_.n_cells(), false);
@@ -117,7 +123,37 @@ class Distributor {
         result[cell] = is_near[global_.free_node(node(cell, k))];
     for (const auto& face : global_.fracture_faces)
       if (part_[face.cell[minus]] == rank_) result[face.cell[plus]] = true;
+    const auto minus_cell = [&](GlobalIndex face) { return global_.fracture_faces[face].cell[minus]; };
+    for (const auto& faces : ridges_)
+      if (std::any_of(faces.begin(), faces.end(), [&](GlobalIndex face) { return part_[minus_cell(face)] == rank_; }))
+        for (const GlobalIndex face : faces) result[minus_cell(face)] = true;
     return result;
+  }
+
+  /// The fracture faces that end in the same ridge, of each ridge with several.
+  static std::vector<std::vector<GlobalIndex>> find_ridges(const GlobalMesh& mesh) {
+    std::vector<std::pair<std::array<GlobalIndex, 2>, GlobalIndex>> ends;
+    for (std::size_t id = 0; id < mesh.fracture_faces.size(); ++id)
+      for (int k = 0; k < n_face_corners(mesh.shape); ++k)
+        ends.emplace_back(ridge_points(corners_of(mesh, id), mesh.shape, k), id);
+    std::sort(ends.begin(), ends.end());
+    std::vector<std::vector<GlobalIndex>> result;
+    for (auto first = ends.begin(), end = first; first != ends.end(); first = end) {
+      end = std::find_if(first, ends.end(), [&](const auto& other) { return other.first != first->first; });
+      if (end - first < 2) continue;
+      result.emplace_back();
+      std::transform(first, end, std::back_inserter(result.back()), [](const auto& one) { return one.second; });
+    }
+    return result;
+  }
+
+  /// The points at the corners of a fracture face, in the order of the minus cell's face.
+  static std::array<GlobalIndex, 4> corners_of(const GlobalMesh& mesh, GlobalIndex id) {
+    const auto& face = mesh.fracture_faces[id];
+    const auto nodes = nodes_of_face(mesh, face.cell[minus], face.local_face[minus]);
+    std::array<GlobalIndex, 4> corners{-1, -1, -1, -1};
+    for (int k = 0; k < n_face_corners(mesh.shape); ++k) corners[k] = mesh.point_of(nodes[k]);
+    return corners;
   }
 
   /// For each node the lowest rank that owns a cell around it or around a node tied to it; -1 for a tied one.
@@ -210,6 +246,7 @@ class Distributor {
     face.id = id;
     face.fracture = global.fracture;
     face.local_face = global.local_face;
+    face.corners = corners_of(global_, id);
     face.area = norm(area);
     face.centre = face_centre(global_, global.cell[minus], global.local_face[minus]);
     face.frame = face_frame(area, global_.dim());

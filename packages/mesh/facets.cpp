@@ -15,6 +15,16 @@ FaceCorners corners_of(const GlobalMesh& mesh, GlobalIndex cell, int local_face)
   return result;
 }
 
+/// Of a fracture face, counted around it.
+Vector face_corner(const Mesh& mesh, LocalIndex face, int k) {
+  const auto& fracture = mesh.fracture_faces[face];
+  const int side = fracture.cell[minus] >= 0 ? minus : plus;
+  Vector x{0, 0, 0};
+  std::copy_n(&mesh.coordinates[fracture.nodes[side][k % n_face_corners(mesh.shape)] * mesh.dim()], mesh.dim(),
+              x.begin());
+  return x;
+}
+
 }  // namespace
 
 Vector point(const GlobalMesh& mesh, GlobalIndex node) {
@@ -50,6 +60,15 @@ Vector area_vector(const FaceCorners& corners) {
     default:
       return 0.5 * cross(edge(0, 2), edge(1, 3));
   }
+}
+
+Vector ridge_centre(const Mesh& mesh, LocalIndex face, int k) {
+  const Vector a = face_corner(mesh, face, k);
+  return mesh.dim() == 2 ? a : 0.5 * (a + face_corner(mesh, face, k + 1));
+}
+
+Real ridge_length(const Mesh& mesh, LocalIndex face, int k) {
+  return mesh.dim() == 2 ? 1 : norm(face_corner(mesh, face, k + 1) - face_corner(mesh, face, k));
 }
 
 Vector face_centre(const FaceCorners& corners) {

@@ -38,6 +38,18 @@ FaceCorners face_corners(const Mesh& mesh, LocalIndex cell, int local_face);
 Vector area_vector(const FaceCorners& corners);
 Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
+/// The points, sorted, in which a face with these numbers of points at its corners ends: ridge k is corner k in 2D (the
+/// second is -1), the edge from corner k to the next in 3D.
+inline std::array<GlobalIndex, 2> ridge_points(const std::array<GlobalIndex, 4>& corners, Shape shape, int k) {
+  if (dimension(shape) == 2) return {corners[k], -1};
+  const GlobalIndex a = corners[k], b = corners[(k + 1) % n_face_corners(shape)];
+  return {a < b ? a : b, a < b ? b : a};
+}
+
+/// The middle of ridge k of a fracture face, and its length; 1 in 2D.
+Vector ridge_centre(const Mesh& mesh, LocalIndex face, int k);
+Real ridge_length(const Mesh& mesh, LocalIndex face, int k);
+
 /// Mean of the corners of a face.
 Vector face_centre(const FaceCorners& corners);
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);

@@ -44,6 +44,10 @@ struct GlobalMesh {
   GlobalIndex free_node(GlobalIndex node) const {
     return node < n_free_nodes() ? node : tied_to[node - n_free_nodes()];
   }
+  /// The number of the point at a node, the same for all its copies.
+  GlobalIndex point_of(GlobalIndex node) const {
+    return parent_node.empty() ? free_node(node) : parent_node[free_node(node)];
+  }
   int dim() const { return dimension(shape); }
   GlobalIndex n_cells() const { return static_cast<GlobalIndex>(cell_region.size()); }
   GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(coordinates.size()) / dim(); }
@@ -58,11 +62,23 @@ struct PartitionReport {
   GlobalIndex separated_faces;  ///< fracture faces whose two cells are in different parts
 };
 
-/// The faces of cells as entities of their own: one between two cells, one on each side of a fracture, one on the
-/// boundary. A facet belongs to the rank of that one of its cells that has the lower number.
+/// What cells and fracture faces end in, as entities of their own. Of cells: one between two of them, the fracture face
+/// itself for the two beside it, one on the boundary. Of fracture faces (ridges: points in 2D, edges in 3D): one for
+/// all faces, of any fracture, that end there. A facet belongs to the rank of that one of its cells, or faces, that has
+/// the lowest number; a fracture face as a facet to its own.
 struct Facets {
-  std::vector<GlobalIndex> id;      ///< [facet] global number, the same for any partition; owned ones first
-  std::vector<LocalIndex> of_cell;  ///< [cell * n_faces(shape) + local face] facet
+  /// Where a fracture face ends on the boundary.
+  struct Rim {
+    LocalIndex face;  ///< local fracture face with its cell on side minus
+    int ridge;        ///< which of its ridges
+    int boundary;
+  };
+  std::vector<GlobalIndex> id;            ///< [facet] global number, the same for any partition; owned ones first
+  std::vector<LocalIndex> of_cell;        ///< [cell * n_faces(shape) + local face] facet
+  std::vector<LocalIndex> fracture_face;  ///< [fracture face] facet
+  std::vector<LocalIndex> ridge;  ///< [fracture face * n_face_corners(shape) + k] facet; ridge k is corner k in 2D, the
+                                  ///< edge from corner k to the next in 3D
+  std::vector<Rim> rims;
   LocalIndex n_owned = 0;
 };
 
@@ -71,8 +87,9 @@ struct Facets {
 ///
 /// Ownership: a cell belongs to its part of the partition, a fracture face to the rank of its minus cell, a node to the
 /// lowest rank that owns a cell around it. Ghost cells are all cells that share a node with an owned cell, and the
-/// opposite cell of every owned fracture face. Local nodes are the nodes of all local cells; local fracture faces are
-/// those with at least one local cell. So rows of owned nodes can be assembled from local cells without communication.
+/// opposite cell of every owned fracture face, and the cells on side minus of faces, of any fracture, that end where an
+/// owned one does. Local nodes are the nodes of all local cells; local fracture faces are those with at least one local
+/// cell. So rows of owned nodes and facets can be assembled from local cells and faces without communication.
 struct Mesh {
   struct FractureFace {
     GlobalIndex id;                  ///< global number
@@ -81,7 +98,9 @@ struct Mesh {
     std::array<int, 2> local_face;   ///< number of the face in that cell
     std::array<std::array<LocalIndex, max_face_nodes>, 2>
         nodes;  ///< local nodes of each side, the k-th ones coincide; -1 if absent
-    Real area;  ///< length in 2D; metre, metre^2
+    std::array<GlobalIndex, 4>
+        corners;  ///< numbers of the points at the corners, the same for all faces that end there
+    Real area;    ///< length in 2D; metre, metre^2
     std::array<Real, 3> centre;
     std::array<std::array<Real, 3>, 3>
         frame;  ///< rows n, t1[, t2]; 2D t = (n_y, -n_x); 3D t1 = a x n/|a x n|, t2 = n x t1

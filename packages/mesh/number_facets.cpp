@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "base/check.hpp"
 #include "mesh/exchange.hpp"
+#include "mesh/facets.hpp"
 
 namespace sprekk::mesh {
 namespace {
@@ -66,15 +69,23 @@ void pair_tied(const Mesh& mesh, const std::vector<LocalIndex>& faces, std::vect
   }
 }
 
+/// Calls visit(fracture face, cell * n_faces + local face) for the sides of fracture faces that have a local cell.
+template <class Visit>
+void for_fracture_sides(const Mesh& mesh, const Visit& visit) {
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
+    for (int side : {minus, plus}) {
+      const auto& face = mesh.fracture_faces[f];
+      if (face.cell[side] >= 0) visit(f, face.cell[side] * n_faces(mesh.shape) + face.local_face[side]);
+    }
+}
+
 /// For each face of a local cell [cell * n_faces + local face] the same face of the local cell across it, -1 for none;
 /// across tied sides, too.
 std::vector<LocalIndex> faces_across(const Mesh& mesh) {
   const int n_faces = mesh::n_faces(mesh.shape);
   std::vector<LocalIndex> across(static_cast<std::size_t>(mesh.n_cells()) * n_faces, -1), alone;
   std::vector<char> on_fracture(across.size(), 0);
-  for (const auto& face : mesh.fracture_faces)
-    for (int side : {minus, plus})
-      if (face.cell[side] >= 0) on_fracture[face.cell[side] * n_faces + face.local_face[side]] = 1;
+  for_fracture_sides(mesh, [&](LocalIndex, LocalIndex face) { on_fracture[face] = 1; });
   FaceTable table(mesh, false);
   for (LocalIndex face = 0; face < static_cast<LocalIndex>(across.size()); ++face) {
     if (on_fracture[face]) continue;
@@ -92,62 +103,145 @@ std::vector<LocalIndex> faces_across(const Mesh& mesh) {
   return across;
 }
 
-/// Whether a cell is the one that numbers and owns its face: it has the lower number of the two.
-std::vector<char> find_givers(const Mesh& mesh, const std::vector<LocalIndex>& across) {
+/// For each face [cell * n_faces + local face] the same face of that cell that numbers and owns it: the one of the two
+/// with the lower number; -1 on fractures, whose faces are numbered as such.
+std::vector<LocalIndex> face_givers(const Mesh& mesh, std::vector<LocalIndex> across) {
   const int n_faces = mesh::n_faces(mesh.shape);
-  std::vector<char> gives(across.size());
-  for (std::size_t face = 0; face < across.size(); ++face) {
-    const GlobalIndex here = mesh.cell_id[face / n_faces],
-                      there = across[face] < 0 ? here : mesh.cell_id[across[face] / n_faces];
-    gives[face] = here < there || (here == there && static_cast<LocalIndex>(face) >= across[face]);
+  for (LocalIndex face = 0; face < static_cast<LocalIndex>(across.size()); ++face) {
+    const LocalIndex other = across[face];
+    const auto number = [&](LocalIndex f) { return std::pair(mesh.cell_id[f / n_faces], -f); };
+    if (other < 0 || number(face) < number(other)) across[face] = face;
   }
-  return gives;
+  for_fracture_sides(mesh, [&](LocalIndex, LocalIndex face) { across[face] = -1; });
+  return across;
 }
 
-/// Global numbers of the facets of all local cells: those that a cell gives follow those that the cells before it give.
-std::vector<GlobalIndex> facet_ids(const Mesh& mesh, const std::vector<LocalIndex>& across,
-                                   const std::vector<char>& gives) {
-  const int n_faces = mesh::n_faces(mesh.shape);
-  const LocalIndex n_owned = mesh.n_owned_cells * n_faces;
-  std::vector<GlobalIndex> counts(mesh.n_owned_cells, 0);
-  for (LocalIndex face = 0; face < n_owned; ++face) counts[face / n_faces] += gives[face];
-  auto next = sums_before({mesh.cell_id.begin(), mesh.cell_id.begin() + mesh.n_owned_cells}, counts, mesh.comm);
-  std::vector<GlobalIndex> ids(across.size(), -1);
-  for (LocalIndex face = 0; face < n_owned; ++face)
-    if (gives[face]) ids[face] = next[face / n_faces]++;
-  const GhostExchange exchange(mesh.cell_id, mesh.n_owned_cells, mesh.comm);
-  exchange(ids, n_faces);  // the cells around an owned one are local, so what they give is now at hand
-  for (LocalIndex face = 0; face < n_owned; ++face)
-    if (!gives[face]) ids[face] = ids[across[face]];
-  exchange(ids, n_faces);
+/// For each ridge [fracture face * n_face_corners + k] the same one of the local face with the lowest number.
+std::vector<LocalIndex> ridge_givers(const Mesh& mesh) {
+  const int n = n_face_corners(mesh.shape);
+  std::map<std::array<GlobalIndex, 2>, LocalIndex> lowest;
+  const auto points = [&](LocalIndex ridge) {
+    return ridge_points(mesh.fracture_faces[ridge / n].corners, mesh.shape, ridge % n);
+  };
+  const LocalIndex n_ridges = mesh.n_fracture_faces() * n;
+  for (LocalIndex ridge = 0; ridge < n_ridges; ++ridge) {
+    LocalIndex& giver = lowest.try_emplace(points(ridge), ridge).first->second;
+    if (mesh.fracture_faces[ridge / n].id < mesh.fracture_faces[giver / n].id) giver = ridge;
+  }
+  std::vector<LocalIndex> givers;
+  for (LocalIndex ridge = 0; ridge < n_ridges; ++ridge) givers.push_back(lowest.at(points(ridge)));
+  return givers;
+}
+
+/// Global numbers of what entities end in, [entity * width + k]: those that an entity gives follow those that the
+/// entities before it give; -1 where none gives. What ends of owned entities take, local ones give. Collective.
+std::vector<GlobalIndex> numbers(const std::vector<GlobalIndex>& entity_id, LocalIndex n_entities, int width,
+                                 const std::vector<LocalIndex>& giver, const RCP<const Comm>& comm) {
+  const LocalIndex n_owned = n_entities * width;
+  std::vector<GlobalIndex> counts(n_entities, 0);
+  for (LocalIndex end = 0; end < n_owned; ++end) counts[end / width] += giver[end] == end;
+  auto next = sums_before({entity_id.begin(), entity_id.begin() + n_entities}, counts, comm);
+  std::vector<GlobalIndex> ids(giver.size(), -1);
+  for (LocalIndex end = 0; end < n_owned; ++end)
+    if (giver[end] == end) ids[end] = next[end / width]++;
+  const GhostExchange exchange(entity_id, n_entities, comm);
+  exchange(ids, width);
+  for (LocalIndex end = 0; end < n_owned; ++end)
+    if (giver[end] >= 0) ids[end] = ids[giver[end]];
+  exchange(ids, width);
   return ids;
+}
+
+std::vector<GlobalIndex> face_ids(const Mesh& mesh) {
+  std::vector<GlobalIndex> ids;
+  for (const auto& face : mesh.fracture_faces) ids.push_back(face.id);
+  return ids;
+}
+
+/// Where fracture faces end on the boundary: a ridge of theirs, seen from side minus, is one of a face there.
+std::vector<Facets::Rim> find_rims(const Mesh& mesh) {
+  const int n = n_face_corners(mesh.shape);
+  const auto ends = [&](const auto& nodes, int k) {
+    std::array<GlobalIndex, 4> corners{-1, -1, -1, -1};
+    for (int i = 0; i < n; ++i) corners[i] = nodes(i);
+    return ridge_points(corners, mesh.shape, k);
+  };
+  std::multimap<std::array<GlobalIndex, 2>, int> boundaries;
+  for (const auto& face : mesh.boundary_faces)
+    for (int k = 0; k < n; ++k)
+      boundaries.emplace(
+          ends(
+              [&](int i) {
+                return mesh.cells[face.cell * mesh.nodes_per_cell() + face_nodes(mesh.shape)[face.local_face][i]];
+              },
+              k),
+          face.boundary);
+  std::vector<Facets::Rim> rims;
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
+    for (int k = 0; k < n && mesh.fracture_faces[f].cell[minus] >= 0; ++k) {
+      const auto [begin, end] =
+          boundaries.equal_range(ends([&](int i) { return GlobalIndex(mesh.fracture_faces[f].nodes[minus][i]); }, k));
+      std::set<int> found;
+      for (auto it = begin; it != end; ++it) found.insert(it->second);
+      for (const int boundary : found) rims.push_back({f, k, boundary});
+    }
+  return rims;
+}
+
+/// Local numbers of the ids: those of `all`, ascending, of which the first n_owned and the others are sorted.
+std::vector<LocalIndex> local_numbers(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& all,
+                                      LocalIndex n_owned) {
+  const auto middle = all.begin() + n_owned;
+  std::vector<LocalIndex> result;
+  for (const GlobalIndex id : ids) {
+    auto found = std::lower_bound(all.begin(), middle, id);
+    if (found == middle || *found != id) found = std::lower_bound(middle, all.end(), id);
+    result.push_back(static_cast<LocalIndex>(found - all.begin()));
+  }
+  return result;
 }
 
 }  // namespace
 
+std::vector<GlobalIndex> ridge_ids(const Mesh& mesh) {
+  return numbers(face_ids(mesh), mesh.n_owned_fracture_faces, n_face_corners(mesh.shape), ridge_givers(mesh),
+                 mesh.comm);
+}
+
 RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
   std::vector<LocalIndex> across;
   base::collectively(*mesh->comm, [&] { across = faces_across(*mesh); });
-  const auto gives = find_givers(*mesh, across);
-  const auto ids = facet_ids(*mesh, across, gives);
+  const int n_faces = mesh::n_faces(mesh->shape), n_ridges = n_face_corners(mesh->shape);
+  const auto of_cells = face_givers(*mesh, across), of_faces = ridge_givers(*mesh);
+  auto cells = numbers(mesh->cell_id, mesh->n_owned_cells, n_faces, of_cells, mesh->comm);
+  auto ridges = numbers(face_ids(*mesh), mesh->n_owned_fracture_faces, n_ridges, of_faces, mesh->comm);
+  auto faces = face_ids(*mesh);
   const auto facets = rcp(new Facets);
-  for (LocalIndex face = 0; face < mesh->n_owned_cells * n_faces(mesh->shape); ++face)
-    if (gives[face]) facets->id.push_back(ids[face]);  // ascending, as cells are
+  const auto own = [&](const auto& ids, LocalIndex n, const auto& is_own) {  // numbers ascend as entities do
+    const auto before = facets->id.size();
+    for (LocalIndex k = 0; k < n; ++k)
+      if (is_own(k)) facets->id.push_back(ids[k]);
+    return global_sum(static_cast<GlobalIndex>(facets->id.size() - before), *mesh->comm);
+  };
+  GlobalIndex n = own(cells, mesh->n_owned_cells * n_faces, [&](LocalIndex k) { return of_cells[k] == k; });
+  for (GlobalIndex& id : ridges) id += n;
+  n += own(ridges, mesh->n_owned_fracture_faces * n_ridges, [&](LocalIndex k) { return of_faces[k] == k; });
+  for (GlobalIndex& id : faces) id += n;
+  own(faces, mesh->n_owned_fracture_faces, [](LocalIndex) { return true; });
   facets->n_owned = static_cast<LocalIndex>(facets->id.size());
-  const auto owned = [&] { return std::pair(facets->id.begin(), facets->id.begin() + facets->n_owned); };
+  for_fracture_sides(*mesh, [&](LocalIndex f, LocalIndex face) { cells[face] = faces[f]; });
   std::vector<GlobalIndex> ghosts;
-  for (GlobalIndex id : ids)
-    if (!std::binary_search(owned().first, owned().second, id)) ghosts.push_back(id);
+  for (const auto* ids : std::array<const std::vector<GlobalIndex>*, 3>{&cells, &ridges, &faces})
+    for (const GlobalIndex id : *ids)
+      if (!std::binary_search(facets->id.begin(), facets->id.begin() + facets->n_owned, id)) ghosts.push_back(id);
   std::sort(ghosts.begin(), ghosts.end());
   ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
   facets->id.insert(facets->id.end(), ghosts.begin(), ghosts.end());
-  for (GlobalIndex id : ids) {
-    const auto [begin, end] = owned();
-    const auto found = std::lower_bound(begin, end, id);
-    const bool is_owned = found != end && *found == id;
-    facets->of_cell.push_back(
-        static_cast<LocalIndex>((is_owned ? found : std::lower_bound(end, facets->id.end(), id)) - facets->id.begin()));
-  }
+  const auto local = [&](const auto& ids) { return local_numbers(ids, facets->id, facets->n_owned); };
+  facets->of_cell = local(cells);
+  facets->ridge = local(ridges);
+  facets->fracture_face = local(faces);
+  facets->rims = find_rims(*mesh);
   const auto result = rcp(new Mesh(*mesh));
   result->facets = facets;
   return result;

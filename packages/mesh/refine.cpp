@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
 #include "base/check.hpp"
 #include "mesh/facets.hpp"
+#include "mesh/number_facets.hpp"
 #include "mesh/raise_order.hpp"
 #include "mesh/subdivision.hpp"
 
@@ -15,7 +17,8 @@ namespace {
 /// Cuts cells of order 2 along their nodes into cells of order 1.
 class Divider {
  public:
-  explicit Divider(const Mesh& mesh) : mesh_(mesh), shape_(linear(mesh.shape)), division_(subdivision(shape_)) {}
+  explicit Divider(const Mesh& mesh)
+      : mesh_(mesh), shape_(linear(mesh.shape)), division_(subdivision(shape_)), ridges_(ridge_ids(mesh)) {}
 
   RCP<Mesh> divide() {
     choose_children();
@@ -34,6 +37,7 @@ class Divider {
   const Mesh& mesh_;
   const Shape shape_;
   const Subdivision division_;
+  const std::vector<GlobalIndex> ridges_;  // [fracture face * n_face_corners + k] see ridge_ids()
   std::vector<LocalIndex> child_;  // [cell * n_children + k] its number, -1 for ghosts that are not needed any more
   std::vector<LocalIndex> node_;   // [node] its new number, -1 for ghosts that are not needed any more
   RCP<Mesh> result_ = rcp(new Mesh);
@@ -72,9 +76,25 @@ class Divider {
       for (int k = 0; k < division_.n_parts(); ++k)
         child_[face.cell[plus] * n_children() + part(face, plus, k).child] = 0;
     }
+    choose_around_ridges();
     LocalIndex n = 0;
     for (LocalIndex& number : child_)
       if (number >= 0) number = n++;
+  }
+
+  /// Those on side minus of parts that end where those of owned faces do.
+  void choose_around_ridges() {
+    const int n = n_face_corners(shape_);
+    const std::unordered_set<GlobalIndex> owned(ridges_.begin(),
+                                                ridges_.begin() + std::ptrdiff_t(n) * mesh_.n_owned_fracture_faces);
+    for (LocalIndex f = 0; f < mesh_.n_fracture_faces(); ++f) {
+      const auto& face = mesh_.fracture_faces[f];
+      if (face.cell[minus] < 0) continue;
+      for (int k = 0; k < n; ++k)
+        for (int end : {k, dimension(shape_) == 2 ? k : (k + 1) % n})
+          if (owned.count(ridges_[f * n + k]))
+            child_[face.cell[minus] * n_children() + part(face, minus, end).child] = 0;
+    }
   }
 
   void choose_nodes() {
@@ -151,6 +171,8 @@ class Divider {
     face.id = parent.id * division_.n_parts() + k;
     face.fracture = parent.fracture;
     face.cell = cells;
+    face.corners.fill(-1);
+    for (int i = 0; i < n_face_corners(shape_); ++i) face.corners[i] = point(parent, parts[minus]->nodes[i]);
     FaceCorners corners{{}, n_face_corners(shape_)};
     for (int side : {minus, plus}) {
       face.local_face[side] = parts[side]->local_face;
@@ -166,6 +188,15 @@ class Divider {
     face.centre = face_centre(corners);
     face.frame = face_frame(area, mesh_.dim());
     result_->fracture_faces.push_back(face);
+  }
+
+  /// The number of the point at a node of a face of order 2: a corner, the middle of an edge, or the one inside.
+  GlobalIndex point(const Mesh::FractureFace& face, int node) const {
+    const int n = n_face_corners(shape_);
+    if (node < n) return face.corners[node];
+    if (dimension(shape_) == 2 || node == 2 * n) return mesh_.n_global_nodes + face.id;
+    const auto f = &face - mesh_.fracture_faces.data();
+    return mesh_.n_global_nodes + mesh_.n_global_fracture_faces + ridges_[f * n + node - n];
   }
 
   void fill_boundary_faces() {

@@ -38,6 +38,8 @@ constexpr int n_face_nodes(Shape s) {
   return n[static_cast<int>(s)];
 }
 constexpr int max_face_nodes = 9;
+/// Of order 1, of cells in 3D.
+constexpr Shape face_shape(Shape s) { return is_simplex(s) ? Shape::triangle : Shape::quadrilateral; }
 
 using FaceNodes = std::array<std::array<int, max_face_nodes>, 6>;
 

@@ -75,8 +75,7 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
 void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
   const auto& system = model_.system();
   const auto& mesh = model_.mesh();
-  const auto conditions =
-      dirichlet_conditions(model_.scene().boundary_conditions, mesh.boundary_names, mesh.region_names);
+  const auto conditions = dirichlet_conditions(model_.scene().boundary_conditions, group_names(mesh));
   const auto error =
       assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
   const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);

@@ -10,6 +10,7 @@
 #include "model/uniqueness.hpp"
 #include "physics/darcy_flow.hpp"
 #include "physics/fluid_storage.hpp"
+#include "physics/fracture_flow.hpp"
 #include "physics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -121,11 +122,22 @@ auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
   return values;
 }
 
+Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
+  return properties<laws::Mobility>(
+      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
+      [&](int region) { return material(region).flows_uniformly(); },
+      [&](int region, int cell) {
+        return material(region).mobility(mesh.dim(), scene.flow->viscosity,
+                                         cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell));
+      });
+}
+
 assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh) {
-  Real largest = 0;
-  for (const auto& mobility :
-       by_region(scene, mesh, [&](const Material& m) { return m.mobility(mesh.dim(), scene.flow->viscosity); }))
-    for (int i = 0; i < mesh.dim(); ++i) largest = std::max(largest, mobility.value[i][i]);
+  Real here = 0, largest = 0;
+  for (const auto& one : mobility(scene, mesh).values)
+    for (int i = 0; i < mesh.dim(); ++i) here = std::max(here, one.value[i][i]);
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
   const auto extents = mesh::domain_extents(mesh);
   return {1, *std::max_element(extents.begin(), extents.end()), largest};
 }
@@ -172,23 +184,43 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 namespace {
 
+std::vector<physics::FluidCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
+  std::vector<physics::FluidCondition> conditions;
+  for (const auto& [name, one] : scene.boundary_conditions)
+    if (one.fracture.has_value() == of_fractures && (one.flux || one.conductance))
+      conditions.push_back({index_of(mesh.boundary_names, one.boundary), one.flux ? *one.flux : *one.pressure,
+                            one.conductance, one.region ? index_of(mesh.region_names, *one.region) : -1,
+                            one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
+  return conditions;
+}
+
 std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh) {
   const auto& flow = *scene.flow;
-  physics::DarcyFlowParameters darcy{
-      by_region(scene, mesh, [&](const Material& m) { return m.mobility(mesh.dim(), flow.viscosity); })};
-  darcy.scheme = physics::flux_scheme(flow.scheme, mesh, darcy.mobility);
+  const auto rock = mobility(scene, mesh);
+  physics::DarcyFlowParameters darcy{rock.values, rock.number};
+  darcy.scheme = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (condition.flux)
-      darcy.fluxes.push_back({index_of(mesh.boundary_names, condition.boundary), *condition.flux,
-                              condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+  darcy.conditions = fluid_conditions(scene, mesh, false);
   const auto storage =
       by_region(scene, mesh, [&](const Material& m) { return m.compressibility + m.porosity * flow.compressibility; });
+  physics::FractureFlowParameters fractures{{}, {}, darcy.scheme, darcy.weight, fluid_conditions(scene, mesh, true)};
+  std::vector<Real> of_faces;
+  for (const auto& face : mesh.fracture_faces) {
+    const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
+    const auto hydraulics = joint.hydraulics(flow.viscosity, face.centre);
+    fractures.faces.push_back(hydraulics.along);
+    darcy.exchange.push_back(hydraulics.exchange);
+    of_faces.push_back(hydraulics.along.aperture * flow.compressibility);
+  }
+  for (const auto& name : mesh.fracture_names) fractures.source.push_back(scene.fractures.at(name).source);
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
   if (std::any_of(storage.begin(), storage.end(), [](Real s) { return s > 0; }))
     modules.push_back(physics::make_fluid_storage({storage, {}, flow.initial_pressure}));
+  if (mesh.fracture_names.empty()) return modules;
+  modules.push_back(physics::make_fracture_flow(mesh.shape, std::move(fractures)));
+  if (flow.compressibility > 0) modules.push_back(physics::make_fracture_storage({of_faces, flow.initial_pressure}));
   return modules;
 }
 
@@ -236,8 +268,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   });
   std::vector<assembly::DirichletCondition> conditions;
   for (const char* field : {"displacement", "face pressure"})
-    for (auto& condition :
-         dirichlet_conditions(scene_.boundary_conditions, mesh->boundary_names, mesh->region_names, field))
+    for (auto& condition : dirichlet_conditions(scene_.boundary_conditions, group_names(*mesh), field))
       conditions.push_back(std::move(condition));
   system_ = std::make_unique<assembly::System>(mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_);
   x_ = system_->initial();

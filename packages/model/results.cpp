@@ -123,26 +123,30 @@ json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& ou
   each([&](std::size_t k, json& j) { j["area"] = area[k]; });
   const char* states[] = {"open", "stick", "slip"};
   for (int state = 0; state < 3; ++state) {
+    const auto* found = find(outputs, "state");
+    if (!found) break;
     OutputField is = ones;
-    const auto& values = find(outputs, "state")->values;
-    for (std::size_t f = 0; f < values.size(); ++f) is.values[f] = values[f] == state ? 1 : 0;
+    for (std::size_t f = 0; f < is.values.size(); ++f) is.values[f] = found->values[f] == state ? 1 : 0;
     const auto sums = statistics(mesh, is).sum;
     each([&](std::size_t k, json& j) { j[std::string("fraction_") + states[state]] = sums[k] / area[k]; });
   }
-  for (const char* name : {"opening", "slip"}) {
-    const auto s = statistics(mesh, *find(outputs, name));
+  for (const char* name : {"opening", "slip", "fracture pressure"}) {
+    const auto* output = find(outputs, name);
+    if (!output) continue;
+    const auto s = statistics(mesh, *output);
     each([&](std::size_t k, json& j) {
-      j[std::string("mean_") + name] = s.sum[k] / area[k];
-      j[std::string("max_") + name] = s.maximum[k];
+      j["mean_" + with_underscores(name)] = s.sum[k] / area[k];
+      j["max_" + with_underscores(name)] = s.maximum[k];
     });
   }
-  for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
+  for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction", "fluid flux"})
     for (const std::string frame : {"global", "local"}) {
-      const auto& output = *find(outputs, frame == "local" ? name + " local" : name);
-      const auto s = statistics(mesh, output);
+      const auto* output = find(outputs, frame == "local" ? name + " local" : name);
+      if (!output) continue;
+      const auto s = statistics(mesh, *output);
       each([&](std::size_t k, json& j) {
-        for (int c = 0; c < output.n_components; ++c)
-          j["mean_" + with_underscores(name)][frame].push_back(s.sum[k * output.n_components + c] / area[k]);
+        for (int c = 0; c < output->n_components; ++c)
+          j["mean_" + with_underscores(name)][frame].push_back(s.sum[k * output->n_components + c] / area[k]);
       });
     }
   return summary;

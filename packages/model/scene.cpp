@@ -48,6 +48,9 @@ void Material::for_each(const Visit& visit) const {
     visit("maximum closure", maximum_closure, 0, true, infinite);
     visit("initial aperture", initial_aperture, 0, true, infinite);
     optional("normal stiffness", normal_stiffness, 0, false, infinite);
+    visit("residual aperture", residual_aperture, 0, true, infinite);
+    optional("tangential permeability", tangential_permeability, 0, false, infinite);
+    visit("normal permeability", normal_permeability, 0, false, infinite);
   }
 }
 
@@ -85,9 +88,16 @@ void Material::describe(base::Section& s) {
     s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(),
             "K_n at zero traction; needed with a maximum closure");
     s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
+    s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
+            "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
+    s.entry(
+        tangential_permeability, "tangential permeability", "m^2", base::positive(),
+        "k_t of the flow along the fracture, with \"Flow\"; without it the cubic law holds, (hydraulic aperture)^2/12");
+    s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
+            "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
+            "beside it");
     if (type == "joint" && s.complete()) {
-      if (friction_coefficient.has_value() == friction_angle.has_value())
-        s.fail("give either \"friction coefficient\" or \"friction angle\"");
+      if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
       const bool closes = !maximum_closure.is_constant() || maximum_closure({0, 0, 0}, 0) > 0;
       if (closes && !normal_stiffness)
         s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
@@ -130,8 +140,13 @@ laws::Elasticity Material::elasticity(const Point& x) const {
   return laws::lame_constants({at(E), at(nu), at(G), at(lambda), at(K)});
 }
 
-laws::Mobility Material::mobility(int dim, Real viscosity) const {
-  const auto& k = permeability;
+bool Material::flows_uniformly() const {
+  return std::all_of(permeability.begin(), permeability.end(), [](const Value& k) { return k.is_constant(); });
+}
+
+laws::Mobility Material::mobility(int dim, Real viscosity, const Point& x) const {
+  std::vector<Real> k;
+  for (const Value& value : permeability) k.push_back(value(x, 0));
   const auto n = static_cast<int>(k.size()), n_all = dim * (dim + 1) / 2;
   SPREKK_CHECK(n == 1 || n == dim || n == n_all, "material: \"permeability\" has {}, must have 1, {} or {} in {}D",
                base::counted(k.size(), "value"), dim, n_all, dim);
@@ -141,14 +156,30 @@ laws::Mobility Material::mobility(int dim, Real viscosity) const {
     const int row = i == 4 ? 1 : 0, column = i == 3 || dim == 2 ? 1 : 2;
     m.value[row][column] = m.value[column][row] = k[i] / viscosity;
   }
-  SPREKK_CHECK(m.is_positive(dim), "material: \"permeability\" = {{{}}} is not positive definite", fmt::join(k, ", "));
+  std::vector<std::string> texts;
+  for (const Value& value : permeability) texts.push_back(value.text());
+  SPREKK_CHECK(m.is_positive(dim), "material: \"permeability\" = {{{}}} is not positive definite{}",
+               fmt::join(texts, ", "), flows_uniformly() ? "" : fmt::format(" at x = ({}, {}, {})", x[0], x[1], x[2]));
   return m;
+}
+
+Material::Hydraulics Material::hydraulics(Real viscosity, const Point& x) const {
+  check(x);
+  const Real a = std::max(initial_aperture(x, 0), residual_aperture(x, 0));
+  SPREKK_CHECK(a > 0,
+               "material: the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
+               "or a \"residual aperture\"",
+               x[0], x[1], x[2]);
+  const Real k = tangential_permeability ? (*tangential_permeability)(x, 0) : a * a / 12;
+  return {{a, a * k / viscosity}, 2 * normal_permeability(x, 0) / (a * viscosity)};
 }
 
 physics::JointParameters Material::joint(const Point& x) const {
   check(x);
   physics::JointParameters joint;
   joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
+  SPREKK_CHECK(friction_coefficient || friction_angle,
+               "material: give either \"friction coefficient\" or \"friction angle\"");
   joint.law.friction.coefficient = friction(x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
@@ -205,6 +236,9 @@ void Fracture::describe(base::Section& s) {
   s.entry(
       fluid_pressure, "fluid pressure", "Pa", base::any(),
       "p, a value or an expression of x, y, z, t: it pushes the sides apart; the traction on the rock is lambda - p n");
+  s.entry(
+      source, "source", "m/s", base::any(),
+      "volume of fluid per area and time that is put into the fracture, with \"Flow\", an expression of x, y, z, t");
 }
 
 void BoundaryCondition::describe(base::Section& s) {
@@ -217,7 +251,17 @@ void BoundaryCondition::describe(base::Section& s) {
   s.entry(pressure, "pressure", "Pa", base::any(),
           "of the fluid, with \"Flow\": a value or an expression of x, y, z, t");
   s.entry(flux, "flux", "m/s", base::any(), "volume of fluid that leaves per area and time, with \"Flow\"");
+  s.entry(conductance, "conductance", "m/(Pa*s)", base::at_least(0),
+          "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
+  s.entry(fracture, "fracture", "-",
+          "name of a fracture: the condition on the fluid holds only where it ends on the boundary, per aperture and "
+          "length; without it a pressure without conductance holds for rock and fractures, all else for rock");
+  if (conductance) check_constant_in_time(s, "conductance", *conductance);
   if (!s.complete()) return;
+  if (conductance && !pressure) s.fail("conductance", "needs a \"pressure\" beyond the boundary");
+  if (fracture && region) s.fail("give either \"fracture\" or \"region\"");
+  if (fracture && !(displacement.empty() && traction.empty()))
+    s.fail("fracture", "goes with \"pressure\" or \"flux\" only");
   if (!displacement.empty() && !traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
   if (pressure && flux) s.fail("give either \"pressure\" or \"flux\"");
   if (displacement.empty() && traction.empty() && !pressure && !flux)

@@ -10,6 +10,7 @@
 #include "mesh/mesh.hpp"
 #include "model/network.hpp"
 #include "physics/elastic_plastic_jump.hpp"
+#include "physics/fracture_flow.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
 
@@ -32,13 +33,16 @@ struct Material {
 
   std::optional<Value> E, nu, G, lambda, K;  ///< exactly two for rock
   std::optional<Value> density;              ///< needed with gravity
-  std::vector<Real> permeability;            ///< one value, or those of a tensor; needed with flow
+  std::vector<Value> permeability;           ///< one value, or those of a tensor; needed with flow
   Real porosity = 0, compressibility = 0;    ///< of rock
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
-  std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint
+  std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
   Value dilation_angle = 0, initial_gap = 0, maximum_closure = 0, initial_aperture = 0;
   std::optional<Value> normal_stiffness;  ///< needed where there is closure
+  Value residual_aperture = 0;
+  std::optional<Value> tangential_permeability;  ///< absent: the cubic law
+  Value normal_permeability = std::numeric_limits<Real>::infinity();
 
   void describe(base::Section& section);
   bool is_uniform() const;                       ///< no value depends on the place
@@ -46,8 +50,15 @@ struct Material {
   /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
   laws::Elasticity elasticity(const Point& x) const;
   physics::JointParameters joint(const Point& x) const;
+  bool flows_uniformly() const;  ///< the permeability of rock does not depend on the place
   /// k/mu of the flow through rock. Throws an Error where k is no positive definite tensor of that dimension.
-  laws::Mobility mobility(int dim, Real viscosity) const;
+  laws::Mobility mobility(int dim, Real viscosity, const Point& x) const;
+  /// Of the flow in and through a joint with sides at rest.
+  struct Hydraulics {
+    physics::FractureFlowParameters::Face along;
+    Real exchange;  ///< of each side, 2 k_n/(a mu), m/(Pa s)
+  };
+  Hydraulics hydraulics(Real viscosity, const Point& x) const;
 
  private:
   /// Calls visit(name, value, least, least itself is allowed, upper limit) for each of the values that are given.
@@ -107,6 +118,7 @@ struct Region {
 struct Fracture {
   std::string material;
   base::Expression fluid_pressure = 0;
+  base::Expression source = 0;  ///< of fluid
   void describe(base::Section& section);
 };
 
@@ -115,7 +127,8 @@ struct BoundaryCondition {
   std::optional<std::string> region;           ///< only where the boundary touches this region
   std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
   std::vector<base::Expression> traction;
-  std::optional<base::Expression> pressure, flux;  ///< of the fluid
+  std::optional<base::Expression> pressure, flux, conductance;  ///< of the fluid
+  std::optional<std::string> fracture;                          ///< of these: only where this fracture ends here
   void describe(base::Section& section);
 };
 

@@ -108,12 +108,33 @@ class Comparison {
     if (scene_.fractures.count("intersections"))
       fail("Fractures > \"intersections\"", "is how files of results call what fractures meet in; choose another name");
     for (const auto& [name, fracture] : scene_.fractures)
-      if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
+      if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures)) {
         check_material("Fractures > " + name, fracture.material, "joint");
+        compare_joint(name, fracture);
+      }
     if (!names_.fractures || (scene_.fractures.empty() && !is_absent(draft_, "Fractures"))) return;
     for (const auto& name : *names_.fractures)
       if (!scene_.fractures.count(name) && is_sound("Fractures > " + name))
         fail("Fractures", fmt::format("\"{}\" is in the mesh and has no section here", name));
+  }
+
+  /// What a joint must have depends on what the rock around it does.
+  void compare_joint(const std::string& name, const Fracture& fracture) {
+    const auto found = scene_.materials.find(fracture.material);
+    const bool sound = is_sound("Materials > " + fracture.material) && is_sound("Flow");
+    if (found == scene_.materials.end() || found->second.type != "joint" || !sound) return;
+    const auto& joint = found->second;
+    const std::string place = "Materials > " + fracture.material;
+    if (scene_.deforms() && !joint.friction_coefficient && !joint.friction_angle)
+      fail(place, "give either \"friction coefficient\" or \"friction angle\"");
+    if (scene_.flow && !(scene_.deforms() || fracture.fluid_pressure.is_constant()))
+      fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
+    if (!scene_.flow && is_absent(draft_, "Flow") && !(fracture.source.is_constant() && fracture.source({}, 0) == 0))
+      fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
+    const auto zero = [](const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; };
+    if (scene_.flow && zero(joint.initial_aperture) && zero(joint.residual_aperture))
+      fail(place + " > \"initial aperture\"",
+           "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
   }
 
   void compare_boundary_conditions() {
@@ -121,6 +142,7 @@ class Comparison {
       const std::string section = "Boundary conditions > " + name;
       check_name(section, section + " > \"boundary\"", condition.boundary, names_.boundaries);
       if (condition.region) check_name(section, section + " > \"region\"", *condition.region, names_.regions);
+      if (condition.fracture) check_name(section, section + " > \"fracture\"", *condition.fracture, names_.fractures);
       check_length(section + " > \"displacement\"", condition.displacement.size(), names_.dim);
       check_length(section + " > \"traction\"", condition.traction.size(), names_.dim);
     }
@@ -168,8 +190,6 @@ class Comparison {
     if (scene_.output.error_estimate && !scene_.deforms())
       fail("Output > \"error estimate\"", "is of stress and jumps; with \"Flow > rigid rock\" there are none");
     compare_pressure();
-    if (names_.fractures && !names_.fractures->empty())
-      fail("Flow", "the mesh has fractures; flow along and across them is not available yet");
     for (const auto& name : names_.regions.value_or(Names()))
       if (const auto* rock = rock_of(name)) compare_permeability(*rock);
   }
@@ -179,11 +199,13 @@ class Comparison {
     const auto& conditions = scene_.boundary_conditions;
     const bool given =
         std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.second.pressure; });
-    if (!names_.regions) return;
-    const bool stored = std::any_of(names_.regions->begin(), names_.regions->end(), [&](const auto& name) {
-      const auto* rock = rock_of(name);
-      return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0;
-    });
+    if (!names_.regions || !names_.fractures) return;
+    const bool in_fractures = !names_.fractures->empty() && scene_.flow->compressibility > 0;
+    const bool stored =
+        in_fractures || std::any_of(names_.regions->begin(), names_.regions->end(), [&](const auto& name) {
+          const auto* rock = rock_of(name);
+          return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0;
+        });
     const bool known =
         is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
@@ -200,7 +222,7 @@ class Comparison {
       fail(place, "missing; it is required with \"Flow\"");
     if (rock.permeability.empty() || !names_.dim) return;
     try {
-      rock.mobility(*names_.dim, scene_.flow->viscosity);
+      if (rock.flows_uniformly()) rock.mobility(*names_.dim, scene_.flow->viscosity, {});
     } catch (const Error& error) {
       fail(place, error.what());
     }
@@ -219,6 +241,7 @@ std::map<std::string, BoundaryCondition> fitting_conditions(const Draft& draft, 
     const auto n = condition.displacement.size();
     if (is_sound(draft, "Boundary conditions > " + name) && has(mesh.boundary_names, condition.boundary) &&
         (!condition.region || has(mesh.region_names, *condition.region)) &&
+        (!condition.fracture || has(mesh.fracture_names, *condition.fracture)) &&
         (n == 0 || n == static_cast<std::size_t>(mesh.dim())))
       result.emplace(name, condition);
   }
@@ -236,7 +259,7 @@ std::vector<std::string> conflicts(const Draft& draft, const mesh::GlobalMesh& m
                                    std::map<std::string, BoundaryCondition> conditions) {
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(draft, it->second) ? std::next(it) : conditions.erase(it);
-  return assembly::find_conflicts(mesh, dirichlet_conditions(conditions, mesh.boundary_names, mesh.region_names),
+  return assembly::find_conflicts(mesh, dirichlet_conditions(conditions, group_names(mesh)),
                                   is_sound(draft, "Time") ? draft.value.time.times().front() : 0);
 }
 
@@ -246,7 +269,7 @@ std::string unheld_rock(const Draft& draft, const mesh::GlobalMesh& mesh,
   if (!draft.value.deforms()) return "";
   const bool all = conditions.size() == draft.value.boundary_conditions.size() &&
                    (conditions.empty() ? is_absent : is_sound)(draft, "Boundary conditions");
-  return all ? assembly::unheld(mesh, dirichlet_conditions(conditions, mesh.boundary_names, mesh.region_names)) : "";
+  return all ? assembly::unheld(mesh, dirichlet_conditions(conditions, group_names(mesh))) : "";
 }
 
 }  // namespace
@@ -281,16 +304,16 @@ std::vector<std::string> misfits(const Draft& draft, const MeshNames& names) {
 }
 
 std::vector<assembly::DirichletCondition> dirichlet_conditions(const std::map<std::string, BoundaryCondition>& given,
-                                                               const Names& boundary_names, const Names& region_names,
-                                                               const std::string& field) {
+                                                               const GroupNames& names, const std::string& field) {
   std::vector<assembly::DirichletCondition> conditions;
   for (const auto& [name, one] : given) {
-    const auto values = field == "displacement" ? one.displacement
-                        : one.pressure          ? std::vector{*one.pressure}
-                                                : std::vector<base::Expression>();
+    const auto values = field == "displacement"            ? one.displacement
+                        : one.pressure && !one.conductance ? std::vector{*one.pressure}
+                                                           : std::vector<base::Expression>();
     if (values.empty()) continue;
-    assembly::DirichletCondition condition{name, field, index_of(boundary_names, one.boundary), {}};
-    if (one.region) condition.region = index_of(region_names, *one.region);
+    assembly::DirichletCondition condition{name, field, index_of(names.boundaries, one.boundary), {}};
+    if (one.region) condition.region = index_of(names.regions, *one.region);
+    if (one.fracture) condition.fracture = index_of(names.fractures, *one.fracture);
     for (const auto& value : values)
       condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
     conditions.push_back(condition);

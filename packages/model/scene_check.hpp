@@ -24,11 +24,19 @@ MeshNames names_in_scene(const base::Draft<Scene>& draft);
 /// no misfit.
 std::vector<std::string> misfits(const base::Draft<Scene>& draft, const MeshNames& names);
 
-/// The prescribed displacements, or values of "face pressure", by the numbers of names of a mesh that has all those of
-/// the conditions.
+/// The groups of a mesh, by their numbers.
+struct GroupNames {
+  std::vector<std::string> regions, boundaries, fractures;
+};
+
+template <class AnyMesh>
+GroupNames group_names(const AnyMesh& mesh) {
+  return {mesh.region_names, mesh.boundary_names, mesh.fracture_names};
+}
+
+/// The prescribed displacements, or values of "face pressure", on a mesh that has all names of the conditions.
 std::vector<assembly::DirichletCondition> dirichlet_conditions(const std::map<std::string, BoundaryCondition>& given,
-                                                               const std::vector<std::string>& boundary_names,
-                                                               const std::vector<std::string>& region_names,
+                                                               const GroupNames& names,
                                                                const std::string& field = "displacement");
 
 /// The scene's mesh. Throws one Error with a line for each thing that is wrong: all in the draft's report, the mesh,

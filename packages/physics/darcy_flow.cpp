@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "mesh/extents.hpp"
+#include "physics/exchange.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -49,13 +50,19 @@ class DarcyFlow final : public assembly::Module {
                                   assembly::material_numbers(context.geometry(), parameters_.mobility_of_cell),
                                   {weight[0], weight[1], weight[2]},
                                   parameters_.scheme});
+    set_resistance();
     blocks_ = {context.field("pressure"), context.field("face pressure")};
     assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_, Assembler::Positions::once);
+    for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
+    });
+    exchange_.bind(context, blocks_[1]);
     for (int k = 0; k < 2; ++k) load_[k] = View<Real*>("load", context.layout(blocks_[k]).n_owned());
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     assembler_->add_residual(*op_, state, r);
+    exchange_.add_residual(state, r);
     for (int k = 0; k < 2; ++k) {
       const auto rows = r[blocks_[k]];
       const auto load = load_[k];
@@ -66,11 +73,12 @@ class DarcyFlow final : public assembly::Module {
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     assembler_->add_jacobian(*op_, state, J);
+    exchange_.add_jacobian(J);
   }
 
   bool constant_load() const override {
-    const auto constant = [](const auto& flux) { return flux.value.constant_in_time(); };
-    return std::all_of(parameters_.fluxes.begin(), parameters_.fluxes.end(), constant) &&
+    const auto constant = [](const auto& condition) { return condition.value.constant_in_time(); };
+    return std::all_of(parameters_.conditions.begin(), parameters_.conditions.end(), constant) &&
            (parameters_.source.empty() || parameters_.source[0].constant_in_time());
   }
 
@@ -83,8 +91,8 @@ class DarcyFlow final : public assembly::Module {
       assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real volume, const auto& x) {
         cells(c) -= volume * parameters_.source[0](x, t);
       });
-    for_each_flux([&](const BoundaryFlux& flux, LocalIndex facet, Real area, const auto& x) {
-      if (facet < mesh_->facets->n_owned) facets(facet) += area * flux.value(x, t);
+    for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (facet < mesh_->facets->n_owned) facets(facet) += area * condition.load(x, t);
     });
     Kokkos::deep_copy(load_[0], cells);
     Kokkos::deep_copy(load_[1], facets);
@@ -93,9 +101,10 @@ class DarcyFlow final : public assembly::Module {
 
   /// What prescribed flow and gravity make of pressure over the size of the domain.
   Real fluid_load(Real t) const override {
-    Real flux = 0, weight = 0, mobility = 0;
-    for_each_flux([&](const BoundaryFlux& f, LocalIndex, Real, const auto& x) {
-      flux = std::max(flux, std::abs(f.value(x, t)));
+    Real flux = 0, beyond = 0, weight = 0, mobility = 0;
+    for_each_condition([&](const FluidCondition& condition, LocalIndex, Real, const auto& x) {
+      Real& largest = condition.conductance ? beyond : flux;
+      largest = std::max(largest, std::abs(condition.value(x, t)));
     });
     for (LocalIndex c = 0; c < mesh_->n_owned_cells && !parameters_.source.empty(); ++c)
       assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real, const auto& x) {
@@ -103,7 +112,7 @@ class DarcyFlow final : public assembly::Module {
       });
     for (Real component : parameters_.weight) weight += component * component;
     for (const auto& each : parameters_.mobility) mobility = std::max(mobility, each.template trace<dim>() / dim);
-    return size_ * (std::sqrt(weight) + flux / mobility);
+    return std::max(beyond, size_ * (std::sqrt(weight) + flux / mobility));
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
@@ -115,7 +124,7 @@ class DarcyFlow final : public assembly::Module {
       const CellFaces<shape> faces(X);
       x[0] = p(c);
       for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
-      op_->flow(faces, FlowMatrix<shape>(faces, mobility_of(c), parameters_.scheme), x, q);
+      op_->flow(faces, op_->matrix(c, faces), x, q);
       fields[0].values.push_back(p(c));
       for (int i = 0; i < 3; ++i) {
         Real v = 0;
@@ -128,22 +137,35 @@ class DarcyFlow final : public assembly::Module {
  private:
   using Assembler = assembly::Assembler<Op>;
 
-  const laws::Mobility& mobility_of(LocalIndex cell) const {
-    const auto& of_cell = parameters_.mobility_of_cell;
-    return parameters_.mobility[of_cell.empty() ? mesh_->cell_region[cell] : of_cell[cell]];
+  void set_resistance() {
+    const auto& exchange = parameters_.exchange;
+    if (std::all_of(exchange.begin(), exchange.end(), [](Real e) { return std::isinf(e); })) return;
+    std::vector<int> beside(mesh_->n_cells(), -1);
+    int n = 0;
+    const auto sides = assembly::fracture_sides(*mesh_);
+    for (const auto& [f, side] : sides)
+      if (int& row = beside[mesh_->fracture_faces[f].cell[side]]; row < 0) row = n++;
+    View<Real**> resistance("resistance", n, n_faces);
+    const auto host = Kokkos::create_mirror_view(resistance);
+    for (const auto& [f, side] : sides) {
+      const auto& face = mesh_->fracture_faces[f];
+      host(beside[face.cell[side]], face.local_face[side]) = 1 / (exchange[f] * face.area);
+    }
+    Kokkos::deep_copy(resistance, host);
+    op_->beside = assembly::to_device(beside, "beside");
+    op_->resistance = resistance;
   }
 
-  /// Calls visit(flux, facet, area, x) at the quadrature points of all boundary faces with a prescribed flow.
+  /// Calls visit(condition, facet, area, x) at the quadrature points of all boundary faces with a condition.
   template <class Visit>
-  void for_each_flux(const Visit& visit) const {
-    for (const auto& flux : parameters_.fluxes)
+  void for_each_condition(const Visit& visit) const {
+    for (const auto& one : parameters_.conditions)
       for (const auto& face : mesh_->boundary_faces) {
-        if (face.boundary != flux.boundary || (flux.region >= 0 && mesh_->cell_region[face.cell] != flux.region))
-          continue;
+        if (face.boundary != one.boundary || (one.region >= 0 && mesh_->cell_region[face.cell] != one.region)) continue;
         const LocalIndex facet = mesh_->facets->of_cell[face.cell * n_faces + face.local_face];
         assembly::for_each_face_point<shape>(
             *mesh_, face.cell, face.local_face,
-            [&](const auto&, Real area, const auto& x) { visit(flux, facet, area, x); });
+            [&](const auto&, Real area, const auto& x) { visit(one, facet, area, x); });
       }
   }
 
@@ -154,6 +176,7 @@ class DarcyFlow final : public assembly::Module {
   bool loaded_ = false;
   std::unique_ptr<Op> op_;
   std::unique_ptr<Assembler> assembler_;
+  Exchange exchange_;                // with what is beyond the boundary
   std::array<View<Real*>, 2> load_;  // [owned row], m^3/s
 };
 
@@ -180,7 +203,8 @@ bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility
 
 }  // namespace
 
-FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility) {
+FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
+                       const std::vector<int>& mobility_of_cell) {
   const bool simplices = mesh::is_simplex(mesh.shape);
   SPREKK_CHECK(name != "rt0" || simplices,
                "scheme \"rt0\" takes triangles and tetrahedra; others take tpfa or mimetic");
@@ -192,7 +216,8 @@ FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const st
     Real X[mesh::n_nodes(shape())][mesh::dimension(shape())];
     for (LocalIndex c = 0; c < mesh.n_owned_cells && !here; ++c) {
       assembly::gather_host<shape()>(mesh, c, X);
-      here = !is_orthogonal(CellFaces<shape()>(X), mobility[mesh.cell_region[c]]);
+      here = !is_orthogonal(CellFaces<shape()>(X),
+                            mobility[mobility_of_cell.empty() ? mesh.cell_region[c] : mobility_of_cell[c]]);
     }
   });
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &anywhere);

@@ -6,39 +6,53 @@
 #include "physics/hybrid_cell.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace sprekk::physics {
 
-/// Volume of fluid that leaves through a boundary, m/s.
-struct BoundaryFlux {
+/// Fluid that leaves through a boundary: volume per area and time, m/s; or with a conductance c, m/(Pa s), as much as
+/// c (p - value), the value being the pressure beyond, Pa.
+struct FluidCondition {
   int boundary;
   base::Expression value;
-  int region = -1;  ///< only on faces of cells of this region; -1: all
+  std::optional<base::Expression> conductance = {};
+  int region = -1;    ///< only on faces of cells of this region; -1: all
+  int fracture = -1;  ///< through the end of this fracture, of which the area is length times aperture; -1: of rock
+
+  /// What leaves where p is zero.
+  Real load(const std::array<Real, 3>& x, Real t) const {
+    return conductance ? -(*conductance)(x, t) * value(x, t) : value(x, t);
+  }
 };
 
 struct DarcyFlowParameters {
   std::vector<laws::Mobility> mobility;  ///< different ones
   std::vector<int> mobility_of_cell;     ///< [local cell] which of them; empty: the number of the cell's region
   FluxScheme scheme = FluxScheme::rt0;
-  std::array<Real, 3> weight{};               ///< rho g, N/m^3
-  std::vector<base::Expression> source = {};  ///< volume of fluid per volume and time, 1/s; empty or one
-  std::vector<BoundaryFlux> fluxes = {};
+  std::array<Real, 3> weight{};                 ///< rho g, N/m^3
+  std::vector<base::Expression> source = {};    ///< volume of fluid per volume and time, 1/s; empty or one
+  std::vector<FluidCondition> conditions = {};  ///< those without a fracture
+  std::vector<Real> exchange = {};  ///< [local fracture face] of each of its sides, m/(Pa s): a resistance between the
+                                    ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };
 
 /// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
 /// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
-FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility);
+FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
+                       const std::vector<int>& mobility_of_cell = {});
 std::string name_of(FluxScheme scheme);
 
 /// Declares the unknowns "pressure" (cells, Pa) and "face pressure" (facets, Pa) and adds to their rows, for a cell K
 /// with faces i,
-///   sum_i q_i - integral_K source   and, on a facet,   -sum_K q_i + integral flux
-/// with q_i = sum_j T_ij (p_K - p_j + rho g . d_j), the hybrid form of the mixed method (Arnold and Brezzi 1985): its
-/// flows are in balance on every cell and continuous across facets. A facet on the boundary without flux and without
-/// prescribed pressure lets nothing through.
-/// Outputs: pressure, and "Darcy velocity" q = sum_i q_i d_i / V (cells, m/s).
+///   sum_i q_i - integral_K source   and, on a facet,   -sum_K q_i + integral of what leaves
+/// with q_i = sum_j T_ij (p_K - p_j + rho g . d_j), where beside fractures T = (T_0^-1 + diag(1/(exchange A)))^-1 and
+/// p_j is the pressure in the fracture: the hybrid form of the mixed method (Arnold and Brezzi 1985): its flows are in
+/// balance on every cell and continuous across facets. A facet on the boundary without a condition lets nothing
+/// through. T is exact from open to closed sides: neither the balance nor the exchange suffers from rounding where one
+/// of them is by orders of magnitude larger than what the rock lets through. Outputs: pressure, and "Darcy velocity" q
+/// = sum_i q_i d_i / V (cells, m/s).
 std::unique_ptr<assembly::Module> make_darcy_flow(mesh::Shape shape, DarcyFlowParameters parameters);
 
 }  // namespace sprekk::physics

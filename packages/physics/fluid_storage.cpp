@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sprekk::physics {
 
@@ -14,9 +15,9 @@ namespace {
 /// | symbol   | shape  | unit     |                                                            |
 /// | x        | 1      | Pa       | pressure p                                                 |
 /// | r        | 1      | m^3/s    | S V (p - p_old)/dt                                         |
-/// | capacity | [cell] | m^3/Pa   | S V                                                        |
-/// | initial  | [cell] | Pa       | pressure at the start of the run                           |
-/// | gained   | [owned cell, 1] | Pa | p_old less that                                         |
+/// | capacity | [entity] | m^3/Pa | S V                                                        |
+/// | initial  | [entity] | Pa     | pressure at the start of the run                           |
+/// | gained   | [owned entity, 1] | Pa | p_old less that                                         |
 /// | rate     |        | 1/s      | 1/dt                                                       |
 struct StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>>;
@@ -34,43 +35,40 @@ struct StorageCell {
   }
 };
 
+/// Of one entity.
+struct Stored {
+  Real capacity, initial;
+};
+
+/// Finds what is stored in the entities of a loop, in their order.
+using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
+
 class FluidStorage final : public assembly::Module {
  public:
-  explicit FluidStorage(FluidStorageParameters parameters) : parameters_(std::move(parameters)) {}
+  FluidStorage(std::string name, std::string field, fields::Entity entity, Loop loop, Find find)
+      : name_(std::move(name)), field_(std::move(field)), entity_(entity), loop_(loop), find_(std::move(find)) {}
 
-  std::string name() const override { return "fluid storage"; }
+  std::string name() const override { return name_; }
 
   assembly::Declaration declare() const override {
     assembly::Declaration d;
-    d.couplings = {{Loop::cells, "pressure", {"pressure"}}};
-    d.history = {{"gained pressure", fields::Entity::cell, 1}};
+    d.couplings = {{loop_, field_, {field_}}};
+    d.history = {{"gained pressure", entity_, 1}};
     return d;
   }
 
   void bind(const assembly::Context& context) override {
-    const auto mesh = context.mesh();
-    pressure_ = context.field("pressure");
-    View<Real*> capacity("capacity", mesh->n_cells()), initial("initial pressure", mesh->n_cells());
-    const auto S = Kokkos::create_mirror_view(capacity), p = Kokkos::create_mirror_view(initial);
-    mesh::for_shape(mesh->shape, [&](auto shape) {
-      for (LocalIndex c = 0; c < mesh->n_cells(); ++c) {
-        Real volume = 0, sum = 0;
-        assembly::for_each_cell_point<shape()>(*mesh, c, [&](const auto&, Real part, const auto& x) {
-          volume += part;
-          sum += part * parameters_.initial(x, 0);
-        });
-        const auto& of_cell = parameters_.storage_of_cell;
-        S(c) = volume * parameters_.storage[of_cell.empty() ? mesh->cell_region[c] : of_cell[c]];
-        p(c) = sum / volume;
-        largest_ = std::max(largest_, std::abs(p(c)));
-      }
-    });
-    Kokkos::deep_copy(capacity, S);
-    Kokkos::deep_copy(initial, p);
-    op_.capacity = capacity;
-    op_.initial = initial;
-    assembler_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{pressure_},
-                                             std::vector<int>{pressure_}, Assembler::Positions::keep);
+    pressure_ = context.field(field_);
+    std::vector<Real> capacity, initial;
+    for (const auto& stored : find_(*context.mesh())) {
+      capacity.push_back(stored.capacity);
+      initial.push_back(stored.initial);
+      largest_ = std::max(largest_, std::abs(stored.initial));
+    }
+    op_.capacity = assembly::to_device(capacity, "capacity");
+    op_.initial = assembly::to_device(initial, "initial pressure");
+    assembler_ = std::make_unique<Assembler>(context, loop_, std::vector<int>{pressure_}, std::vector<int>{pressure_},
+                                             Assembler::Positions::keep);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -83,12 +81,12 @@ class FluidStorage final : public assembly::Module {
   Real fluid_load(Real) const override { return largest_; }
 
   void commit(assembly::State& state) const override {
-    const auto p = state.x[pressure_];
     const auto initial = op_.initial;
     const auto gained = state.history[0];
-    Kokkos::parallel_for(
-        "commit", Kokkos::RangePolicy<Execution>(0, gained.extent(0)),
-        KOKKOS_LAMBDA(int c) { gained(c, 0) = p(c) - initial(c); });
+    assembler_->for_each(
+        op_, state, KOKKOS_LAMBDA(int e, const Real(&x)[1]) {
+          if (e < static_cast<int>(gained.extent(0))) gained(e, 0) = x[0] - initial(e);
+        });
   }
 
  private:
@@ -101,17 +99,62 @@ class FluidStorage final : public assembly::Module {
     return op;
   }
 
-  FluidStorageParameters parameters_;
+  std::string name_, field_;
+  fields::Entity entity_;
+  Loop loop_;
+  Find find_;
   int pressure_ = -1;
   Real largest_ = 0;  // initial pressure on this rank, Pa
   StorageCell op_;
   std::unique_ptr<Assembler> assembler_;
 };
 
+/// The integral over points of an entity, and the mean of the initial pressure there. `each` calls its argument with
+/// (measure, place) of every point.
+template <class Each>
+Stored integrate(Real storage, const base::Expression& initial, const Each& each) {
+  Real total = 0, sum = 0;
+  each([&](Real part, const std::array<Real, 3>& x) {
+    total += part;
+    sum += part * initial(x, 0);
+  });
+  return {storage * total, sum / total};
+}
+
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_fluid_storage(FluidStorageParameters parameters) {
-  return std::make_unique<FluidStorage>(std::move(parameters));
+  const auto find = [parameters = std::move(parameters)](const mesh::Mesh& mesh) {
+    const auto& of_cell = parameters.storage_of_cell;
+    std::vector<Stored> stored;
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      for (LocalIndex c = 0; c < mesh.n_cells(); ++c)
+        stored.push_back(integrate(parameters.storage[of_cell.empty() ? mesh.cell_region[c] : of_cell[c]],
+                                   parameters.initial, [&](const auto& visit) {
+                                     assembly::for_each_cell_point<shape()>(
+                                         mesh, c, [&](const auto&, Real part, const auto& x) { visit(part, x); });
+                                   }));
+    });
+    return stored;
+  };
+  return std::make_unique<FluidStorage>("fluid storage", "pressure", fields::Entity::cell, Loop::cells, find);
+}
+
+std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
+  const auto find = [parameters = std::move(parameters)](const mesh::Mesh& mesh) {
+    std::vector<Stored> stored;
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+        stored.push_back(integrate(parameters.storage[f], parameters.initial, [&](const auto& visit) {
+          const auto& face = mesh.fracture_faces[f];
+          assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                                 [&](const auto&, Real part, const auto& x) { visit(part, x); });
+        }));
+    });
+    return stored;
+  };
+  return std::make_unique<FluidStorage>("fracture storage", "face pressure", fields::Entity::fracture_face,
+                                        Loop::fracture_faces, find);
 }
 
 }  // namespace sprekk::physics

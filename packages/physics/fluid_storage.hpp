@@ -1,4 +1,4 @@
-// What a fluid's pressure stores of it in the rock: rows of the pressure.
+// What a fluid's pressure stores of it: rows of the pressure in rock and in fractures.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -18,5 +18,13 @@ struct FluidStorageParameters {
 /// Adds S V (p - p_old)/dt to the rows of "pressure" (implicit Euler), p_old being the pressure of the cell at the
 /// start of the step, which it keeps.
 std::unique_ptr<assembly::Module> make_fluid_storage(FluidStorageParameters parameters);
+
+struct FractureStorageParameters {
+  std::vector<Real> storage;     ///< [local fracture face] per area, m/Pa
+  base::Expression initial = 0;  ///< pressure at the start, Pa
+};
+
+/// The same for "face pressure" on fracture faces: area times storage for S V.
+std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters);
 
 }  // namespace sprekk::physics

@@ -116,6 +116,18 @@ struct FlowMatrix {
       add_mimetic(faces, mobility);
   }
 
+  /// What resists behind face e in addition, R, Pa s/m^3: T <- (T^-1 + R e e^T)^-1, exact for any R >= 0.
+  KOKKOS_INLINE_FUNCTION void add_resistance(int e, Real R) {
+    const Real share = 1 / (1 + R * T[e][e]);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        if (i != e && j != e) T[i][j] -= T[i][e] * T[e][j] * R * share;
+    for (int i = 0; i < n; ++i) {
+      T[i][e] *= share;
+      if (i != e) T[e][i] *= share;
+    }
+  }
+
  private:
   /// On simplices the functions phi_i = (x - x_i)/(d V) have M_ij = integral phi_i . (k/mu)^-1 phi_j, and T = M^-1.
   /// Since the centres of faces add up to zero, T is A (k/mu) A^T / V + a 1 1^T, with 1/a = 1^T M 1.
@@ -169,6 +181,8 @@ struct FlowMatrix {
 /// | mobility | [number]      | m^2/(Pa s)    | k/mu                                       |
 /// | number   | [cell]        | -             | which mobility                             |
 /// | weight   | [dim]         | N/m^3         | rho g                                      |
+/// | beside   | [cell]        | -             | row of resistance, -1 for none; empty: all |
+/// | resistance | [row, face] | Pa s/m^3      | of sides of fractures, 0 for none          |
 template <Shape shape>
 struct HybridCell {
   using Faces = CellFaces<shape>;
@@ -181,11 +195,21 @@ struct HybridCell {
   ConstView<int*> number;
   Kokkos::Array<Real, 3> weight;
   FluxScheme scheme;
+  ConstView<int*> beside = {};
+  ConstView<Real**> resistance = {};
 
   KOKKOS_INLINE_FUNCTION Faces faces(int cell) const {
     Real X[mesh::n_nodes(shape)][dim];
     geometry.gather(cell, X);
     return Faces(X);
+  }
+
+  KOKKOS_INLINE_FUNCTION FlowMatrix<shape> matrix(int cell, const Faces& faces) const {
+    FlowMatrix<shape> result(faces, mobility(number(cell)), scheme);
+    if (beside.extent(0) == 0 || beside(cell) < 0) return result;
+    for (int f = 0; f < n; ++f)
+      if (resistance(beside(cell), f) > 0) result.add_resistance(f, resistance(beside(cell), f));
+    return result;
   }
 
   /// Outward flow through each face.
@@ -204,7 +228,7 @@ struct HybridCell {
   KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
     const Faces of_cell = faces(cell);
     Real q[n];
-    flow(of_cell, FlowMatrix<shape>(of_cell, mobility(number(cell)), scheme), x, q);
+    flow(of_cell, matrix(cell, of_cell), x, q);
     r[0] = 0;
     for (int i = 0; i < n; ++i) {
       r[0] += q[i];
@@ -213,7 +237,7 @@ struct HybridCell {
   }
 
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
-    const FlowMatrix<shape> matrix(faces(cell), mobility(number(cell)), scheme);
+    const FlowMatrix<shape> matrix = this->matrix(cell, faces(cell));
     J[0][0] = 0;
     for (int i = 0; i < n; ++i) {
       J[0][1 + i] = 0;

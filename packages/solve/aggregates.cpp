@@ -9,6 +9,7 @@ namespace {
 
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
+constexpr Real strong = 0.05;        // a coupling, relative to the geometric mean of the diagonals
 constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
@@ -84,6 +85,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
       for (std::size_t k = 0; k < x.extent(1); ++k) nodes.place[i][k] = x(i, k);
   }
   std::vector<bool> prescribed(size);
+  if (modes.is_null()) nodes.weak.assign(graph.n_entries(), false);
   for (LocalIndex i = 0; i < n_rows; ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
     prescribed.assign(size, true);
@@ -98,6 +100,10 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
         if (j != i) most = std::fmax(most, here);
       }
       if (most <= zero) continue;
+      if (modes.is_null() && j != i && most < strong / rounding * zero) {
+        nodes.weak[begin + k] = true;
+        continue;
+      }
       nodes.free[i] = true;
       if (j < n_rows) nodes.neighbours.node.push_back(j);
     }

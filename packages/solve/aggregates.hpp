@@ -21,10 +21,13 @@ struct Nodes {
   std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
   int n_modes = 0;
   std::vector<std::array<Real, 3>> place;  ///< [node] m; empty: not known
+  std::vector<bool> weak;  ///< [entry of the graph] a coupling to do without, besides those that are far; empty: none
 };
 
 /// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
-/// null for the constant ones; `places` [node, dim], null if they are not known. Collective.
+/// null for the constant ones; `places` [node, dim], null if they are not known. Without modes, couplings are weak that
+/// are small beside the diagonals of both, and no neighbours: so what conducts well and what does not stay apart
+/// (Vanek, Mandel and Brezina 1996). Collective.
 Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
                const RCP<const fields::MultiVector>& places = Teuchos::null);
 

@@ -89,9 +89,10 @@ View<std::uint16_t*> to_view(const std::vector<std::uint16_t>& from) {
   return view;
 }
 
-/// The entries of a graph between nodes out of each other's reach. Collective.
+/// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
-  std::vector<bool> far(graph.n_entries(), false);
+  auto far = nodes.weak;
+  far.resize(graph.n_entries(), false);
   const auto& halo = *graph.columns;
   const View<Real*> ball("place and reach", static_cast<std::size_t>(halo.n_all()) * 4);
   const auto reaches = reach(nodes);
@@ -103,7 +104,7 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   for (LocalIndex i = 0; i < graph.n_rows(); ++i)
     for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
       const Real *const a = &ball(4 * i), *const b = &ball(4 * graph.column(e));
-      far[e] = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
+      far[e] = far[e] || std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
     }
   return far;
 }

@@ -4,6 +4,7 @@
 #include <MueLu_MasterList.hpp>
 #include <Teuchos_CommHelpers.hpp>
 #include <cmath>
+#include <limits>
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
@@ -59,6 +60,38 @@ std::string gist(const std::string& text) {
   return gap == std::string::npos ? text : text.substr(gap + 2, end - gap - 2);
 }
 
+/// y = S A S x, S diagonal.
+class ScaledOperator : public Operator {
+ public:
+  ScaledOperator(RCP<const Operator> A, RCP<const Vector> S) : A_(A), S_(S), Sx_(A->getDomainMap(), 1) {}
+  RCP<const fields::Map> getDomainMap() const override { return A_->getDomainMap(); }
+  RCP<const fields::Map> getRangeMap() const override { return A_->getRangeMap(); }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, Real alpha, Real beta) const override {
+    for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
+      const auto to = y.getVectorNonConst(v);
+      Vector ASx(to->getMap());
+      Sx_.elementWiseMultiply(1, *S_, *x.getVector(v), 0);
+      A_->apply(Sx_, ASx, mode, 1, 0);
+      to->elementWiseMultiply(alpha, *S_, ASx, beta);
+    }
+  }
+
+ private:
+  RCP<const Operator> A_;
+  RCP<const Vector> S_;
+  mutable MultiVector Sx_;
+};
+
+/// 1/sqrt(diagonal), or its inverse.
+RCP<const Vector> root_of_diagonal(const CrsMatrix& A, bool inverse) {
+  const auto scale = rcp(new Vector(A.getRowMap()));
+  A.getLocalDiagCopy(*scale);
+  const auto values = scale->getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t k = 0; k < values.extent(0); ++k)
+    values(k, 0) = values(k, 0) > 0 ? std::pow(values(k, 0), inverse ? 0.5 : -0.5) : 1;
+  return scale;
+}
+
 class IterativeSolver : public LinearSolver {
  public:
   IterativeSolver(const LinearSolverOptions& options, const std::vector<Block>& blocks)
@@ -90,12 +123,46 @@ class IterativeSolver : public LinearSolver {
     symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
+    set_scale();
     make_preconditioner();
     return failure_;
   }
 
+  /// Rows of one unknown of a node are scaled by the roots of their diagonals: what conducts little then counts as much
+  /// as what conducts well. No solve asks for less than what rounding leaves.
   LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
     if (coarse_) return coarse_->solve(b, x, tolerance);
+    if (scale_.is_null()) return solve_scaled(b, x, tolerance);
+    Vector scaled(b.getMap()), y(x.getMap());
+    scaled.elementWiseMultiply(1, *scale_, b, 0);
+    const auto report = solve_scaled(scaled, y, std::min(std::max(tolerance, noise_ / scaled.norm2()), most_noise));
+    x.elementWiseMultiply(1, *scale_, y, 0);
+    return report;
+  }
+
+  const ParameterList& parameters() const override { return parameters_; }
+  RCP<const Operator> preconditioner() const override { return preconditioner_; }
+
+  std::vector<SolverCost> costs() const override {
+    if (fine_level_) return {*fine_cost_, fine_level_->order_one_cost()};
+    std::vector<SolverCost> all;
+    for (const auto& solver : solvers_)
+      for (const auto& cost : solver->costs()) all.push_back(cost);
+    return all;
+  }
+
+ private:
+  void set_scale() {
+    const auto& first = system_.diagonal.front();
+    const bool scalar = solvers_.size() == 1 && first.block.n_components == 1 && first.block.near_null_space.is_null();
+    scale_ = scalar ? root_of_diagonal(*first.matrix, false) : Teuchos::null;
+    if (!scalar) return;
+    matrix_ = rcp(new ScaledOperator(matrix_, scale_));
+    unscale_ = root_of_diagonal(*first.matrix, true);
+    noise_ = 10 * std::numeric_limits<Real>::epsilon() * first.block.kinematic_scale * unscale_->norm2();
+  }
+
+  LinearReport solve_scaled(const Vector& b, Vector& x, Real tolerance) {
     LinearReport report;
     x.putScalar(0);
     if (!failure_.empty() || b.normInf() == 0) {
@@ -127,18 +194,6 @@ class IterativeSolver : public LinearSolver {
     return report;
   }
 
-  const ParameterList& parameters() const override { return parameters_; }
-  RCP<const Operator> preconditioner() const override { return preconditioner_; }
-
-  std::vector<SolverCost> costs() const override {
-    if (fine_level_) return {*fine_cost_, fine_level_->order_one_cost()};
-    std::vector<SolverCost> all;
-    for (const auto& solver : solvers_)
-      for (const auto& cost : solver->costs()) all.push_back(cost);
-    return all;
-  }
-
- private:
   /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
   int describe_multigrid(const Block& block) {
     if (takes_muelu(muelu_, block)) {
@@ -241,7 +296,8 @@ class IterativeSolver : public LinearSolver {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
         rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
-    problem->setRightPrec(preconditioner_);
+    const auto unscaled = [&]() -> RCP<const Operator> { return rcp(new ScaledOperator(preconditioner_, unscale_)); };
+    problem->setRightPrec(scale_.is_null() ? preconditioner_ : unscaled());
     problem->setProblem();
     const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
     const std::string method = list->get("Solver Type", symmetric_ ? "Pseudo Block CG" : "Pseudo Block GMRES");
@@ -266,6 +322,9 @@ class IterativeSolver : public LinearSolver {
   RCP<const Comm> comm_;
   RCP<const Operator> matrix_;
   RCP<const Operator> preconditioner_;
+  RCP<const Vector> scale_, unscale_;  // of rows and columns; null: none
+  Real noise_ = 0;                     // of a scaled residual, by rounding
+  static constexpr Real most_noise = 0.1;
   static constexpr Real much = 0.1;        // that a diagonal may change,
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   static constexpr int most_more = 4;      // iterations that it may then take more

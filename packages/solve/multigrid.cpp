@@ -57,9 +57,17 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, 
     auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
     if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
     levels_.back().smoother = std::make_unique<Chebyshev>(A);
+    if (modes.is_null()) {  // what is weak on the next level its matrix tells
+      levels_.back().smoother->update(A);
+      galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
+      nodes = nodes_of(galerkin->coarse(), modes);
+      nodes.motion = std::move(coarse.motion);
+      nodes.place = std::move(coarse.place);
+    } else {
+      nodes = std::move(coarse);
+    }
     levels_.back().to_coarse = std::move(galerkin);
     add_level(levels_.back().to_coarse->coarse());
-    nodes = std::move(coarse);
   }
   double here[2] = {static_cast<double>(levels_.front().A.value.extent(0)), 0}, all[2] = {};
   for (const auto& level : levels_) here[1] += level.A.value.extent(0);

@@ -298,13 +298,36 @@ class Scenes(BadInput):
             text = re.sub(pattern, new, text, flags=re.DOTALL)
         (self.folder / "a.xml").write_text(text)
         self.refuse(["Flow: nothing says how high the pressure is"], "check", "a.xml")
-        fracture = ("Mesh.fractures.f.lower corner={0.25, 0.5}", "Mesh.fractures.f.upper corner={0.75, 0.5}", "Fractures.f.material=fresh granite joint")
-        refuse(["Flow: the mesh has fractures; flow along and across them is not available yet"], *fracture)
+        self.refuse(['material: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
+                    "--set", "Materials.rock.permeability={0.25-x}", any_point=True)
+        refuse(['west > "conductance"', 'must be at least 0'], "Boundary conditions.west.conductance=-1")
+        refuse(['west > "conductance": is "t"; it may depend on x, y, z, not on t'], "Boundary conditions.west.conductance=t")
         refuse(['Bulk: has a force or stress of the rock'], "Bulk.body force={1, 0}")
         (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
         self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
+
+    def test_flow_in_fractures(self):
+        def refuse(expected, *sets, command="check"):
+            self.refuse(expected, command, self.scene("flow/network_2d.xml"), *(word for entry in sets for word in ("--set", entry)),
+                        any_point=True)
+        joint, west = "Materials.open joint.", "Boundary conditions.west."
+        refuse(['open joint > "initial aperture": is 0, and so is "residual aperture"'], joint + "initial aperture=0")
+        refuse(["material: the hydraulic aperture is 0 at (", "must be above 0"], joint + "initial aperture=2e-4*(x>50)", command="run")
+        for entry in ("tangential permeability", "normal permeability"):
+            refuse([f'open joint > "{entry}": is 0, must be'], joint + entry + "=0")
+        refuse(['west > "fracture": is "lon", must be one of', 'Did you mean "long"?'], west + "fracture=lon")
+        refuse(['west: give either "fracture" or "region"'], west + "fracture=long", west + "region=bulk")
+        refuse(['Fractures > long > "fluid pressure": is not given but found'], "Fractures.long.fluid pressure=t")
+        refuse(['both > "conductance": needs a "pressure"'], "Boundary conditions.both.boundary=west", "Boundary conditions.both.flux=1",
+               "Boundary conditions.both.conductance=1")
+        refuse(['"early(t)"', 'table "early"', "is outside of [0, 1000000]"], west + "pressure=early(t)", "Tables.early.arguments={0, 1e6}",
+               "Tables.early.values={1e6, 2e6}", command="run")
+        xml = self.scene_with(('      <Parameter name="friction coefficient" type="double" value="1"/>\n', ""))
+        self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
+        self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
+        self.refuse_set(['"fracture": goes with "pressure" or "flux" only'], "Boundary conditions.moved.fracture=fracture")
 
     def test_tables(self):
         table = ["Tables.ramp.arguments={0, 1}", "Tables.ramp.values={0, 1}"]

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "mesh/cell_geometry.hpp"
 #include "mesh/distribute.hpp"
@@ -39,6 +40,11 @@ GlobalMesh whole(const Mesh& mesh) {
   result.region_names = mesh.region_names;
   result.boundary_names = mesh.boundary_names;
   result.fracture_names = mesh.fracture_names;
+  result.parent_node.resize(result.n_nodes());
+  std::iota(result.parent_node.begin(), result.parent_node.end(), 0);
+  for (const auto& face : mesh.fracture_faces)
+    for (const auto& nodes : face.nodes)
+      for (int k = 0; k < n_face_corners(mesh.shape); ++k) result.parent_node[nodes[k]] = face.corners[k];
   return result;
 }
 

@@ -56,7 +56,8 @@ TEST(Flow, ConstantGradientIsExact) {
     scene.flow->viscosity = 2;
     scene.bulk.gravity = dim == 2 ? std::vector<Real>{0, -10} : std::vector<Real>{0, 0, -10};
     auto& k = scene.materials.at("rock").permeability;
-    k = dim == 2 ? std::vector<Real>{4, 2, 1} : std::vector<Real>{4, 2, 3, 1, 0.4, 0.6};
+    using Tensor = std::vector<base::Expression>;
+    k = dim == 2 ? Tensor{4, 2, 1} : Tensor{4, 2, 3, 1, 0.4, 0.6};
     Matrix3 M = {{{2, 0.5, 0.3}, {0.5, 1, 0.2}, {0.3, 0.2, 1.5}}};
     Vector3 velocity{};
     for (int i = 0; i < dim; ++i)

@@ -1,0 +1,268 @@
+#include "physics/fracture_flow.hpp"
+
+#include "assembly/assembler.hpp"
+#include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
+#include "physics/exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+
+namespace {
+
+/// Flow along one fracture face, from its pressure and those on its ridges.
+///
+/// | symbol | shape            | unit       |                                  |
+/// | x      | 1 + n            | Pa         | p_F, pressures on ridges         |
+/// | r      | 1 + n            | m^3/s      | sum q, -q (2D: m^2/s)            |
+/// | T      | [face, n * n]    | m^3/(Pa s) | (2D: m^2/(Pa s))                 |
+/// | lift   | [face, n]        | Pa         | rho g . d                        |
+template <int n>
+struct FractureFace {
+  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>>;
+  using Rows = Columns;
+  ConstView<Real**> T, lift;
+
+  KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[1 + n], Real (&q)[n]) const {
+    for (int i = 0; i < n; ++i) {
+      q[i] = 0;
+      for (int j = 0; j < n; ++j) q[i] += T(face, i * n + j) * (x[0] - x[1 + j] + lift(face, j));
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
+    Real q[n];
+    flow(face, x, q);
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      r[0] += q[i];
+      r[1 + i] = -q[i];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    J[0][0] = 0;
+    for (int i = 0; i < n; ++i) {
+      J[0][1 + i] = 0;
+      for (int j = 0; j < n; ++j) {
+        J[0][1 + i] -= T(face, j * n + i);
+        J[1 + i][1 + j] = T(face, i * n + j);
+      }
+      J[1 + i][0] = J[0][1 + i];
+      J[0][0] -= J[0][1 + i];
+    }
+  }
+};
+
+/// A fracture face in coordinates of its own, and the flow matrix for a transmissivity. In 2D a face is a line, and two
+/// points are exact for constant gradients.
+template <Shape shape>
+class FacePlane {
+ public:
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_face_corners(shape);
+  Real T[n][n] = {}, d[n][3] = {};  // flow matrix; from the centre of the face to those of its ridges, m
+  Real area = 0;
+
+  FacePlane(const mesh::Mesh& mesh, LocalIndex face, Real transmissivity, FluxScheme scheme) {
+    const auto& f = mesh.fracture_faces[face];
+    if constexpr (dim == 2) {
+      area = f.area;
+      for (int k = 0; k < n; ++k) {
+        const auto x = mesh::ridge_centre(mesh, face, k);
+        for (int i = 0; i < dim; ++i) d[k][i] = x[i] - f.centre[i];
+        T[k][k] = 2 * transmissivity / area;
+      }
+    } else {
+      constexpr Shape plane = mesh::face_shape(shape);
+      const int side = f.cell[mesh::minus] >= 0 ? mesh::minus : mesh::plus;
+      Real X[n][2];
+      for (int k = 0; k < n; ++k)
+        for (int t = 0; t < 2; ++t) {
+          X[k][t] = 0;
+          for (int i = 0; i < 3; ++i)
+            X[k][t] += f.frame[1 + t][i] * (mesh.coordinates[f.nodes[side][k] * 3 + i] - f.centre[i]);
+        }
+      const CellFaces<plane> ends(X);
+      const FlowMatrix<plane> matrix(ends, laws::Mobility::isotropic(transmissivity), scheme);
+      area = ends.volume;
+      for (int k = 0; k < n; ++k) {
+        for (int i = 0; i < 3; ++i) d[k][i] = ends.centre[k][0] * f.frame[1][i] + ends.centre[k][1] * f.frame[2][i];
+        for (int j = 0; j < n; ++j) T[k][j] = matrix.T[k][j];
+      }
+    }
+  }
+};
+
+template <Shape shape>
+class FractureFlow final : public assembly::Module {
+ public:
+  using Plane = FacePlane<shape>;
+  static constexpr int dim = Plane::dim, n = Plane::n;
+  using Op = FractureFace<n>;
+
+  explicit FractureFlow(FractureFlowParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "fracture flow"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
+    d.outputs = {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1},
+                 {"fluid flux", "m^2/s", fields::Entity::fracture_face, 3}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    const auto extents = mesh::domain_extents(*mesh_);
+    size_ = *std::max_element(extents.begin(), extents.end());
+    block_ = context.field("face pressure");
+    set_faces();
+    assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, std::vector<int>{block_},
+                                             std::vector<int>{block_}, Assembler::Positions::once);
+    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
+    });
+    exchange_.bind(context, block_);
+    load_ = View<Real*>("load", context.layout(block_).n_owned());
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_->add_residual(op_, state, r);
+    exchange_.add_residual(state, r);
+    const auto rows = r[block_];
+    const auto load = load_;
+    Kokkos::parallel_for(
+        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) += load(i); });
+  }
+
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    assembler_->add_jacobian(op_, state, J);
+    exchange_.add_jacobian(J);
+  }
+
+  bool constant_load() const override {
+    return std::all_of(parameters_.source.begin(), parameters_.source.end(),
+                       [](const auto& source) { return source.constant_in_time(); }) &&
+           std::all_of(parameters_.conditions.begin(), parameters_.conditions.end(),
+                       [](const auto& one) { return one.value.constant_in_time(); });
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (loaded_ && constant_load()) return;
+    const auto facets = Kokkos::create_mirror_view(load_);
+    Kokkos::deep_copy(facets, 0.0);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      for_each_source(f, t, [&](Real area, Real source) { facets(mesh_->facets->fracture_face[f]) -= area * source; });
+    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (facet < mesh_->facets->n_owned) facets(facet) += area * condition.load(x, t);
+    });
+    Kokkos::deep_copy(load_, facets);
+    loaded_ = true;
+  }
+
+  /// What sources and prescribed flow make of pressure over the size of the domain.
+  Real fluid_load(Real t) const override {
+    Real largest = 0;
+    const auto let = [&](Real flow, Real transmissivity) {
+      if (flow != 0) largest = std::max(largest, size_ * std::abs(flow) / transmissivity);
+    };
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].transmissivity); });
+    for (const auto& rim : mesh_->facets->rims)
+      for (const auto& condition : parameters_.conditions)
+        if (holds(condition, rim)) {
+          const auto& face = parameters_.faces[rim.face];
+          const Real value = condition.value(mesh::ridge_centre(*mesh_, rim.face, rim.ridge), t);
+          if (condition.conductance)
+            largest = std::max(largest, std::abs(value));
+          else
+            let(face.aperture * value, face.transmissivity);
+        }
+    return largest;
+  }
+
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+      const Plane plane(*mesh_, f, parameters_.faces[f].transmissivity, parameters_.scheme);
+      Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
+      for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
+      op_.flow(f, x, q);
+      fields[0].values.push_back(x[0]);
+      for (int i = 0; i < 3; ++i) {
+        Real flux = 0;
+        for (int k = 0; k < n; ++k) flux += q[k] * plane.d[k][i] / plane.area;
+        fields[1].values.push_back(flux);
+      }
+    }
+  }
+
+ private:
+  using Assembler = assembly::Assembler<Op>;
+
+  void set_faces() {
+    const LocalIndex n_faces = mesh_->n_fracture_faces();
+    View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
+    const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
+    for (LocalIndex f = 0; f < n_faces; ++f) {
+      const Plane plane(*mesh_, f, parameters_.faces[f].transmissivity, parameters_.scheme);
+      for (int k = 0; k < n; ++k) {
+        for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
+        lift_host(f, k) = 0;
+        for (int i = 0; i < dim; ++i) lift_host(f, k) += parameters_.weight[i] * plane.d[k][i];
+      }
+    }
+    Kokkos::deep_copy(T, T_host);
+    Kokkos::deep_copy(lift, lift_host);
+    op_ = {T, lift};
+  }
+
+  /// Calls visit(area, source) at the points of a face.
+  template <class Visit>
+  void for_each_source(LocalIndex f, Real t, const Visit& visit) const {
+    const auto& face = mesh_->fracture_faces[f];
+    const auto& source = parameters_.source[face.fracture];
+    if (source.is_constant() && source({}, 0) == 0) return;
+    assembly::for_each_face_point<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                         [&](const auto&, Real area, const auto& x) { visit(area, source(x, t)); });
+  }
+
+  bool holds(const FluidCondition& condition, const mesh::Facets::Rim& rim) const {
+    return condition.boundary == rim.boundary && condition.fracture == mesh_->fracture_faces[rim.face].fracture;
+  }
+
+  /// Calls visit(condition, facet, length times aperture, x) for all ends of fractures with a condition.
+  template <class Visit>
+  void for_each_end(const Visit& visit) const {
+    for (const auto& condition : parameters_.conditions)
+      for (const auto& rim : mesh_->facets->rims)
+        if (holds(condition, rim))
+          visit(condition, mesh_->facets->ridge[rim.face * n + rim.ridge],
+                parameters_.faces[rim.face].aperture * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
+                mesh::ridge_centre(*mesh_, rim.face, rim.ridge));
+  }
+
+  FractureFlowParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  int block_ = -1;  // face pressure
+  Real size_ = 0;   // largest extent of the domain, m
+  bool loaded_ = false;
+  Op op_;
+  std::unique_ptr<Assembler> assembler_;
+  Exchange exchange_;  // with what is beyond the ends
+  View<Real*> load_;   // [owned row], m^3/s
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_fracture_flow(Shape shape, FractureFlowParameters parameters) {
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<FractureFlow<s()>>(std::move(parameters));
+  });
+}
+
+}  // namespace sprekk::physics
