@@ -94,6 +94,8 @@ struct State {
   Real t = 0, dt = 0;
   ConstView<Real*> damping = {};       ///< [owned fracture face], see BlockProblem::damp(); empty: zero
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
+  Real tether = 0;                     ///< see BlockProblem::tether()
+  ConstView<Real**> anchor = {};       ///< [owned fracture face, dim] the jump that it pulls to, global, m
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };

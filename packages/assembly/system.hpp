@@ -54,6 +54,7 @@ class System : public fields::BlockProblem {
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
+  void tether(Real stiffness, const fields::BlockVector& x) override;
   bool calibrate(const fields::BlockVector& x, bool first) override;
   bool settle(fields::BlockVector& x) override;
 
@@ -148,6 +149,8 @@ class System : public fields::BlockProblem {
   Reference reference_;
   Scales scales_;
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
+  ConstView<Real**> anchor_;  // [owned fracture face, dim] of tether()
+  Real tether_ = 0;
   RCP<base::Timers> timers_;
   Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;

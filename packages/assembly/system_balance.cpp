@@ -27,7 +27,10 @@ std::string System::loose() const {
 
 void System::find_loose() {
   if (!watches_pieces()) return;
-  loose_->find(grips());
+  auto found = grips();
+  if (tether_ > 0)
+    for (auto& grip : found) grip.held = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  loose_->find(found);
   driven_ = {};
 }
 

@@ -50,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, dt_, damping_, augmentation_, {}, history_[module]};
+  State s{t_, dt_, damping_, augmentation_, tether_, anchor_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -64,6 +64,20 @@ void System::damp(Real everywhere, const std::vector<Real>& here) {
   for (std::size_t f = 0; f < host.extent(0); ++f) host(f) = std::max(everywhere, here.empty() ? 0 : here[f]);
   Kokkos::deep_copy(damping, host);
   damping_ = damping;
+}
+
+void System::tether(Real stiffness, const BlockVector& x) {
+  tether_ = 0;
+  if (stiffness == 0) return;
+  refresh_ghosts(x, false);
+  const auto held = grips();
+  View<Real**> anchor("anchor", held.size(), mesh_->dim());
+  const auto host = Kokkos::create_mirror_view(anchor);
+  for (std::size_t f = 0; f < held.size(); ++f)
+    for (int i = 0; i < mesh_->dim(); ++i) host(f, i) = held[f].jump[i];
+  Kokkos::deep_copy(anchor, host);
+  anchor_ = anchor;
+  tether_ = stiffness;
 }
 
 /// Evaluates the loads at time t and lets the scales grow with them.

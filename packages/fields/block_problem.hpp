@@ -82,6 +82,10 @@ class BlockProblem {
   /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
   /// derivative of f. Solutions do not depend on it. Local.
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
+  /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
+  /// about as much as the rock around it does): so every body is held, and where they rub friction decides little. Zero
+  /// is f as it is.
+  virtual void tether(Real stiffness, const BlockVector& x) {}
   /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
   /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,
   /// and f is another function. The same on every rank.

@@ -73,6 +73,8 @@ class ElasticPlasticJump final : public assembly::Module {
     Op op = *op_;
     op.p_old = state.history[0];
     op.factor = state.augmentation;
+    op.tether = state.tether;
+    op.anchor = state.anchor;
     return op;
   }
 

@@ -25,6 +25,8 @@ namespace sprekk::physics {
 /// | factor       | [face]; empty: 1                                         | -    | of c                         |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
+/// | tether       |                                                          | -    | share of c, see contact()    |
+/// | anchor       | [face, dim]                                              | m    | jump that it pulls to, global |
 template <mesh::Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
@@ -47,6 +49,8 @@ struct JointFace {
   View<Real**> p_old;
   ConstView<Real*> damping = {};
   ConstView<Real*> factor = {};
+  Real tether = 0;
+  ConstView<Real**> anchor = {};
 
   /// c, Pa/m, before the stiffness of the joint joins it.
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
@@ -72,12 +76,26 @@ struct JointFace {
     }
   }
 
+  /// The part of the traction that contact and friction bear: a tether bears tether c (w - anchor) of it.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&borne)[dim]) const {
+    for (int k = 0; k < dim; ++k) {
+      borne[k] = traction[k];
+      if (tether == 0) continue;
+      Real there = 0;
+      for (int i = 0; i < dim; ++i) there += frame(f, k, i) * anchor(f, i);
+      borne[k] -= tether * constant(f) * (w[k] - there);
+    }
+  }
+
   template <class T>
   KOKKOS_INLINE_FUNCTION laws::ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
                                                      T (&R)[dim]) const {
     Real old[dim - 1];
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-    return laws::contact_residual<dim>(law(number(f)), constants(f), w, traction, old, R);
+    T borne[dim];
+    contact(f, w, traction, borne);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), w, borne, old, R);
   }
 
   /// Jump, traction, residual, state and constant of a face.

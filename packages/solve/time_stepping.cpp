@@ -8,6 +8,15 @@
 namespace sprekk::solve {
 namespace {
 
+constexpr Real first_tether = 10, least_tether = 1e-3, most_tether = 1e4, weaker = 0.3, stronger = 10;
+constexpr int most_tethers = 60;
+
+struct Release {
+  BlockProblem& problem;
+  const BlockVector& x;
+  ~Release() { problem.tether(0, x); }
+};
+
 void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -17,6 +26,31 @@ void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to
 void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(max_halvings, "maximum halvings", "-", base::between(0, 20),
                 "how often a step that fails is halved before the run ends");
+}
+
+NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
+  auto newton = newton_.solve(x);
+  report.newton_iterations += newton.iterations;
+  append(newton.linear_solves, report.linear_solves);
+  return newton;
+}
+
+/// As if the bodies crept to their places: tethered to where they are, they move to where a tether holds them, are
+/// tethered there, and so on, with weaker tethers as long as Newton follows. At last without.
+NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
+  auto place = fields::create_like(x);
+  fields::copy(x, place);
+  const Release release{problem_, x};  // also where an evaluation throws
+  Real stiffness = first_tether;
+  for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
+    const bool last = stiffness < least_tether;
+    problem_.tether(last ? 0 : stiffness, place);
+    auto newton = solve(x, report);
+    if (last) return newton;
+    fields::copy(newton.converged ? x : place, newton.converged ? place : x);
+    stiffness *= newton.converged ? weaker : stronger;
+  }
+  return {};
 }
 
 StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
@@ -29,25 +63,27 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   std::string loose;  // in the last substep that failed and in which something was
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
+  bool relaxed = false;  // since the last commit
   report.time = t_from;
   while (done < whole) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
-    auto newton = newton_.solve(x);
-    report.newton_iterations += newton.iterations;
-    append(newton.linear_solves, report.linear_solves);
-    if (newton.converged && problem_.settle(x)) {
-      newton = newton_.solve(x);  // to the tolerance again: mostly no iteration
-      report.newton_iterations += newton.iterations;
-      append(newton.linear_solves, report.linear_solves);
+    auto newton = solve(x, report);
+    if (!newton.converged && !relaxed) {
+      relaxed = true;
+      fields::copy(committed, x);
+      if (auto found = relax(x, report); found.converged) newton = std::move(found);
     }
+    if (newton.converged && problem_.settle(x))
+      newton = solve(x, report);  // to the tolerance again: mostly no iteration
     report.measures = newton.measures;
     if (newton.converged) {
       problem_.commit(x);
       report.loose = problem_.loose();
       fields::copy(x, committed);
       done += size;
+      relaxed = false;
       committed_dt_ = end - report.time;
       report.time = t = end;
       ++report.substeps;
