@@ -139,6 +139,44 @@ TEST(ElasticPlasticJump, MeasureSeesTheSplitInLengths) {
   EXPECT_EQ(measure(), 0);
 }
 
+/// No force where it is tied; an open face that has moved by v bears stiffness c v. The derivative is that of the
+/// residual, whatever the state.
+TEST(ElasticPlasticJump, TetherPullsBack) {
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell);
+    const int dim = s.rock.dim();
+    auto& system = *s.rock.system;
+    auto r = fields::create_like(s.x), other = fields::create_like(s.x), dx = fields::create_like(s.x);
+    const std::array<Real, 3> moved{0.02, 0.03, dim == 3 ? -0.01 : 0};
+    s.set({5, 0.4, 0}, {0, 0, 0});
+    system.tether(2, s.x);
+    system.raw_residual(s.x, r);
+    EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
+    s.set({5 + moved[0], 0.4 + moved[1], moved[2]}, {0, 0, 0});
+    system.raw_residual(s.x, r);
+    for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
+      for (int i = 0; i < dim; ++i)
+        EXPECT_NEAR(r[2]->getData()[f * dim + i] / r[2]->getData()[f * dim], moved[i] / moved[0], 1e-10);
+    for (const Real normal : {5.0, -0.1, -1.0}) {  // open, slips, sticks
+      s.set({normal, 0.4, 0.1}, {normal < 0 ? 10 * normal : 0, 0.3, 0.1});
+      system.jacobian(s.x);
+      for (const auto& block : dx) block->randomize();
+      system.matrix().apply(dx, r);
+      const Real h = 1e-6;
+      for (const Real step : {h, -2 * h}) {
+        for (std::size_t b = 0; b < dx.size(); ++b) s.x[b]->update(step, *dx[b], 1);
+        system.raw_residual(s.x, other);
+        r[2]->update(-(step > 0 ? 1 : -1) / (2 * h), *other[2], 1);
+      }
+      EXPECT_LE(r[2]->normInf(), 1e-6 * other[2]->normInf()) << cell << " " << normal;
+    }
+    system.tether(0, s.x);
+    s.set({5, 0.4, 0}, {0, 0, 0});
+    system.raw_residual(s.x, r);
+    EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
+  }
+}
+
 TEST(ElasticPlasticJump, IsSymmetricUnlessItSlips) {
   ShiftedRock s("tetrahedron");
   const auto symmetric = [&](std::array<Real, 3> jump, std::array<Real, 3> traction) {

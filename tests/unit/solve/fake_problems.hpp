@@ -283,10 +283,16 @@ class ScalarProblem : public BlockProblem {
   std::vector<Real> damps;  ///< all that were asked for, one after another; of several the largest
   std::string free_body;    ///< that nothing ever resists
   std::function<char(Real)> state_of;
+  Real tether_stiffness = 0;  ///< of what a tether of 1 pulls with; 0: it cannot be tethered
+  std::vector<Real> tethers;  ///< all that were asked for
 
   void damp(Real everywhere, const std::vector<Real>& here) override {
     const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
     if (damps.empty() || damps.back() != damping) damps.push_back(damping);
+  }
+  void tether(Real stiffness, const BlockVector& x) override {
+    tethers.push_back(stiffness);
+    anchor_.assign(x[0]->getData().begin(), x[0]->getData().end());
   }
   std::vector<char> states(const BlockVector& x) override {
     std::vector<char> states;
@@ -304,12 +310,12 @@ class ScalarProblem : public BlockProblem {
   void residual(const BlockVector& x, BlockVector& r) override { raw_residual(x, r); }
   void raw_residual(const BlockVector& x, BlockVector& r) override {
     for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
-      r[0]->replaceLocalValue(i, f_(x[0]->getData()[i], t_, dt_));
+      r[0]->replaceLocalValue(i, f_(x[0]->getData()[i], t_, dt_) + pull(i, x[0]->getData()[i]));
   }
   void jacobian(const BlockVector& x) override {
     const auto local = matrix_(0, 0)->getLocalMatrixHost();
     for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
-      local.values(i) = df_(x[0]->getData()[i], t_, dt_) + (damps.empty() ? 0 : resistance * damps.back());
+      local.values(i) = df_(x[0]->getData()[i], t_, dt_) + (damps.empty() ? 0 : resistance * damps.back()) + spring();
   }
   const BlockMatrix& matrix() const override { return matrix_; }
   bool symmetric() const override { return true; }
@@ -329,6 +335,10 @@ class ScalarProblem : public BlockProblem {
   }
 
  private:
+  Real spring() const { return tethers.empty() ? 0 : tether_stiffness * tethers.back(); }
+  Real pull(LocalIndex i, Real x) const { return spring() > 0 ? spring() * (x - anchor_[i]) : 0; }
+
+  std::vector<Real> anchor_;  // [unknown] of the last tether
   RCP<const Comm> comm_;
   Function f_, df_;
   std::vector<Block> blocks_;

@@ -212,6 +212,27 @@ TEST(TimeStepper, CutsAndGrowsBack) {
   EXPECT_NEAR(x[0]->normInf(), 3, 1e-12);
 }
 
+/// A derivative of the wrong sign far from the solution 3, but for the tether's.
+TEST(TimeStepper, CreepsWhereNewtonFails) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
+      [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+  problem.tether_stiffness = 1;
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(0);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(report.cuts, 0);
+  EXPECT_EQ(report.substeps, 1);
+  EXPECT_EQ(problem.committed_times, (std::vector<Real>{1}));
+  for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_NEAR(x[0]->getData()[i], 3, 1e-11);
+  ASSERT_GT(problem.tethers.size(), 3u);
+  EXPECT_EQ(problem.tethers.front(), 10);
+  EXPECT_EQ(problem.tethers.back(), 0);
+}
+
 TEST(TimeStepper, TimeGoesWithTheStateWhereAnEvaluationThrows) {
   const auto f = [](Real x, Real t, Real dt) {
     if (t > 2.6 && dt <= 0.3) throw Error("no loads beyond 2.6");
