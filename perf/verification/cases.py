@@ -53,14 +53,16 @@ class Case:
     scene: str
     series: list
     errors: Callable      # of a run and its exact solution: {name: error}
-    prescribed: Callable  # of the points of all nodes: how many components of the displacement are no unknowns
+    prescribed: Callable  # of the points of all nodes: how many components of the displacement are no unknowns; None where there is none
     headline: tuple       # series, mesh, error of the last line
-    jumps: Callable       # of a run and its exact solution: face means in global components [face, d]
-    orders: tuple         # the errors whose orders the last line has, as u and as traction; "" where there is none
+    jumps: Callable       # of a run and its exact solution: face means in global components [face, d]; None: the run estimates no error
+    orders: tuple         # the errors whose orders the last line has, "" where there is none
     exact: object = None
     bounds: list = field(default_factory=list)
     points: list = field(default_factory=list)  # given elsewhere: (label, unknowns, error)
     unsure: tuple = ()    # (series, mesh, "jump" or "stress") whose estimate is off by more than the factor 2
+    called: tuple = ("u", "traction")  # the orders in the last line
+    picture: Callable = None           # draws one more picture into a file
 
 
 def on_box(low, high):

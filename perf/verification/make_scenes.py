@@ -13,8 +13,8 @@ FOLDER = Path(__file__).resolve().parents[2] / "xml/verification"
 
 def entry(name, value):
     words = value if isinstance(value, list) else [value]
-    kind = "string" if isinstance(words[0], str) else "int" if isinstance(words[0], int) else "double"
-    text = ", ".join(word if isinstance(word, str) else f"{word:.17g}" for word in words)
+    kind = {str: "string", bool: "bool", int: "int"}.get(type(words[0]), "double")
+    text = ", ".join(word if isinstance(word, str) else str(word).lower() if isinstance(word, bool) else f"{word:.17g}" for word in words)
     if isinstance(value, list):
         kind, text = f"Array({kind})", f"{{{text}}}"
     return f'<Parameter name={quoteattr(name)} type="{kind}" value={quoteattr(text)}/>'
@@ -28,9 +28,9 @@ def section(name, content, indent=""):
     return "\n".join([f"{indent}<ParameterList name={quoteattr(name)}>", *lines, f"{indent}</ParameterList>"])
 
 
-def write(name, comment, content):
+def write(name, comment, content, writer="make_scenes.py"):
     content["Time"] = {"end": 1.0, "steps": 1}
-    comment = f"<!-- {comment} Written by perf/verification/make_scenes.py. -->"
+    comment = f"<!-- {comment} Written by perf/verification/{writer}. -->"
     (FOLDER / f"{name}.xml").write_text(f"{comment}\n{section('Sprekk', content)}\n")
 
 

@@ -36,6 +36,19 @@ def sides(dimension, ratio, slip, uniform=False):
     return found
 
 
+def flow(dimension, resists):
+    """Texts by name, of what flow_exact.Manufactured states: pressures and sources below and above, and of the fracture."""
+    x, quarter = COORDINATES[:dimension], sp.Integer(1) / 4
+    s, h, first, y = x[:-1], x[-1] - sp.Rational(1, 2), x[0], x[1] if dimension == 3 else 0
+    f, T, C, kappa = 1 + sp.sin(2 * first + y), 2 + first, 4 + 2 * first, 2
+    entering = {"below": sp.Rational(1, 2) + sp.cos(first + 2 * y), "above": sp.sin(3 * first - y) - sp.Rational(3, 10)}
+    found = {"fracture": f, "fracture source": -sum(sp.diff(T * sp.diff(f, k), k) for k in s) - sum(entering.values())}
+    for side, g in entering.items():
+        p = (f + g / C * resists) * sp.cos(2 * h) + (1 if side == "above" else -1) * g * quarter * sp.sin(2 * h)
+        found[side], found[f"{side} source"] = p, -kappa * sum(sp.diff(p, k, 2) for k in x)
+    return {name: text(expression) for name, expression in found.items()}
+
+
 def text(expression):
     return str(sp.N(expression, 17)).replace("**", "^").replace(" ", "")
 

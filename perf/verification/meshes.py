@@ -133,3 +133,83 @@ Mesh.Optimize = 1;
 Mesh.MeshSizeMax = {h:g};
 """
     return with_gmsh(script, folder / f"penny_{h:g}_{smallest:g}_{growth:g}.msh", 3)
+
+
+# Of flow
+
+NETWORK = {"west-east": ((0, 0.2), (1, 0.7)), "north-south": ((0.15, 1), (0.8, 0)), "falling": ((0, 0.9), (1, 0.35))}
+
+
+def crossing(first, second):
+    """Where two lines meet, or None."""
+    (a, b), (c, d) = first, second
+    u, v, w = ([q[i] - p[i] for i in (0, 1)] for p, q in ((a, b), (c, d), (a, c)))
+    area = u[0] * v[1] - u[1] * v[0]
+    s, t = (w[0] * v[1] - w[1] * v[0]) / area, (w[0] * u[1] - w[1] * u[0]) / area
+    return (a[0] + s * u[0], a[1] + s * u[1]) if 0 < s < 1 and 0 < t < 1 else None
+
+
+def crossed(lines):
+    """The lines with the points where they meet others, in their order."""
+    places = {}
+    for name, (a, b) in lines.items():
+        meets = {other: crossing(*(lines[k] for k in sorted((name, other)))) for other in lines if other != name}
+        places[name] = tuple(sorted((a, b, *(p for p in meets.values() if p)), key=lambda p: math.dist(p, a)))
+    return places
+
+
+def network(folder, h):
+    """Straight fractures that cross each other and end on the sides of the unit square."""
+    return plane(folder / f"network_{h:g}.msh", crossed(NETWORK), f"{h:g}", (0, 0, 1, 1))
+
+
+def hydrocoin(folder, h):
+    """Two faults that cross, from the hilly top to the bottom; edges of h, of h/4 at the ends and the crossing of faults."""
+    faults = crossed({"falling": ((400, 100), (1500, -1000)), "steep": ((1200, 100), (1000, -1000))})
+    top = [(0, 150), (400, 100), (800, 150), (1200, 100), (1600, 150)]
+    around = [*top, (1600, -1000), (1500, -1000), (1000, -1000), (0, -1000)]
+    points = list(dict.fromkeys([*around, *faults["falling"], *faults["steep"]]))
+    tags, n = {place: k for k, place in enumerate(points, 1)}, len(around)
+    lines = [(k + 1, (k + 1) % n + 1) for k in range(n)]
+    names = {"top": range(1, 5), "closed": range(5, n + 1)}
+    for name, places in faults.items():
+        names[name] = range(len(lines) + 1, len(lines) + len(places))
+        lines += [(tags[a], tags[b]) for a, b in zip(places, places[1:])]
+    size = graded_size(0.25, h / 4, [place for line in faults.values() for place in line])
+    text = [f"Point({tag}) = {{{x:.17g}, {y:.17g}, 0}};" for (x, y), tag in tags.items()]
+    text += [f"Line({k}) = {{{a}, {b}}};" for k, (a, b) in enumerate(lines, 1)]
+    text += [f"Curve Loop(1) = {{1 : {n}}};", "Plane Surface(1) = {1};", f"Curve{{{n + 1} : {len(lines)}}} In Surface{{1}};", "Mesh.Algorithm = 6;"]
+    text += [f'Physical Curve("{name}") = {{{", ".join(map(str, tags))}}};' for name, tags in names.items()]
+    text += ['Physical Surface("rock") = {1};', QUIET + f'Field[1].F = "{size}";', f"Mesh.MeshSizeMax = {h:g};"]
+    return with_gmsh("\n".join(text) + "\n", folder / f"hydrocoin_{h:g}.msh", 2)
+
+
+def single(folder, h):
+    """Tetrahedra of a cube of 100 m with a tilted plane through it, a layer 10 m thick at the bottom, an inlet 10 m high at the top
+    of the face x = 0, and the layer's face in y = 0 as outlet. Edges of h, of h/5 where inlet and outlet end."""
+    ends = "Min(Sqrt(x^2+(z-90)^2),Sqrt(y^2+(z-10)^2))"
+    script = f"""SetFactory("OpenCASCADE");
+Box(1) = {{0, 0, 0, 100, 100, 100}};
+Point(21) = {{0, 0, 80}}; Point(22) = {{100, 0, 20}}; Point(23) = {{100, 100, 20}}; Point(24) = {{0, 100, 80}};
+Point(25) = {{0, 0, 10}}; Point(26) = {{100, 0, 10}}; Point(27) = {{100, 100, 10}}; Point(28) = {{0, 100, 10}};
+Point(29) = {{0, 0, 90}}; Point(30) = {{0, 100, 90}}; Point(31) = {{0, 100, 100}}; Point(32) = {{0, 0, 100}};
+Line(21) = {{21, 22}}; Line(22) = {{22, 23}}; Line(23) = {{23, 24}}; Line(24) = {{24, 21}};
+Line(25) = {{25, 26}}; Line(26) = {{26, 27}}; Line(27) = {{27, 28}}; Line(28) = {{28, 25}};
+Line(29) = {{29, 30}}; Line(30) = {{30, 31}}; Line(31) = {{31, 32}}; Line(32) = {{32, 29}};
+For k In {{0 : 2}}
+  Curve Loop(20 + k) = {{21 + 4 * k, 22 + 4 * k, 23 + 4 * k, 24 + 4 * k}};
+  Plane Surface(20 + k) = {{20 + k}};
+EndFor
+BooleanFragments{{ Volume{{1}}; Delete; }}{{ Surface{{20, 21, 22}}; Delete; }}
+e = 1e-3;
+Physical Surface("fracture") = Surface In BoundingBox {{-e, -e, 20 - e, 100 + e, 100 + e, 80 + e}};
+Physical Surface("inlet") = Surface In BoundingBox {{-e, -e, 90 - e, e, 100 + e, 100 + e}};
+Physical Surface("outlet") = Surface In BoundingBox {{-e, -e, -e, 100 + e, e, 10 + e}};
+Physical Volume("lower") = Volume In BoundingBox {{-e, -e, -e, 100 + e, 100 + e, 10 + e}};
+Physical Volume("upper") = Volume In BoundingBox {{-e, -e, 10 - e, 100 + e, 100 + e, 100 + e}};
+Mesh.Algorithm = 6;
+Mesh.Algorithm3D = 1;
+Mesh.Optimize = 1;
+{QUIET}Field[1].F = "{h:g}*Min(1,0.2+0.05*{ends})";
+"""
+    return with_gmsh(script, folder / f"single_{h:g}.msh", 3)

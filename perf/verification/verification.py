@@ -14,11 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "apps/plot")]
 
 import cases  # noqa: E402
+import flow_cases  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
 import style  # noqa: E402
 
+CASES = cases.CASES + flow_cases.CASES
 ESTIMATES = ("jump", "stress")
+ESTIMATE = ("Output.error estimate=true",)
 WITHIN = 2  # a factor by which an estimate may be off
 SLACK = 0.15  # by which an observed order may fall short of its bound: meshes are not yet fine
 
@@ -42,29 +45,29 @@ def run(options, case, series, label, source):
     folder = options.output / case.name
     entries = source(options.output / "meshes") if callable(source) else source
     directory = folder / re.sub(r"[^\w.+-]+", "_", f"{series.name} {label}")
-    done = measure.start(options.binary, series.scene or case.scene, (*series.sets, *entries), directory, options.ranks)
+    done = measure.start(options.binary, series.scene or case.scene, (*(ESTIMATE if case.jumps else ()), *series.sets, *entries), directory, options.ranks)
     steps = done.results["steps"]
     exact = series.exact or case.exact
-    errors, effectivity = case.errors(done, exact), measure.effectivity(done, case.jumps(done, exact), exact)
+    errors, effectivity = case.errors(done, exact), measure.effectivity(done, case.jumps(done, exact), exact) if case.jumps else {}
     return Row(series.name, label, done.results["mesh"]["cells"], done.unknowns(series.prescribed or case.prescribed), errors, effectivity,
                sum(step["newton_iterations"] for step in steps), sum(step["linear_iterations"] for step in steps), done.seconds), done.dimension
 
 
 def add_orders(row, before, dimension):
     finer = math.log(row.cells / before.cells) / dimension
-    row.orders = {name: math.log(before.errors[name] / error) / finer for name, error in row.errors.items() if error > 0}
+    row.orders = {name: math.log(before.errors[name] / error) / finer for name, error in row.errors.items() if error > 0 and before.errors[name] > 0}
 
 
-def header(names):
-    return f"{'series, mesh':34}{'cells':>8}{'unknowns':>10}" + "".join(f"{name:>13}{'order':>7}" for name in names) + "".join(f"{f'{name} est.':>12}" for name in ESTIMATES) + f"{'Newton':>8}{'Krylov':>8}{'seconds':>9}"
+def header(names, estimates):
+    return f"{'series, mesh':34}{'cells':>8}{'unknowns':>10}" + "".join(f"{name:>13}{'order':>7}" for name in names) + "".join(f"{f'{name} est.':>12}" for name in estimates) + f"{'Newton':>8}{'Krylov':>8}{'seconds':>9}"
 
 
-def line(row, names):
+def line(row, names, estimates):
     words = f"{row.series + ', ' + row.mesh:34}{row.cells:>8}{row.unknowns:>10}"
     for name in names:
         order = row.orders.get(name)
         words += f"{row.errors[name]:>13.2e}{'' if order is None else format(order, '.2f'):>7}" if name in row.errors else f"{'':20}"
-    words += "".join(f"{row.effectivity[name]:>12.2f}" if name in row.effectivity else f"{'-':>12}" for name in ESTIMATES)
+    words += "".join(f"{row.effectivity[name]:>12.2f}" if name in row.effectivity else f"{'-':>12}" for name in estimates)
     return words + f"{row.newton:>8}{row.krylov:>8}{row.seconds:>9.2f}"
 
 
@@ -93,14 +96,14 @@ def missed(case, rows, quick):
 
 
 def last_line(case, rows):
-    """CASE order_u=.. order_traction=.. error=.. unknowns=..: of the mesh that `headline` names, or of the last run of its series."""
+    """CASE order_u=.. order_traction=.. error=.. unknowns=..: of the mesh that `headline` names, or of the last run of its series.
+    Of flow, orders are those of pressure and velocity."""
     series, mesh, error = case.headline
     of = [row for row in rows if row.series == series]
     row = next((row for row in of if row.mesh == mesh), of[-1] if of else None)
-    if row is None:
-        return f"{case.name} order_u=- order_traction=- error=- unknowns=-"
-    orders = [format(row.orders[name], ".2f") if name in row.orders else "-" for name in case.orders]
-    return f"{case.name} order_u={orders[0]} order_traction={orders[1]} error={row.errors[error]:.2e} unknowns={row.unknowns}"
+    orders = [format(row.orders[name], ".2f") if row and name in row.orders else "-" for name in case.orders]
+    words = " ".join(f"order_{name}={order}" for name, order in zip(case.called, orders))
+    return f"{case.name} {words} " + (f"error={row.errors[error]:.2e} unknowns={row.unknowns}" if row else "error=- unknowns=-")
 
 
 def effectivities(case, rows):
@@ -141,7 +144,7 @@ def draw(case, rows, file):
 
 def measured(options, case):
     """The rows of a case, printed as they come, and what is wrong."""
-    rows, wrong = [], []
+    rows, wrong, estimates = [], [], ESTIMATES if case.jumps else ()
     chosen = [(one, one.meshes[:one.quick] if options.quick else one.meshes) for one in case.series]
     names = None
     for series, grids in chosen:
@@ -156,10 +159,10 @@ def measured(options, case):
                 add_orders(row, before, series.dimension or dimension)
             if names is None:
                 names = list(row.errors)
-                print(header(names))
+                print(header(names, estimates))
             rows.append(row)
             before = row
-            print(line(row, names), flush=True)
+            print(line(row, names, estimates), flush=True)
     return rows, wrong
 
 
@@ -174,7 +177,7 @@ def write(rows, file):
 
 
 def arguments(words):
-    names = [make.__name__ for make in cases.CASES]
+    names = [make.__name__ for make in CASES]
     parser = argparse.ArgumentParser(prog="sprekk perf verification", description=__doc__)
     parser.add_argument("--only", metavar="CASE", action="append", choices=names, help=f"one of {', '.join(names)}; may be repeated")
     parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
@@ -188,7 +191,7 @@ def main(words):
     options = arguments(words)
     options.output = options.output.resolve()
     above, lines = [], []
-    for make in cases.CASES:
+    for make in CASES:
         if options.only and make.__name__ not in options.only:
             continue
         case = make()
@@ -203,8 +206,11 @@ def main(words):
         if rows:
             write(rows, options.output / f"{case.name}.csv")
             draw(case, rows, options.output / f"{case.name}.png")
+            if case.picture:
+                case.picture(options.output / f"{case.name}_lines.png")
         print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds looked at"]))
-        print(effectivities(case, rows))
+        if case.jumps:
+            print(effectivities(case, rows))
         print(last_line(case, rows) + "\n", flush=True)
         above += wrong
     return 1 if above else 0

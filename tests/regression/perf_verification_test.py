@@ -15,6 +15,8 @@ try:
     import numpy as np
     import cases
     import exact
+    import flow_exact
+    import flow_measure
     import measure
 except ImportError as error:
     print(f"skipped: {error}")
@@ -78,6 +80,31 @@ class Exact(ProgramTest):
         self.assertAlmostEqual(inside, -0.01 * (1 - np.cos(2 * np.pi * 0.10005)), places=7)
 
 
+    def test_flow_is_in_balance_in_rock_and_fractures(self):
+        random, h = np.random.default_rng(3), 1e-4
+        for known in (flow_exact.Conductor(10), flow_exact.Barrier(0.7), *(flow_exact.Manufactured(d, resists) for d in (2, 3) for resists in (0, 1))):
+            made = isinstance(known, flow_exact.Manufactured)
+            d, kappa, height = (known.dimension, known.kappa, 0.5) if made else (2, 1, 0)
+            rock, on = random.uniform(0.6, 0.9, (20, d)), random.uniform(0.1, 0.9, (20, d))
+            on[:, -1] = height
+            darcy = np.stack([-kappa * (known.pressure(rock + h * e) - known.pressure(rock - h * e)) / (2 * h) for e in np.eye(d)], axis=1)
+            self.assertLess(np.abs(darcy - known.velocity(rock)).max(), 1e-6)
+            up, along = np.eye(d)[-1], np.eye(d)[0]
+            below, above = ((known.velocity(on + side * 1e-10 * up) @ up, known.pressure(on + side * 1e-10 * up)) for side in (-1, 1))
+            if made:
+                f, gm, gp, T, C = known.on(on.T[:-1])
+                self.assertTrue(np.allclose([below[0], -above[0]], [gm, gp]))
+                self.assertTrue(np.allclose([below[1] - f, above[1] - f], [known.resists * gm / C, known.resists * gp / C]))
+                slope = (known.pressure_in(on + h * along) - known.pressure_in(on - h * along)) / (2 * h)
+                self.assertTrue(np.allclose(known.flow_in(on)[:, 0], -T * slope, atol=1e-6))
+            elif isinstance(known, flow_exact.Barrier):
+                self.assertTrue(np.allclose([below[0], above[0], -0.7 / np.sqrt(1 - on[:, 0]**2) * (above[1] - below[1])], known.leakage))
+            else:
+                spread = (known.flow_in(on + h * along) - known.flow_in(on - h * along))[:, 0] / (2 * h)
+                self.assertTrue(np.allclose(spread, below[0] - above[0], atol=1e-5))
+                self.assertTrue(np.allclose(known.pressure_in(on), above[1], atol=1e-6))
+
+
 class Scenes(ProgramTest):
     def run_case(self, make, name):
         """The first run of a case on the mesh of its scene, with the exact solution."""
@@ -120,6 +147,13 @@ class Scenes(ProgramTest):
         run.faces.cell_data["traction"][:, 0] = 1.2 * known.traction(corners.mean(axis=1))[:, 1]
         self.assertAlmostEqual(measure.traction_errors(run, known, [[1, 0]])[1], 0.2, places=12)
 
+    def test_pressures_along_lines_are_linear_in_cells(self):
+        run = measure.start(program.PROGRAM, "verification/flow_patch_3d.xml", (), self.folder / "patch")
+        places = np.random.default_rng(4).uniform(-0.1, 0.1, (20, 3)) + measure.vtk_to_numpy(run.rock.GetPoints().GetData()).mean(axis=0)
+        found = flow_measure.pressure_along(run, places, lambda points: np.ones(len(points)))
+        self.assertTrue(np.allclose(found, flow_exact.Linear((0.7, -0.4, 0.3)).pressure(places), atol=1e-7))
+        self.assertTrue(np.isnan(flow_measure.pressure_along(run, places[:1] + 10, lambda points: np.ones(len(points)))).all())
+
     def test_stress_error_is_that_of_a_known_stretch(self):
         run, case, series = self.run_case(cases.mms2d, "manufactured_stick_2d")
 
@@ -152,11 +186,14 @@ class Scenes(ProgramTest):
 
     def test_scenes_are_those_that_the_script_writes(self):
         try:
+            import flow_scenes
             import make_scenes
         except ImportError as error:
             self.skipTest(str(error))
         make_scenes.FOLDER = self.folder
         make_scenes.manufactured_solutions()
+        flow_scenes.manufactured_solutions()
+        flow_scenes.regular()
         for file in self.folder.glob("*.xml"):
             self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)
 

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Krylov iterations of the pressure from ten thousand to a million cells: rock with fractures that cross, and extremes of permeability.
+
+Every linear solve goes from zero to a relative residual of 1e-8."""
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "perf/krylov"))
+
+import linear  # noqa: E402
+import numpy as np  # noqa: E402
+
+MESHES = {  # shape: scene, cells along an edge; some ten thousand, a hundred thousand and a million cells
+    "triangles": ("flow_2d", "triangle", (72, 222, 708)), "quadrilaterals": ("flow_2d", "quadrilateral", (102, 318, 1002)),
+    "tetrahedra": ("flow_3d", "tetrahedron", (12, 24, 54)), "hexahedra": ("flow_3d", "hexahedron", (24, 48, 102))}
+BOUNDS = {"krylov_max": 15, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
+COLUMNS = {"cells, case": "", "cells": "d", "unknowns": "d", "solves": "d", "first": "d", "iterations": "d", "residual": ".0e",
+           "set-up s": ".2f", "assembly s": ".2f", "solve s": ".2f", "kB/cell": ".1f"}
+
+
+def joints(tangential, normal=None, which=("joint", "other joint")):
+    """Permeability of fractures relative to the rock; without a normal one they do not resist flow across them."""
+    given = {"tangential": tangential, **({} if normal is None else {"normal": normal})}
+    return tuple(f"Materials.{joint}.{name} permeability={value:g}" for joint in which for name, value in given.items())
+
+
+def anisotropic(d):
+    """100 along the first axis turned by 30 degrees in the plane x, y, else 1."""
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    xx, yy, xy = 99 * c * c + 1, 99 * s * s + 1, 99 * c * s
+    value = ", ".join(f"{k:.17g}" for k in ((xx, yy, xy) if d == 2 else (xx, yy, 1, xy, 0, 0)))
+    return tuple(f"Materials.{rock}.permeability={{{value}}}" for rock in ("rock", "other rock"))
+
+
+def rocks(contrast):
+    return (f"Materials.other rock.permeability={{{contrast:g}}}",)
+
+
+CASES = {  # entries of the dimension
+    "alike": lambda d: joints(1),
+    "open 1e5": lambda d: joints(1e5),
+    "open 1e10": lambda d: joints(1e10),
+    "tight 1e-5": lambda d: joints(1e-5, 1e-5),
+    "tight 1e-10": lambda d: joints(1e-10, 1e-10),
+    "open 1e10, tight 1e-10": lambda d: (*joints(1e10, 1e10, ("joint",)), *joints(1e-10, 1e-10, ("other joint",))),
+    "rocks 1e-5": lambda d: rocks(1e-5),
+    "rocks 1e-10": lambda d: rocks(1e-10),
+    "rocks 1e10": lambda d: rocks(1e10),
+    "anisotropy 100": anisotropic,
+    "all": lambda d: (*anisotropic(d)[:1], *rocks(1e-5), *joints(1e10, 1e10, ("joint",)), *joints(1e-10, 1e-10, ("other joint",))),
+}
+
+
+@dataclass
+class Row:
+    mesh: str
+    case: str
+    level: int
+    run: linear.Run
+
+    @property
+    def cells(self):
+        return self.run.results.get("mesh", {}).get("cells", 0)
+
+    @property
+    def seconds(self):
+        return sum(self.run.seconds(what) for what in linear.TIMERS)
+
+    def values(self):
+        blocks = self.run.results["blocks"]
+        eliminated = {name for group in blocks.get("local_groups", []) for name in group["blocks"]}
+        unknowns = sum(field["unknowns"] for field in blocks["fields"] if field["name"] not in eliminated)
+        return [f"{self.mesh}, {self.case}", self.cells, unknowns, len(self.run.krylov), int(self.run.krylov[0]), int(self.run.most), self.run.residual, *(self.run.seconds(what) for what in linear.TIMERS),
+                self.run.bytes[0] / 1e3 / max(1, self.cells)]
+
+
+def growth(rows):
+    """Of the mean over what ran on the coarsest and the finest mesh, less 1."""
+    levels = sorted({row.level for row in rows})
+    if len(levels) == 1:
+        return float("nan")
+    first, last = ({(row.mesh, row.case): row.run.most for row in rows if row.level == level} for level in (levels[0], levels[-1]))
+    both = first.keys() & last.keys()
+    return sum(last[s] for s in both) / sum(first[s] for s in both) - 1 if both else float("nan")
+
+
+def exponent(rows):
+    """p of seconds ~ cells^p, fitted to all series at once, each with a factor of its own."""
+    points = {}
+    for row in rows:
+        points.setdefault((row.mesh, row.case), []).append((np.log(row.cells), np.log(row.seconds)))
+    centred = [np.array(of) - np.mean(of, axis=0) for of in points.values() if len(of) > 1]
+    if not centred:
+        return float("nan")
+    x, y = np.concatenate(centred).T
+    return float(x @ y / (x @ x))
+
+
+def draw(rows, file):
+    """Iterations and seconds against cells: a colour for each shape of cells, a line for each case."""
+    import style
+    figure, both = style.plt.subplots(1, 2, figsize=(8, 3.4))
+    for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.most), ("set-up, assembly and solution (s)", lambda row: row.seconds))):
+        for colour, mesh in zip(style.LINES, MESHES):
+            of_mesh = [row for row in rows if row.mesh == mesh]
+            for k, case in enumerate(dict.fromkeys(row.case for row in of_mesh)):
+                of = [row for row in of_mesh if row.case == case]
+                axes.plot([row.cells for row in of], [what(row) for row in of], color=colour, marker=".", linewidth=0.8, label=None if k else mesh)
+        axes.set(xscale="log", xlabel="cells (-)", title=label)
+    both[0].set_ylim(0, None)
+    both[1].set_yscale("log")
+    both[0].legend()
+    figure.savefig(file, dpi=150)
+
+
+def main(words):
+    parser = linear.parser("flow", __doc__)
+    parser.add_argument("--largest", type=float, default=1.1e6, metavar="N", help="no mesh with more cells than this (1.1e6)")
+    options = parser.parse_args(words)
+    runs = [(mesh, case, level) for level in range(1 if options.quick else 3) for mesh in MESHES for case in CASES]
+    per_cell = {"triangles": (2, 2), "quadrilaterals": (1, 2), "tetrahedra": (6, 3), "hexahedra": (1, 3)}
+    runs = [run for run in runs if per_cell[run[0]][0] * MESHES[run[0]][2][run[2]]**per_cell[run[0]][1] <= options.largest]
+    chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[1]}")
+    options.output.mkdir(parents=True, exist_ok=True)
+    table, rows, failed = linear.Table(COLUMNS, 40), [], []
+    for mesh, case, level in chosen:
+        scene, shape, counts = MESHES[mesh]
+        d = 2 if scene == "flow_2d" else 3
+        sets = (f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * d)}}}", *CASES[case](d))
+        run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{mesh} {case} {counts[level]}"), scene=f"performance/{scene}.xml")
+        if run.failure:
+            failed.append(f"failed: {mesh}, {case}, {counts[level]}: {run.failure}")
+        if run.steps:
+            rows.append(Row(mesh, case, level, run))
+            table.add(rows[-1].values(), failed[-1:] if run.failure else ())
+    if not rows:
+        sys.exit("\n".join(failed))
+    table.write(options.output / "flow.csv")
+    draw(rows, options.output / "flow.png")
+    total = {"krylov_max": max(row.run.most for row in rows), "krylov_growth": growth(rows), "failures": len(failed), "exponent": exponent(rows)}
+    print("\n".join(["", *failed, f"flow.csv and flow.png in {options.output}", *linear.missed(total, {k: v for k, v in BOUNDS.items() if not np.isnan(total[k])})]))
+    print("krylov_max={krylov_max:.4g} krylov_growth={krylov_growth:.2f} failures={failures} exponent={exponent:.2f}".format(**total))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,121 @@
+"""Exact pressures of the cases of flow, Darcy velocities, pressures in fractures and flows along them, as functions of arrays of
+points. Nothing of the program is used.
+
+Each has pressure and velocity [point, d] in the rock, and in fractures pressure_in and flow_in [point, d]: the flow of all of the
+aperture, transmissivity times the gradient. kappa = permeability/viscosity."""
+import numpy as np
+
+STEP = 1e-20  # imaginary, of a derivative without cancellation
+
+
+def root(z):
+    """sqrt(z^2 - 1), cut on [-1, 1]."""
+    return np.sqrt(z - 1) * np.sqrt(z + 1)
+
+
+class Potential:
+    """Re w(z), z = x + iy, kappa = 1; the gradient is the conjugate of w'."""
+
+    def pressure(self, points):
+        return self.potential(points @ (1, 1j))[0].real
+
+    def velocity(self, points):
+        slope = self.potential(points @ (1, 1j))[1]
+        return np.stack([-slope.real, slope.imag], axis=1)
+
+
+class Conductor(Potential):
+    """A fracture |x| < 1, y = 0 of transmissivity T0 sqrt(1 - x^2) and the pressure -x far away: along it the pressure is
+    -(1 - B) x with B = T0/(T0 + 2), which balances what flows in from both sides."""
+    scale = 1  # of pressures in the fracture, which may be next to nothing
+
+    def __init__(self, T0):
+        self.T0, self.kept = T0, 2 / (T0 + 2)  # 1 - B without cancellation
+
+    @property
+    def flow_at_centre(self):
+        return self.T0 * self.kept
+
+    def potential(self, z):
+        r, B = root(z), 1 - self.kept
+        return -self.kept * z - B * r, -self.kept - B * z / r
+
+    def pressure_in(self, points):
+        return -self.kept * points[:, 0]
+
+    def flow_in(self, points):
+        along = self.flow_at_centre * np.sqrt(np.maximum(1 - points[:, 0]**2, 0))
+        return np.stack([along, 0 * along], axis=1)
+
+
+class Barrier(Potential):
+    """A fracture |x| < 1, y = 0 of conductance c0/sqrt(1 - x^2) across it, and the pressure -y far away: beta = 1/(1 + 2 c0) of the
+    flow goes around, the rest leaks, everywhere the same."""
+
+    def __init__(self, c0):
+        self.leakage = 2 * c0 / (1 + 2 * c0)
+
+    def potential(self, z):
+        r, beta = root(z), 1 - self.leakage
+        return 1j * (self.leakage * z + beta * r), 1j * (self.leakage + beta * z / r)
+
+    def jump(self, points):
+        """p+ - p-."""
+        return -2 * (1 - self.leakage) * np.sqrt(np.maximum(1 - points[:, 0]**2, 0))
+
+
+class Linear:
+    """Pressure 1 + G.x in fractures of transmissivity T, kappa = 1; in a fracture with the normal n (one for each point)."""
+
+    def __init__(self, G):
+        self.G = np.array(G, dtype=float)
+
+    def pressure(self, points):
+        return 1 + points @ self.G
+
+    pressure_in = pressure
+
+    def velocity(self, points):
+        return np.tile(-self.G, (len(points), 1))
+
+    def flow_in(self, normals, T):
+        return -T[:, None] * (self.G - (normals @ self.G)[:, None] * normals)
+
+
+class Manufactured:
+    """Unit square or cube with the fracture x_d = 1/2. In it the pressure is f; from the rock on each side the fluid g enters it,
+    which takes a difference of pressure g/C where the fracture resists, none else: with h = x_d - 1/2 the pressure in the rock is
+    (f + g/C) cos 2h +- g/(2 kappa) sin 2h, + on side +. Derivatives are taken with imaginary steps."""
+    kappa = 2
+
+    def __init__(self, dimension, resists):
+        self.dimension, self.resists = dimension, resists
+
+    def on(self, s):
+        """f, g-, g+, T and C at points s [d - 1, n]."""
+        x, y = s[0], s[1] if len(s) > 1 else 0
+        return 1 + np.sin(2 * x + y), 0.5 + np.cos(x + 2 * y), np.sin(3 * x - y) - 0.3, 2 + x, 4 + 2 * x
+
+    def at(self, x):
+        """The pressure at points x [d, n], complex."""
+        f, below, above, _, C = self.on(x[:-1])
+        h = x[-1] - 0.5
+        g = np.where(h.real > 0, above, below)
+        return (f + g / C * self.resists) * np.cos(2 * h) + np.where(h.real > 0, 1, -1) * g / (2 * self.kappa) * np.sin(2 * h)
+
+    def pressure(self, points):
+        return self.at(points.T.astype(complex)).real
+
+    def slopes(self, function, points, directions):
+        x = points.T.astype(complex)
+        return np.stack([function(x + STEP * 1j * np.eye(self.dimension)[k][:, None]).imag / STEP for k in directions], axis=1)
+
+    def velocity(self, points):
+        return -self.kappa * self.slopes(self.at, points, range(self.dimension))
+
+    def pressure_in(self, points):
+        return self.on(points.T[:-1])[0]
+
+    def flow_in(self, points):
+        along = -self.on(points.T[:-1])[3][:, None] * self.slopes(lambda x: self.on(x[:-1])[0], points, range(self.dimension - 1))
+        return np.pad(along, ((0, 0), (0, 1)))
