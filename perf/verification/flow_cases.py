@@ -19,9 +19,9 @@ def boxes(d, counts):
 
 
 def shapes(d):
-    """Entries by what they give: a scheme for each shape, and another for quadrilaterals and hexahedra."""
+    """Entries by what they give: a scheme for each shape of cells, and another for quadrilaterals and hexahedra."""
     simplex, cube = (("triangle", "quadrilateral"), ("tetrahedron", "hexahedron"))[d - 2]
-    return {f"{simplex} rt0": (f"Mesh.cell={simplex}",), f"{cube} tpfa": (f"Mesh.cell={cube}",), f"{cube} mimetic": (f"Mesh.cell={cube}", "Flow.scheme=mimetic")}
+    return {f"rt0 {simplex}": (f"Mesh.cell={simplex}",), f"tpfa {cube}": (f"Mesh.cell={cube}",), f"mimetic {cube}": (f"Mesh.cell={cube}", "Flow.scheme=mimetic")}
 
 
 def case(name, title, series, errors, headline, bounds, orders=("", ""), **more):
@@ -62,7 +62,7 @@ def around(name, parameter, values, known, scene):
     for value in values:
         sets = (*DIRECT, f"Tables.{parameter}.values={{{value:g}, {value:g}}}")
         grids = {"U": uniform(1, (0.4, 0.2, 0.1, 0.05)), "graded": graded(1, *GRADED)}
-        series += [Series(f"{parameter}={value:g} {grid}", grids[grid], scene, sets, known(value), 2) for grid in (grids if 1e-3 < value < 1e3 else ["graded"])]
+        series += [Series(f"{parameter}={value:g} {grid} mesh", grids[grid], scene, sets, known(value), 2) for grid in (grids if 1e-3 < value < 1e3 else ["graded"])]
     return series
 
 
@@ -75,7 +75,7 @@ def flow_conductor():
     series = around("conductor", "T0", (1, 10, 1e6, 1e10), flow_exact.Conductor, "verification/flow_conductor.xml")
     bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 1), ("velocity", 0.5), ("flow", 1), ("centre", 1))]
     bounds += [Bound(one.name, FINEST, "centre", 2e-3) for one in series]
-    return case("flow_conductor", "flow along a fracture in a plane without end", series, errors, ("T0=1 graded", FINEST, "pressure"), bounds, CALLED)
+    return case("flow_conductor", "flow along a fracture in a plane without end", series, errors, ("T0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
 def flow_barrier():
@@ -96,7 +96,7 @@ def flow_barrier():
     bounds += [Order("graded", name, 1) for name in ("jump", "leakage")] + [Order("U", name, 0.75) for name in ("jump", "leakage")]
     bounds += [Bound(one.name, FINEST, "leakage", 2e-3) for one in series]
     bounds += [Bound(one.name, label, "at faces", 0.4) for one in series for label, _ in one.meshes]  # not zero, nor backwards, anywhere
-    return case("flow_barrier", "flow around and through a fracture that resists it", series, errors, ("c0=1 graded", FINEST, "pressure"), bounds, CALLED)
+    return case("flow_barrier", "flow around and through a fracture that resists it", series, errors, ("c0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
 # Networks
@@ -116,7 +116,7 @@ def flow_patch():
         return {name: max(float(np.abs(value).max()), 1e-17) for name, value in away.items()}
     G = (0.7, -0.4, 0.3)
     meshed = gmsh(1, *[(f"h={h:g}", lambda folder, h=h: meshes.network(folder, h)) for h in (0.3, 0.1, 0.05)])
-    series = [Series("triangle rt0", meshed, "verification/flow_patch_2d.xml", DIRECT, flow_exact.Linear(G[:2]), 2)]
+    series = [Series("rt0 triangle", meshed, "verification/flow_patch_2d.xml", DIRECT, flow_exact.Linear(G[:2]), 2)]
     series += [Series(name, boxes(3, (4, 8, 12)), "verification/flow_patch_3d.xml", (*DIRECT, *sets), flow_exact.Linear(G), 1) for name, sets in shapes(3).items()]
     bounds = [Bound(one.name, label, name, 1e-10) for one in series for label, _ in one.meshes for name in ("pressure", "velocity", "in fracture", "flow")]
     return case("flow_patch", "a constant gradient of pressure through fractures that cross", series, errors, (series[0].name, "h=0.05", "flow"), bounds)
@@ -206,21 +206,21 @@ def flow_regular2d():
     series = [Series(f"{kind} {name}", boxes(2, (16, 32, 64, 128)), "verification/flow_regular_2d.xml", (*sets, *JOINTS[kind]), Lines(one, *of), 2)
               for kind, of in lines.items() for name, sets in shapes(2).items() if "mimetic" not in name]
     return benchmark("flow_regular2d", "regular network in 2D, conductive and blocking", series,
-                     {"conductive": (1e-2, 2e-3), "blocking": (5e-4, 5e-4)}, ("conductive triangle rt0", "n=128", "line"))
+                     {"conductive": (1e-2, 2e-3), "blocking": (5e-4, 5e-4)}, ("conductive rt0 triangle", "n=128", "line"))
 
 
 def flow_hydrocoin():
     grids = gmsh(1, *[(f"h={h:g}", lambda folder, h=h: meshes.hydrocoin(folder, h)) for h in (200, 100, 50, 25)])
     line = Line("hydrocoin", (0, -200), (1600, -200), 0)
-    series = [Series("triangle rt0", grids, "verification/flow_hydrocoin.xml", (), Lines(lambda points: 1e-8 * one(points), line), 2)]
-    return benchmark("flow_hydrocoin", "Hydrocoin", series, {"triangle": (3e-2, 2e-2)}, ("triangle rt0", "h=25", "line"))
+    series = [Series("rt0 triangle", grids, "verification/flow_hydrocoin.xml", (), Lines(lambda points: 1e-8 * one(points), line), 2)]
+    return benchmark("flow_hydrocoin", "Hydrocoin", series, {"rt0": (3e-2, 2e-2)}, ("rt0 triangle", "h=25", "line"))
 
 
 def flow_single():
     grids = gmsh(1, *[(f"h={h:g}", lambda folder, h=h: meshes.single(folder, h)) for h in (24, 12, 6, 4)])
     line = Line("single", (0, 100, 100), (100, 0, 0), None)
-    series = [Series("tetrahedron rt0", grids, "verification/flow_single.xml", (), Lines(lambda points: np.where(points[:, 2] < 10, 1e-5, 1e-6), line), 2)]
-    return benchmark("flow_single", "single fracture in 3D", series, {"tetrahedron": (3e-2, 1e-2)}, ("tetrahedron rt0", "h=4", "line"), True)
+    series = [Series("rt0 tetrahedron", grids, "verification/flow_single.xml", (), Lines(lambda points: np.where(points[:, 2] < 10, 1e-5, 1e-6), line), 2)]
+    return benchmark("flow_single", "single fracture in 3D", series, {"rt0": (3e-2, 1e-2)}, ("rt0 tetrahedron", "h=4", "line"), True)
 
 
 def tight(points):
@@ -237,8 +237,8 @@ def flow_regular3d():
         line = Line(f"regular 3D {kind}", (0, 0, 0), (1, 1, 1), None, (7,) if entries else ())
         series += [Series(f"{kind} {name}", boxes(3, (8, 16, 32)), "verification/flow_regular_3d.xml", (*sets, *entries), Lines(tight, line), quick)
                    for (name, sets), quick in zip(shapes(3).items(), (1, 2, 0)) if quick]
-    most = {"conductive tet": (0.3, 2e-2), "conductive hex": (0.1, 2e-2), "blocking tet": (0.1, 1e-2), "blocking hex": (0.04, 1e-2)}
-    return benchmark("flow_regular3d", "regular network in 3D, conductive and blocking", series, most, ("conductive hexahedron tpfa", "n=32", "line"), True)
+    most = {"conductive rt0": (0.3, 2e-2), "conductive tpfa": (0.1, 2e-2), "blocking rt0": (0.1, 1e-2), "blocking tpfa": (0.04, 1e-2)}
+    return benchmark("flow_regular3d", "regular network in 3D, conductive and blocking", series, most, ("conductive tpfa hexahedron", "n=32", "line"), True)
 
 
 CASES = (mms_flow2d, mms_flow3d, flow_conductor, flow_barrier, flow_patch, flow_regular2d, flow_hydrocoin, flow_single, flow_regular3d)
