@@ -106,6 +106,7 @@ class System : public fields::BlockProblem {
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
+  Real rounding(const fields::BlockVector& x, Quantity value) const;
   void update_scales(Real t);
   bool watches_pieces() const { return loose_ && loose_->possible(); }
   void remember(const fields::BlockVector& x);

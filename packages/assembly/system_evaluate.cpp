@@ -225,25 +225,27 @@ void System::commit(const BlockVector& x) {
   }
 }
 
+/// What rounding leaves of a row is this times its diagonal; 0 of quantities for which it is not known.
+Real System::rounding(const BlockVector& x, Quantity value) const {
+  if (value != Quantity::length && value != Quantity::pressure) return 0;
+  Real farthest = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (unknowns_[b].value == value) farthest = std::max<Real>(farthest, x[b]->normInf());
+  return 64 * std::numeric_limits<Real>::epsilon() * farthest;
+}
+
 /// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
 /// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
 /// rock.
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
-  const auto rounding_of = [&](Quantity value) {
-    if (value != Quantity::length && value != Quantity::pressure) return Real(0);
-    Real farthest = 0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
-      if (unknowns_[b].value == value) farthest = std::max<Real>(farthest, x[b]->normInf());
-    return 64 * std::numeric_limits<Real>::epsilon() * farthest;
-  };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
     const auto diagonal = const_view(*diagonals_[b]);
-    const Real rounding_of_block = rounding_of(unknowns_[b].value);
+    const Real rounding_of_block = rounding(x, unknowns_[b].value);
     const bool of_flow = unknowns_[b].row == Quantity::flow;  // some rows let much less through than others
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
@@ -277,11 +279,14 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const auto weight = const_view(*weights_[b]);
+    const auto diagonal = const_view(*diagonals_[b]);
+    const Real of_flow = unknowns_[b].row == Quantity::flow ? rounding(x, unknowns_[b].value) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
-          if (!mask(i)) s += weight(i) * row(i) * row(i);
+          const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * diagonal(i);
+          if (!mask(i) && !(size <= 0)) s += weight(i) * size * size;
         },
         part);
     sum += part;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
-constexpr Real strong = 0.05;        // a coupling, relative to the geometric mean of the diagonals
+constexpr Real strong = 0.02;        // a coupling, relative to the geometric mean of the diagonals
 constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.

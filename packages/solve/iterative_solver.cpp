@@ -129,13 +129,17 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Rows of one unknown of a node are scaled by the roots of their diagonals: what conducts little then counts as much
-  /// as what conducts well. No solve asks for less than what rounding leaves.
+  /// as what conducts well. What rounding leaves of the residual is no failure.
   LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
     if (coarse_) return coarse_->solve(b, x, tolerance);
     if (scale_.is_null()) return solve_scaled(b, x, tolerance);
     Vector scaled(b.getMap()), y(x.getMap());
     scaled.elementWiseMultiply(1, *scale_, b, 0);
-    const auto report = solve_scaled(scaled, y, std::min(std::max(tolerance, noise_ / scaled.norm2()), most_noise));
+    auto report = solve_scaled(scaled, y, tolerance);
+    if (!report.converged && report.residual <= noise(scaled, y)) {
+      report.converged = true;
+      report.reason.clear();
+    }
     x.elementWiseMultiply(1, *scale_, y, 0);
     return report;
   }
@@ -159,7 +163,11 @@ class IterativeSolver : public LinearSolver {
     if (!scalar) return;
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
     unscale_ = root_of_diagonal(*first.matrix, true);
-    noise_ = 10 * std::numeric_limits<Real>::epsilon() * first.block.kinematic_scale * unscale_->norm2();
+  }
+
+  /// Of rows that are scaled, relative to b: each is a sum of terms as large as x.
+  static Real noise(const Vector& b, const Vector& x) {
+    return std::min(16 * std::numeric_limits<Real>::epsilon() * x.norm2() / b.norm2(), most_noise);
   }
 
   LinearReport solve_scaled(const Vector& b, Vector& x, Real tolerance) {
@@ -323,7 +331,6 @@ class IterativeSolver : public LinearSolver {
   RCP<const Operator> matrix_;
   RCP<const Operator> preconditioner_;
   RCP<const Vector> scale_, unscale_;  // of rows and columns; null: none
-  Real noise_ = 0;                     // of a scaled residual, by rounding
   static constexpr Real most_noise = 0.1;
   static constexpr Real much = 0.1;        // that a diagonal may change,
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
