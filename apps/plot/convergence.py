@@ -32,6 +32,9 @@ def of_run(steps, title):
                        label=name.replace("_", " "))
     right.set(xlabel="step", ylabel="relative residual (-)", title="left at the end of each step")
     right.legend(loc="upper left", bbox_to_anchor=(1, 1))
+    if not any(value for step in steps for value in step["measures"].values()):
+        right.text(0.5, 0.5, "nothing but rounding", transform=right.transAxes, ha="center", color=FAINT)
+        right.set_yticks([])
     for ax in (left, right):
         ax.xaxis.set_major_locator(plt.MaxNLocator(integer=True))
         ax.tick_params(which="both", color=FAINT)

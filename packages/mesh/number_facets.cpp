@@ -158,34 +158,45 @@ std::vector<GlobalIndex> face_ids(const Mesh& mesh) {
   return ids;
 }
 
-/// Where fracture faces end on the boundary: a ridge of theirs, seen from side minus, is one of a face there.
+/// Where fracture faces end on the boundary: in the same points as a ridge of a face there, on whatever side.
 std::vector<Facets::Rim> find_rims(const Mesh& mesh) {
   const int n = n_face_corners(mesh.shape);
-  const auto ends = [&](const auto& nodes, int k) {
+  std::vector<GlobalIndex> point(mesh.n_nodes(), -1);  // of nodes in fractures
+  for (const auto& face : mesh.fracture_faces)
+    for (int side : {minus, plus})
+      for (int k = 0; k < n && face.cell[side] >= 0; ++k) point[face.nodes[side][k]] = face.corners[k];
+  std::map<std::array<GlobalIndex, 2>, std::set<int>> boundaries;
+  for (const auto& face : mesh.boundary_faces) {
     std::array<GlobalIndex, 4> corners{-1, -1, -1, -1};
-    for (int i = 0; i < n; ++i) corners[i] = nodes(i);
-    return ridge_points(corners, mesh.shape, k);
-  };
-  std::multimap<std::array<GlobalIndex, 2>, int> boundaries;
-  for (const auto& face : mesh.boundary_faces)
     for (int k = 0; k < n; ++k)
-      boundaries.emplace(
-          ends(
-              [&](int i) {
-                return mesh.cells[face.cell * mesh.nodes_per_cell() + face_nodes(mesh.shape)[face.local_face][i]];
-              },
-              k),
-          face.boundary);
+      corners[k] = point[mesh.cells[face.cell * mesh.nodes_per_cell() + face_nodes(mesh.shape)[face.local_face][k]]];
+    for (int k = 0; k < n; ++k)
+      if (corners[k] >= 0 && (mesh.dim() == 2 || corners[(k + 1) % n] >= 0))
+        boundaries[ridge_points(corners, mesh.shape, k)].insert(face.boundary);
+  }
   std::vector<Facets::Rim> rims;
   for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
-    for (int k = 0; k < n && mesh.fracture_faces[f].cell[minus] >= 0; ++k) {
-      const auto [begin, end] =
-          boundaries.equal_range(ends([&](int i) { return GlobalIndex(mesh.fracture_faces[f].nodes[minus][i]); }, k));
-      std::set<int> found;
-      for (auto it = begin; it != end; ++it) found.insert(it->second);
-      for (const int boundary : found) rims.push_back({f, k, boundary});
-    }
+    for (int k = 0; k < n && mesh.fracture_faces[f].cell[minus] >= 0; ++k)
+      if (const auto found = boundaries.find(ridge_points(mesh.fracture_faces[f].corners, mesh.shape, k));
+          found != boundaries.end())
+        for (const int boundary : found->second) rims.push_back({f, k, boundary});
   return rims;
+}
+
+/// Where a periodic side makes edges of faces that are no neighbours end in the same points.
+void check_ridges(const Mesh& mesh, const std::vector<LocalIndex>& giver) {
+  const int n = n_face_corners(mesh.shape);
+  std::map<LocalIndex, std::vector<LocalIndex>> faces;  // by the giver of the ridge
+  std::set<std::array<LocalIndex, 2>> neighbours;
+  for (LocalIndex ridge = 0; ridge < static_cast<LocalIndex>(giver.size()) && mesh.dim() == 3; ++ridge) {
+    auto& around = faces[giver[ridge]];
+    for (const LocalIndex other : around)
+      SPREKK_CHECK(other != ridge / n && neighbours.insert({other, ridge / n}).second,
+                   "mesh: faces of fracture \"{}\" on a periodic side have the same corners; it needs three cells or "
+                   "more in each direction",
+                   mesh.fracture_names[mesh.fracture_faces[other].fracture]);
+    around.push_back(ridge / n);
+  }
 }
 
 /// Local numbers of the ids: those of `all`, ascending, of which the first n_owned and the others are sorted.
@@ -213,6 +224,7 @@ RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
   base::collectively(*mesh->comm, [&] { across = faces_across(*mesh); });
   const int n_faces = mesh::n_faces(mesh->shape), n_ridges = n_face_corners(mesh->shape);
   const auto of_cells = face_givers(*mesh, across), of_faces = ridge_givers(*mesh);
+  base::collectively(*mesh->comm, [&] { check_ridges(*mesh, of_faces); });
   auto cells = numbers(mesh->cell_id, mesh->n_owned_cells, n_faces, of_cells, mesh->comm);
   auto ridges = numbers(face_ids(*mesh), mesh->n_owned_fracture_faces, n_ridges, of_faces, mesh->comm);
   auto faces = face_ids(*mesh);

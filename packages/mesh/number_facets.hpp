@@ -10,7 +10,8 @@ namespace sprekk::mesh {
 std::vector<GlobalIndex> ridge_ids(const Mesh& mesh);
 
 /// The mesh with its facets. Cells across a tied (periodic) side share a facet, as those across a fracture do.
-/// Throws an Error where a tied side has so few cells that its faces have the same corners. Collective.
+/// Throws an Error where a tied side has so few cells that its faces, or their edges, have the same corners.
+/// Collective.
 RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh);
 
 }  // namespace sprekk::mesh

@@ -122,14 +122,27 @@ auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
   return values;
 }
 
+/// What `find` finds of a material; its errors get the place of the material in the scene.
+template <class Find>
+auto at_place(const Scene& scene, const Material& material, const Find& find) {
+  try {
+    return find();
+  } catch (const Error& error) {
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                    [&](const auto& one) { return &one.second == &material; });
+    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
+  }
+}
+
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
   return properties<laws::Mobility>(
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return material(region).flows_uniformly(); },
       [&](int region, int cell) {
-        return material(region).mobility(mesh.dim(), scene.flow->viscosity,
-                                         cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell));
+        const auto x = cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell);
+        return at_place(scene, material(region),
+                        [&] { return material(region).mobility(mesh.dim(), scene.flow->viscosity, x); });
       });
 }
 
@@ -208,7 +221,7 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   std::vector<Real> of_faces;
   for (const auto& face : mesh.fracture_faces) {
     const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
-    const auto hydraulics = joint.hydraulics(flow.viscosity, face.centre);
+    const auto hydraulics = at_place(scene, joint, [&] { return joint.hydraulics(flow.viscosity, face.centre); });
     fractures.faces.push_back(hydraulics.along);
     darcy.exchange.push_back(hydraulics.exchange);
     of_faces.push_back(hydraulics.along.aperture * flow.compressibility);
@@ -246,6 +259,30 @@ std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene
   return physics::make_stress_recovery(mesh, layouts, rock.values, rock.number);
 }
 
+namespace {
+
+/// A condition on the end of a fracture that is not on its boundary would hold nowhere. Collective.
+void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto n = mesh.boundary_names.size();
+  std::vector<int> here(n * mesh.fracture_names.size(), 0), anywhere(here.size());
+  if (mesh.facets.is_null() || here.empty()) return;
+  for (const auto& rim : mesh.facets->rims) here[mesh.fracture_faces[rim.face].fracture * n + rim.boundary] = 1;
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), anywhere.data());
+  for (const auto& [name, condition] : scene.boundary_conditions) {
+    if (!condition.fracture) continue;
+    const auto first = anywhere.begin() + index_of(mesh.fracture_names, *condition.fracture) * n;
+    std::vector<std::string> ends;
+    for (std::size_t b = 0; b < n; ++b)
+      if (first[b]) ends.push_back(mesh.boundary_names[b]);
+    SPREKK_CHECK(first[index_of(mesh.boundary_names, condition.boundary)],
+                 "{}: Sprekk > Boundary conditions > {} > \"fracture\": \"{}\" does not end on \"{}\"; it ends on {}",
+                 scene.origin, name, *condition.fracture, condition.boundary,
+                 ends.empty() ? "no boundary" : base::quoted_list(ends));
+  }
+}
+
+}  // namespace
+
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
     : timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
@@ -258,6 +295,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     if (draft.value.flow) mesh = mesh::with_facets(mesh);
   }
   scene_ = std::move(draft.value);
+  check_ends(scene_, *mesh);
   std::vector<std::unique_ptr<assembly::Module>> modules;
   base::collectively(*comm, [&] {
     modules = make_modules(scene_, *mesh);

@@ -104,6 +104,7 @@ void Material::describe(base::Section& s) {
     }
   }
   for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
+  for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
 }
 
 bool Material::is_uniform() const {
@@ -148,7 +149,7 @@ laws::Mobility Material::mobility(int dim, Real viscosity, const Point& x) const
   std::vector<Real> k;
   for (const Value& value : permeability) k.push_back(value(x, 0));
   const auto n = static_cast<int>(k.size()), n_all = dim * (dim + 1) / 2;
-  SPREKK_CHECK(n == 1 || n == dim || n == n_all, "material: \"permeability\" has {}, must have 1, {} or {} in {}D",
+  SPREKK_CHECK(n == 1 || n == dim || n == n_all, "\"permeability\" has {}, must have 1, {} or {} in {}D",
                base::counted(k.size(), "value"), dim, n_all, dim);
   laws::Mobility m;
   for (int i = 0; i < dim; ++i) m.value[i][i] = k[n == 1 ? 0 : i] / viscosity;
@@ -158,8 +159,8 @@ laws::Mobility Material::mobility(int dim, Real viscosity, const Point& x) const
   }
   std::vector<std::string> texts;
   for (const Value& value : permeability) texts.push_back(value.text());
-  SPREKK_CHECK(m.is_positive(dim), "material: \"permeability\" = {{{}}} is not positive definite{}",
-               fmt::join(texts, ", "), flows_uniformly() ? "" : fmt::format(" at x = ({}, {}, {})", x[0], x[1], x[2]));
+  SPREKK_CHECK(m.is_positive(dim), "\"permeability\" = {{{}}} is not positive definite{}", fmt::join(texts, ", "),
+               flows_uniformly() ? "" : fmt::format(" at x = ({}, {}, {})", x[0], x[1], x[2]));
   return m;
 }
 
@@ -167,7 +168,7 @@ Material::Hydraulics Material::hydraulics(Real viscosity, const Point& x) const 
   check(x);
   const Real a = std::max(initial_aperture(x, 0), residual_aperture(x, 0));
   SPREKK_CHECK(a > 0,
-               "material: the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
+               "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
                x[0], x[1], x[2]);
   const Real k = tangential_permeability ? (*tangential_permeability)(x, 0) : a * a / 12;

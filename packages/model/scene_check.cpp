@@ -59,7 +59,8 @@ class Comparison {
   bool is_sound(const std::string& section) const { return model::is_sound(draft_, section); }
 
   void fail(const std::string& place, const std::string& what) {
-    errors_.push_back(fmt::format("{}: Sprekk > {}: {}", scene_.origin, place, what));
+    const auto line = fmt::format("{}: Sprekk > {}: {}", scene_.origin, place, what);
+    if (!has(errors_, line)) errors_.push_back(line);  // of a joint that several fractures have
   }
 
   /// Whether a name in `section` may be one of those allowed.
@@ -127,11 +128,11 @@ class Comparison {
     const std::string place = "Materials > " + fracture.material;
     if (scene_.deforms() && !joint.friction_coefficient && !joint.friction_angle)
       fail(place, "give either \"friction coefficient\" or \"friction angle\"");
-    if (scene_.flow && !(scene_.deforms() || fracture.fluid_pressure.is_constant()))
-      fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
-    if (!scene_.flow && is_absent(draft_, "Flow") && !(fracture.source.is_constant() && fracture.source({}, 0) == 0))
-      fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
     const auto zero = [](const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; };
+    if (scene_.flow && !scene_.deforms() && !zero(fracture.fluid_pressure))
+      fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
+    if (!scene_.flow && is_absent(draft_, "Flow") && !zero(fracture.source))
+      fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
     if (scene_.flow && zero(joint.initial_aperture) && zero(joint.residual_aperture))
       fail(place + " > \"initial aperture\"",
            "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
@@ -190,6 +191,7 @@ class Comparison {
     if (scene_.output.error_estimate && !scene_.deforms())
       fail("Output > \"error estimate\"", "is of stress and jumps; with \"Flow > rigid rock\" there are none");
     compare_pressure();
+    compare_fluid_conditions();
     for (const auto& name : names_.regions.value_or(Names()))
       if (const auto* rock = rock_of(name)) compare_permeability(*rock);
   }
@@ -197,8 +199,10 @@ class Comparison {
   /// Flow that no pressure and no storage ties to a level has none, or any.
   void compare_pressure() {
     const auto& conditions = scene_.boundary_conditions;
-    const bool given =
-        std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.second.pressure; });
+    const bool given = std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
+      const auto& c = named.second;
+      return c.pressure && !(c.conductance && c.conductance->is_constant() && (*c.conductance)({}, 0) == 0);
+    });
     if (!names_.regions || !names_.fractures) return;
     const bool in_fractures = !names_.fractures->empty() && scene_.flow->compressibility > 0;
     const bool stored =
@@ -212,6 +216,20 @@ class Comparison {
       fail("Flow",
            "nothing says how high the pressure is: give a \"pressure\" on a boundary, or storage (\"compressibility of "
            "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
+  }
+
+  /// What flows through a part of the boundary cannot be given where the pressure is.
+  void compare_fluid_conditions() {
+    const auto overlap = [](const BoundaryCondition& held, const BoundaryCondition& other) {
+      if (held.boundary != other.boundary) return false;
+      if (other.fracture) return held.fracture ? *held.fracture == *other.fracture : !held.region;
+      return !held.fracture && (!held.region || !other.region || *held.region == *other.region);
+    };
+    for (const auto& [name, held] : scene_.boundary_conditions)
+      for (const auto& [second, other] : scene_.boundary_conditions)
+        if (held.pressure && !held.conductance && (other.flux || other.conductance) && overlap(held, other))
+          fail("Boundary conditions > " + second,
+               fmt::format("gives a {} where \"{}\" gives the pressure", other.flux ? "flux" : "conductance", name));
   }
 
   void compare_permeability(const Material& rock) {

@@ -207,7 +207,7 @@ FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const st
                        const std::vector<int>& mobility_of_cell) {
   const bool simplices = mesh::is_simplex(mesh.shape);
   SPREKK_CHECK(name != "rt0" || simplices,
-               "scheme \"rt0\" takes triangles and tetrahedra; others take tpfa or mimetic");
+               "Sprekk > Flow > \"scheme\": \"rt0\" takes triangles and tetrahedra; others take tpfa or mimetic");
   if (name == "tpfa") return FluxScheme::tpfa;
   if (name == "mimetic") return FluxScheme::mimetic;
   if (simplices) return FluxScheme::rt0;

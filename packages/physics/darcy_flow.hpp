@@ -50,8 +50,8 @@ std::string name_of(FluxScheme scheme);
 /// with q_i = sum_j T_ij (p_K - p_j + rho g . d_j), where beside fractures T = (T_0^-1 + diag(1/(exchange A)))^-1 and
 /// p_j is the pressure in the fracture: the hybrid form of the mixed method (Arnold and Brezzi 1985): its flows are in
 /// balance on every cell and continuous across facets. A facet on the boundary without a condition lets nothing
-/// through. T is exact from open to closed sides: neither the balance nor the exchange suffers from rounding where one
-/// of them is by orders of magnitude larger than what the rock lets through. Outputs: pressure, and "Darcy velocity" q
+/// through. T is exact from open to closed sides: no pressure of a side is subtracted from that of a fracture, which
+/// would cost digits of the balance. Outputs: pressure, and "Darcy velocity" q
 /// = sum_i q_i d_i / V (cells, m/s).
 std::unique_ptr<assembly::Module> make_darcy_flow(mesh::Shape shape, DarcyFlowParameters parameters);
 

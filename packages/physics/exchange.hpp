@@ -1,4 +1,4 @@
-// Exchange with what lies outside of the mesh, row by row: Robin conditions, wells.
+// Exchange with what lies outside of the mesh, row by row.
 #pragma once
 
 #include "assembly/module.hpp"

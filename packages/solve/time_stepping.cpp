@@ -26,6 +26,9 @@ void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to
 void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(max_halvings, "maximum halvings", "-", base::between(0, 20),
                 "how often a step that fails is halved before the run ends");
+  section.entry(
+      tethers, "tethers", "-",
+      "where Newton fails, first tether the sides of fractures to each other, and let them go little by little");
 }
 
 NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
@@ -70,7 +73,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
     auto newton = solve(x, report);
-    if (!newton.converged && !relaxed) {
+    if (!newton.converged && !relaxed && options_.tethers) {
       relaxed = true;
       fields::copy(committed, x);
       if (auto found = relax(x, report); found.converged) newton = std::move(found);

@@ -7,6 +7,7 @@ namespace sprekk::solve {
 
 struct TimeSteppingOptions {
   int max_halvings = 6;  ///< the smallest substep is the step / 2^max_halvings
+  bool tethers = true;   ///< before the first halving, see TimeStepper::relax()
 
   void describe(base::Section& section);
 };

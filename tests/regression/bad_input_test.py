@@ -284,7 +284,7 @@ class Scenes(BadInput):
         def refuse(expected, *sets):
             self.refuse(expected, "check", self.scene("flow/source_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
         refuse(['Flow > "rigid rock": must be true'], "Flow.rigid rock=false")
-        refuse(['Materials > rock > "permeability": material: "permeability" = {-1} is not positive definite'], "Materials.rock.permeability={-1}")
+        refuse(['Materials > rock > "permeability": "permeability" = {-1} is not positive definite'], "Materials.rock.permeability={-1}")
         refuse(['"permeability" = {1, 1, 2} is not positive definite'], "Materials.rock.permeability={1, 1, 2}")
         refuse(['"permeability" has 4 values, must have 1, 2 or 3 in 2D'], "Materials.rock.permeability={1, 1, 0, 0}")
         refuse(['Materials > rock: 0 elastic constants given'], "Materials.rock.permeability={}")
@@ -298,8 +298,9 @@ class Scenes(BadInput):
             text = re.sub(pattern, new, text, flags=re.DOTALL)
         (self.folder / "a.xml").write_text(text)
         self.refuse(["Flow: nothing says how high the pressure is"], "check", "a.xml")
-        self.refuse(['material: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
+        self.refuse(['Materials > rock: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
                     "--set", "Materials.rock.permeability={0.25-x}", any_point=True)
+        refuse(['rock > "permeability": is "1+t"; it may depend on x, y, z, not on t'], "Materials.rock.permeability={1+t}")
         refuse(['west > "conductance"', 'must be at least 0'], "Boundary conditions.west.conductance=-1")
         refuse(['west > "conductance": is "t"; it may depend on x, y, z, not on t'], "Boundary conditions.west.conductance=t")
         refuse(['Bulk: has a force or stress of the rock'], "Bulk.body force={1, 0}")
@@ -314,12 +315,15 @@ class Scenes(BadInput):
                         any_point=True)
         joint, west = "Materials.open joint.", "Boundary conditions.west."
         refuse(['open joint > "initial aperture": is 0, and so is "residual aperture"'], joint + "initial aperture=0")
-        refuse(["material: the hydraulic aperture is 0 at (", "must be above 0"], joint + "initial aperture=2e-4*(x>50)", command="run")
+        refuse(["Materials > open joint: the hydraulic aperture is 0 at (", "must be above 0"], joint + "initial aperture=2e-4*(x>50)", command="run")
         for entry in ("tangential permeability", "normal permeability"):
             refuse([f'open joint > "{entry}": is 0, must be'], joint + entry + "=0")
         refuse(['west > "fracture": is "lon", must be one of', 'Did you mean "long"?'], west + "fracture=lon")
         refuse(['west: give either "fracture" or "region"'], west + "fracture=long", west + "region=bulk")
-        refuse(['Fractures > long > "fluid pressure": is not given but found'], "Fractures.long.fluid pressure=t")
+        refuse(['Fractures > long > "fluid pressure": is not given but found'], "Fractures.long.fluid pressure=3e6")
+        refuse(['west > "fracture": "long" does not end on "west"; it ends on "east"'], west + "fracture=long", command="run")
+        refuse(['Boundary conditions > end: gives a conductance where "east" gives the pressure'], "Boundary conditions.end.boundary=east",
+               "Boundary conditions.end.fracture=long", "Boundary conditions.end.pressure=1", "Boundary conditions.end.conductance=1")
         refuse(['both > "conductance": needs a "pressure"'], "Boundary conditions.both.boundary=west", "Boundary conditions.both.flux=1",
                "Boundary conditions.both.conductance=1")
         refuse(['"early(t)"', 'table "early"', "is outside of [0, 1000000]"], west + "pressure=early(t)", "Tables.early.arguments={0, 1e6}",
@@ -492,7 +496,7 @@ class Outputs(BadInput):
         self.assertIn("absent.msh: there is no such file", self.results("new")["reason"])
 
     def test_failed_step_is_told_on_standard_error(self):
-        limits = ["--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0"]
+        limits = ["--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.tethers=false"]
         for ranks in (1, 3):
             out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", *limits, ranks=ranks, expect=3)
             self.assertEqual(out, "")

@@ -24,6 +24,7 @@ plot = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plot)
 
 import bulk  # noqa: E402
+import flow  # noqa: E402
 import fractures  # noqa: E402
 import loops  # noqa: E402
 import maps  # noqa: E402
@@ -111,6 +112,23 @@ class Pictures(PlotTest):
         self.expect_labels(made["convergence"], "Newton iterations (-)", "relative residual (-)")
         titles = [ax.get_title(loc="left") for ax in made["fractures"].axes]
         self.assertEqual([t for t in titles if t], ["flat", "steep"])
+
+    def test_flow(self):
+        """Alone: pressure and velocity, in 2D on one rank and in 3D on two; on the fractures what they carry."""
+        for dim, cells in ((2, "{20, 20}"), (3, "{10, 10, 5}")):
+            self.run_scene(f"flow/network_{dim}d.xml", f"Mesh.cells={cells}", "Time.steps=1", ranks=dim - 1)
+            out, _ = self.draw(self.folder / "out")
+            names = ["flow.png", "convergence.png"]
+            self.assertEqual([Path(line).name for line in out.splitlines()], names)
+            self.expect_pictures(["out/flow.png"])
+            made = self.figures("out")
+            self.expect_labels(made["flow"], "pressure (MPa)", "Darcy velocity (m/s)", "flux along fractures (m²/s)")
+        joints = read.grid(self.folder / "out" / "fractures_0000.vtm")
+        panels = dict((panel[0], panel[2]) for panel in flow.panels(read.surface(read.grid(self.folder / "out/bulk_0000.pvtu")), read.surface(joints)))
+        pressure = read.arrays(joints.GetCellData())["fracture pressure"]
+        np.testing.assert_allclose(np.sort(panels["pressure"][0]), np.sort(pressure) / 1e6, rtol=1e-6)
+        _, err = self.draw(self.folder / "out", "--paraview", expect=1)
+        self.assertIn("of runs that deform", err)
 
     def test_rim_of_a_plane_run_is_that_of_the_body(self):
         """No edges between the pieces of ranks; each side of a fracture once."""

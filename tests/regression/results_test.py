@@ -170,7 +170,7 @@ class Results(ProgramTest):
 
     def test_failure_keeps_what_was_computed(self):
         for ranks in (1, 2):
-            r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=1", "Time.maximum halvings=0",
+            r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=1", "Time.maximum halvings=0", "Time.tethers=false",
                                ranks=ranks, expect=3)
             self.assertEqual(r["status"], "failed")
             self.assertIn("no convergence in 1 iterations", r["reason"])
@@ -182,7 +182,7 @@ class Results(ProgramTest):
 
     def test_failure_is_told(self):
         out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", "--set",
-                             "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", ranks=2, expect=3)
+                             "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.tethers=false", ranks=2, expect=3)
         self.assertEqual((out + err).count("failed"), 1)
         self.assertIn("no convergence in 1 iterations", out + err)
 
@@ -206,7 +206,7 @@ class Results(ProgramTest):
 
     def test_faces_that_found_no_state(self):
         for ranks in (1, 2):
-            r = self.run_scene("contact/network_x.xml", "Solver.maximum iterations=3", "Time.maximum halvings=0",
+            r = self.run_scene("contact/network_x.xml", "Solver.maximum iterations=3", "Time.maximum halvings=0", "Time.tethers=false",
                                ranks=ranks, expect=3)
             told = {name: int(n) for n, name in re.findall(r'(\d+) of "(\w+)"', r["reason"])}
             self.assertGreater(sum(told.values()), 0)
@@ -238,7 +238,7 @@ class Results(ProgramTest):
             r = self.run_scene(*slope, f"Materials.joint.friction coefficient={mu}", ranks=1 + (mu == 1.5), expect=3)
             self.assertEqual(note in r["reason"], told, r["reason"])
         self.assertTrue(r["reason"].endswith(note + ' "joint" is 1.5: above about 1 equilibrium need not exist, nor be unique'))
-        shear = (str(ROOT / "docs/shear_test.xml"), "Solver.maximum iterations=2", "Time.maximum halvings=0", QUIET)
+        shear = (str(ROOT / "docs/shear_test.xml"), "Solver.maximum iterations=2", "Time.maximum halvings=0", "Time.tethers=false", QUIET)
         for angle, told in ((45, False), (60, True)):
             r = self.run_scene(*shear, f"Materials.rough joint.friction angle={angle}", expect=3)
             self.assertEqual(note + ' "rough joint" is 1.732: ' in r["reason"], told, r["reason"])
@@ -247,7 +247,7 @@ class Results(ProgramTest):
         # the sides follow the shear traction min(2/3 d_t, 0.18), so that substeps are exact
         path = ["Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
                 "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}", "Solver.tolerance=1e-10"]
-        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", *path, QUIET)
+        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", "Time.tethers=false", *path, QUIET)
         self.assertEqual(r["status"], "completed")
         self.assertGreater(r["steps"][0]["cuts"], 0)
         self.assertGreater(r["steps"][0]["substeps"], 1)

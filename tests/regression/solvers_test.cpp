@@ -132,6 +132,7 @@ TEST(StepCuts, ReachTheEndOfTheStep) {
   few.push_back("Solver.maximum iterations=3");
   few.push_back("Solver.tolerance=1e-10");
   few.push_back("Time.maximum halvings=8");
+  few.push_back("Time.tethers=false");
   const auto whole = run(name, path, 1), cut = run(name, few, 1);
   ASSERT_TRUE(whole.report.converged);
   EXPECT_EQ(whole.report.cuts, 0);
