@@ -63,23 +63,23 @@ std::string gist(const std::string& text) {
 /// y = S A S x, S diagonal.
 class ScaledOperator : public Operator {
  public:
-  ScaledOperator(RCP<const Operator> A, RCP<const Vector> S) : A_(A), S_(S), Sx_(A->getDomainMap(), 1) {}
+  ScaledOperator(RCP<const Operator> A, RCP<const Vector> S)
+      : A_(A), S_(S), Sx_(A->getDomainMap(), 1), ASx_(A->getRangeMap(), 1) {}
   RCP<const fields::Map> getDomainMap() const override { return A_->getDomainMap(); }
   RCP<const fields::Map> getRangeMap() const override { return A_->getRangeMap(); }
   void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, Real alpha, Real beta) const override {
     for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
       const auto to = y.getVectorNonConst(v);
-      Vector ASx(to->getMap());
       Sx_.elementWiseMultiply(1, *S_, *x.getVector(v), 0);
-      A_->apply(Sx_, ASx, mode, 1, 0);
-      to->elementWiseMultiply(alpha, *S_, ASx, beta);
+      A_->apply(Sx_, ASx_, mode, 1, 0);
+      to->elementWiseMultiply(alpha, *S_, ASx_, beta);
     }
   }
 
  private:
   RCP<const Operator> A_;
   RCP<const Vector> S_;
-  mutable MultiVector Sx_;
+  mutable MultiVector Sx_, ASx_;
 };
 
 /// 1/sqrt(diagonal), or its inverse.
