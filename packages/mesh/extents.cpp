@@ -1,5 +1,7 @@
 #include "mesh/extents.hpp"
 
+#include <algorithm>
+
 #include <Teuchos_CommHelpers.hpp>
 #include <limits>
 
@@ -39,6 +41,11 @@ Vector domain_extents(const Mesh& mesh) {
   Boxes boxes(1);
   for (LocalIndex node = 0; node < mesh.n_nodes(); ++node) boxes.add(mesh, node);
   return boxes.extents(mesh)[0];
+}
+
+Real largest_extent(const Mesh& mesh) {
+  const Vector extents = domain_extents(mesh);
+  return *std::max_element(extents.begin(), extents.end());
 }
 
 std::vector<Vector> fracture_extents(const Mesh& mesh) {

@@ -10,6 +10,9 @@ namespace sprekk::mesh {
 /// Size of the domain's bounding box in each direction, m; in 2D the third is zero. Collective.
 Vector domain_extents(const Mesh& mesh);
 
+/// The largest of them. Collective.
+Real largest_extent(const Mesh& mesh);
+
 /// The same of each fracture. Collective.
 std::vector<Vector> fracture_extents(const Mesh& mesh);
 

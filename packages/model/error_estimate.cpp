@@ -40,8 +40,7 @@ ErrorEstimator::ErrorEstimator(Model& model)
     : model_(model),
       blocks_{block("displacement"), block("side bubble"), block("tip displacement")},
       recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()), layouts())) {
-  const auto extents = mesh::domain_extents(model.mesh());
-  section_ = std::pow(*std::max_element(extents.begin(), extents.end()), model.mesh().dim() - 1);
+  section_ = std::pow(mesh::largest_extent(model.mesh()), model.mesh().dim() - 1);
 }
 
 int ErrorEstimator::block(const std::string& name) const {

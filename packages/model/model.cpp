@@ -151,8 +151,7 @@ assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh
   for (const auto& one : mobility(scene, mesh).values)
     for (int i = 0; i < mesh.dim(); ++i) here = std::max(here, one.value[i][i]);
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
-  const auto extents = mesh::domain_extents(mesh);
-  return {1, *std::max_element(extents.begin(), extents.end()), largest};
+  return {1, mesh::largest_extent(mesh), largest};
 }
 
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
@@ -164,8 +163,7 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
     here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  const auto extents = mesh::domain_extents(mesh);
-  return {modulus, *std::max_element(extents.begin(), extents.end())};
+  return {modulus, mesh::largest_extent(mesh)};
 }
 
 /// The element of that name, or an Error that lists those there are.

@@ -42,8 +42,7 @@ std::string friction_doubt(const Scene& scene) {
 }
 
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto extents = mesh::domain_extents(mesh);
-  const Real size = *std::max_element(extents.begin(), extents.end());
+  const Real size = mesh::largest_extent(mesh);
   const auto rock = bounding_rock(scene);
   if (!rock) return "";
   for (const auto& [name, fracture] : scene.fractures) {

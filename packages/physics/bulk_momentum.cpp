@@ -39,8 +39,7 @@ class BulkMomentum final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const auto extents = mesh::domain_extents(*mesh_);
-    size_ = *std::max_element(extents.begin(), extents.end());
+    size_ = mesh::largest_extent(*mesh_);
     op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity, "material"),
                                   assembly::material_numbers(context.geometry(), parameters_.elasticity_of_cell)});
     displacement_ = context.field("displacement");

@@ -42,8 +42,7 @@ class DarcyFlow final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const auto extents = mesh::domain_extents(*mesh_);
-    size_ = *std::max_element(extents.begin(), extents.end());
+    size_ = mesh::largest_extent(*mesh_);
     const auto& weight = parameters_.weight;
     op_ = std::make_unique<Op>(Op{context.geometry(),
                                   assembly::to_device(parameters_.mobility, "mobility"),

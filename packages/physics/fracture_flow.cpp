@@ -117,8 +117,7 @@ class FractureFlow final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const auto extents = mesh::domain_extents(*mesh_);
-    size_ = *std::max_element(extents.begin(), extents.end());
+    size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
     set_faces();
     assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, std::vector<int>{block_},
