@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::assembly {
 
@@ -245,12 +246,44 @@ void System::assemble_linear() {
     if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
 }
 
+/// The linear part, to which jacobian() of the other modules is to be added.
+void System::start_matrix() {
+  for (int i = 0; i < matrix_.n_blocks(); ++i)
+    for (int j = 0; j < matrix_.n_blocks(); ++j) {
+      if (matrix_(i, j).is_null() || matrix_(i, j) == linear_(i, j)) continue;
+      const auto values = matrix_(i, j)->getLocalMatrixDevice().values;
+      if (linear_(i, j).is_null())
+        Kokkos::deep_copy(values, 0.0);
+      else
+        Kokkos::deep_copy(values, linear_(i, j)->getLocalMatrixDevice().values);
+    }
+}
+
+/// Rows of flow at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
+/// where no module of them is linear.
+void System::assemble_flow() {
+  const Context context(mesh_, geometry_, layouts_);
+  start_matrix();
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    const auto& couplings = declarations_[m].couplings;
+    const bool flows = std::any_of(couplings.begin(), couplings.end(), [&](const auto& coupling) {
+      return unknowns_[context.field(coupling.row)].row == Quantity::flow;
+    });
+    if (declarations_[m].linear || !flows) continue;
+    auto at_rest = state(static_cast<int>(m));
+    at_rest.dt = std::numeric_limits<Real>::infinity();
+    modules_[m]->jacobian(at_rest, matrix_);
+  }
+}
+
 void System::set_merit_weights() {
   const auto views = rows(weights_);
   for (const auto& module : modules_) module->merit_weights(views);
+  assemble_flow();
   for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
-    if (linear_(b, b).is_null()) continue;
-    linear_(b, b)->getLocalDiagCopy(*diagonals_[b]);
+    const auto& A = unknowns_[b].row == Quantity::flow ? matrix_(b, b) : linear_(b, b);
+    if (A.is_null()) continue;
+    A->getLocalDiagCopy(*diagonals_[b]);
     if (weights_[b]->normInf() > 0) continue;
     Tpetra::deep_copy(*weights_[b], *diagonals_[b]);
     auto w = weights_[b]->getLocalViewHost(Tpetra::Access::ReadWrite);

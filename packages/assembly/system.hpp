@@ -99,6 +99,8 @@ class System : public fields::BlockProblem {
   void bind_modules();
   void create_matrices();
   void assemble_linear();
+  void start_matrix();
+  void assemble_flow();
   void set_merit_weights();
   void find_exchanges();
   void watch_pieces();

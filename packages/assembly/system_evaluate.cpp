@@ -187,17 +187,8 @@ void System::residual(const BlockVector& x, BlockVector& r) {
 void System::jacobian(const BlockVector& x) {
   refresh_ghosts(x, false);
   const auto scope = timers_->scope("Jacobian");
-  const int n = static_cast<int>(blocks_.size());
   int asymmetric = 0, anywhere = 0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      if (matrix_(i, j).is_null() || matrix_(i, j) == linear_(i, j)) continue;
-      const auto values = matrix_(i, j)->getLocalMatrixDevice().values;
-      if (linear_(i, j).is_null())
-        Kokkos::deep_copy(values, 0.0);
-      else
-        Kokkos::deep_copy(values, linear_(i, j)->getLocalMatrixDevice().values);
-    }
+  start_matrix();
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     if (declarations_[m].linear) continue;
     const auto scope_of_module = timers_->scope(modules_[m]->name());

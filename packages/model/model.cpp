@@ -211,27 +211,33 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   physics::DarcyFlowParameters darcy{rock.values, rock.number};
   darcy.scheme = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
+  darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
   darcy.conditions = fluid_conditions(scene, mesh, false);
-  const auto storage =
-      by_region(scene, mesh, [&](const Material& m) { return m.compressibility + m.porosity * flow.compressibility; });
-  physics::FractureFlowParameters fractures{{}, {}, darcy.scheme, darcy.weight, fluid_conditions(scene, mesh, true)};
-  std::vector<Real> of_faces;
+  const auto pores = by_region(scene, mesh, [](const Material& m) {
+    return physics::Pores{m.porosity, m.compressibility};
+  });
+  physics::FractureFlowParameters fractures{{},          {},           darcy.scheme,
+                                            darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true)};
+  std::vector<Real> aperture;
   for (const auto& face : mesh.fracture_faces) {
     const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
     const auto hydraulics = at_place(scene, joint, [&] { return joint.hydraulics(flow.viscosity, face.centre); });
     fractures.faces.push_back(hydraulics.along);
     darcy.exchange.push_back(hydraulics.exchange);
-    of_faces.push_back(hydraulics.along.aperture * flow.compressibility);
+    aperture.push_back(hydraulics.along.aperture);
   }
   for (const auto& name : mesh.fracture_names) fractures.source.push_back(scene.fractures.at(name).source);
   std::vector<std::unique_ptr<assembly::Module>> modules;
+  const auto fluid = darcy.fluid;
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
-  if (std::any_of(storage.begin(), storage.end(), [](Real s) { return s > 0; }))
-    modules.push_back(physics::make_fluid_storage({storage, {}, flow.initial_pressure}));
+  if (std::any_of(pores.begin(), pores.end(),
+                  [&](const auto& of) { return of.growth > 0 || of.porosity * fluid.compressibility > 0; }))
+    modules.push_back(physics::make_fluid_storage({pores, {}, fluid, flow.initial_pressure}));
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(physics::make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (flow.compressibility > 0) modules.push_back(physics::make_fracture_storage({of_faces, flow.initial_pressure}));
+  if (flow.compressibility > 0)
+    modules.push_back(physics::make_fracture_storage({aperture, fluid, flow.initial_pressure}));
   return modules;
 }
 

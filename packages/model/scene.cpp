@@ -69,8 +69,7 @@ void Material::describe(base::Section& s) {
             "in 3D");
     s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
     s.entry(compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
-            "growth of the porosity with the fluid's pressure; with it the specific storage is this + porosity x "
-            "compressibility of the fluid");
+            "growth of the porosity with the fluid's pressure");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
     if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
@@ -215,8 +214,11 @@ void Flow::describe(base::Section& s) {
   s.entry(rigid_rock, "rigid rock", "-", "the rock does not deform: flow alone, without displacements");
   s.entry(viscosity, "viscosity", "Pa*s", base::positive(), "mu of the fluid");
   s.entry(density, "density", "kg/m^3", base::at_least(0),
-          "of the fluid; its weight counts where \"Bulk\" has gravity");
-  s.entry(compressibility, "compressibility", "Pa^-1", base::at_least(0), "of the fluid");
+          "rho_0 of the fluid, at the reference pressure; its weight counts where \"Bulk\" has gravity");
+  s.entry(compressibility, "compressibility", "Pa^-1", base::at_least(0),
+          "c of the fluid: its density is rho_0 exp(c (p - reference pressure))");
+  s.entry(reference_pressure, "reference pressure", "Pa", base::any(),
+          "with a compressibility: where the density is as given; volumes of fluid are at this pressure");
   s.entry(source, "source", "s^-1", base::any(),
           "volume of fluid per volume of rock and time, an expression of x, y, z, t");
   s.entry(initial_pressure, "initial pressure", "Pa", base::any(), "at the start, where fluid is stored; of x, y, z");

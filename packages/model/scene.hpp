@@ -104,7 +104,7 @@ struct MeshFile {
 /// A fluid that flows through the rock.
 struct Flow {
   bool rigid_rock = false;  ///< the rock does not deform: no mechanics
-  Real viscosity = 1e-3, density = 1000, compressibility = 0;
+  Real viscosity = 1e-3, density = 1000, compressibility = 0, reference_pressure = 0;
   base::Expression source = 0, initial_pressure = 0;
   std::string scheme = "auto";
   void describe(base::Section& section);

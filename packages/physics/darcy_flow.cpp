@@ -36,7 +36,7 @@ class DarcyFlow final : public assembly::Module {
     for (const char* row : {"pressure", "face pressure"})
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
     d.outputs = {{"pressure", "Pa", fields::Entity::cell, 1}, {"Darcy velocity", "m/s", fields::Entity::cell, 3}};
-    d.linear = true;
+    d.linear = is_linear();
     return d;
   }
 
@@ -48,10 +48,12 @@ class DarcyFlow final : public assembly::Module {
                                   assembly::to_device(parameters_.mobility, "mobility"),
                                   assembly::material_numbers(context.geometry(), parameters_.mobility_of_cell),
                                   {weight[0], weight[1], weight[2]},
-                                  parameters_.scheme});
+                                  parameters_.scheme,
+                                  parameters_.fluid});
     set_resistance();
     blocks_ = {context.field("pressure"), context.field("face pressure")};
-    assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_, Assembler::Positions::once);
+    assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_,
+                                             is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
     for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
       if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
@@ -74,6 +76,7 @@ class DarcyFlow final : public assembly::Module {
     assembler_->add_jacobian(*op_, state, J);
     exchange_.add_jacobian(J);
   }
+  bool symmetric(const assembly::State&) const override { return is_linear(); }
 
   bool constant_load() const override {
     const auto constant = [](const auto& condition) { return condition.value.constant_in_time(); };
@@ -123,11 +126,12 @@ class DarcyFlow final : public assembly::Module {
       const CellFaces<shape> faces(X);
       x[0] = p(c);
       for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
-      op_->flow(faces, op_->matrix(c, faces), x, q);
+      op_->at(c, faces).flow(x, q);
+      const Real scale = 1 / (parameters_.fluid.density(x[0]) * faces.volume);
       fields[0].values.push_back(p(c));
       for (int i = 0; i < 3; ++i) {
         Real v = 0;
-        for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] / faces.volume;
+        for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] * scale;
         fields[1].values.push_back(v);
       }
     }
@@ -135,6 +139,8 @@ class DarcyFlow final : public assembly::Module {
 
  private:
   using Assembler = assembly::Assembler<Op>;
+
+  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
 
   void set_resistance() {
     const auto& exchange = parameters_.exchange;

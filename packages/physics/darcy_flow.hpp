@@ -12,6 +12,8 @@
 
 namespace sprekk::physics {
 
+/// Volumes of fluid here and below are those at reference conditions, mass over the density rho_0 there.
+
 /// Fluid that leaves through a boundary: volume per area and time, m/s; or with a conductance c, m/(Pa s), as much as
 /// c (p - value), the value being the pressure beyond, Pa.
 struct FluidCondition {
@@ -31,7 +33,8 @@ struct DarcyFlowParameters {
   std::vector<laws::Mobility> mobility;  ///< different ones
   std::vector<int> mobility_of_cell;     ///< [local cell] which of them; empty: the number of the cell's region
   FluxScheme scheme = FluxScheme::rt0;
-  std::array<Real, 3> weight{};                 ///< rho g, N/m^3
+  laws::Fluid fluid = {};
+  std::array<Real, 3> weight{};                 ///< rho_0 g, N/m^3
   std::vector<base::Expression> source = {};    ///< volume of fluid per volume and time, 1/s; empty or one
   std::vector<FluidCondition> conditions = {};  ///< those without a fracture
   std::vector<Real> exchange = {};  ///< [local fracture face] of each of its sides, m/(Pa s): a resistance between the
@@ -47,12 +50,12 @@ std::string name_of(FluxScheme scheme);
 /// Declares the unknowns "pressure" (cells, Pa) and "face pressure" (facets, Pa) and adds to their rows, for a cell K
 /// with faces i,
 ///   sum_i q_i - integral_K source   and, on a facet,   -sum_K q_i + integral of what leaves
-/// with q_i = sum_j T_ij (p_K - p_j + rho g . d_j), where beside fractures T = (T_0^-1 + diag(1/(exchange A)))^-1 and
-/// p_j is the pressure in the fracture: the hybrid form of the mixed method (Arnold and Brezzi 1985): its flows are in
-/// balance on every cell and continuous across facets. A facet on the boundary without a condition lets nothing
-/// through. T is exact from open to closed sides: no pressure of a side is subtracted from that of a fracture, which
-/// would cost digits of the balance. Outputs: pressure, and "Darcy velocity" q
-/// = sum_i q_i d_i / V (cells, m/s).
+/// with q_i = sum_j T_ij (p_K - p_j + rho_0 g . d_j), for a compressible fluid as HybridFlow says, where beside
+/// fractures T = (T_0^-1 + diag(1/(exchange A)))^-1 and p_j is the pressure in the fracture: the hybrid form of the
+/// mixed method (Arnold and Brezzi 1985): its flows are in balance on every cell and continuous across facets. A facet
+/// on the boundary without a condition lets nothing through. T is exact from open to closed sides: no pressure of a
+/// side is subtracted from that of a fracture, which would cost digits of the balance. Outputs: pressure, and "Darcy
+/// velocity" q = sum_i q_i d_i / (V e_K) (cells, m/s), a volume at the pressure there.
 std::unique_ptr<assembly::Module> make_darcy_flow(mesh::Shape shape, DarcyFlowParameters parameters);
 
 }  // namespace sprekk::physics

@@ -12,32 +12,43 @@ using assembly::Loop;
 
 namespace {
 
-/// | symbol   | shape  | unit     |                                                            |
-/// | x        | 1      | Pa       | pressure p                                                 |
-/// | r        | 1      | m^3/s    | S V (p - p_old)/dt                                         |
-/// | capacity | [entity] | m^3/Pa | S V                                                        |
-/// | initial  | [entity] | Pa     | pressure at the start of the run                           |
+/// | symbol   | shape    | unit     |                                                            |
+/// | x        | 1        | Pa       | pressure p                                                 |
+/// | r        | 1        | m^3/s    | V (phi e - phi_old e_old)/dt                               |
+/// | volume   | [entity] | m^3      | V, of fractures the area                                   |
+/// | porosity | [entity] | -        | phi_0, of fractures the aperture, m                        |
+/// | growth   | [entity] | 1/Pa     | c_phi                                                      |
+/// | initial  | [entity] | Pa       | pressure at the start of the run                           |
 /// | gained   | [owned entity, 1] | Pa | p_old less that                                         |
-/// | rate     |        | 1/s      | 1/dt                                                       |
+/// | rate     |          | 1/s      | 1/dt                                                       |
 struct StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>>;
   using Rows = Columns;
-  ConstView<Real*> capacity, initial;
+  laws::Fluid fluid;
+  ConstView<Real*> volume, porosity, growth, initial;
   ConstView<Real**> gained;
   Real rate = 0;
 
+  /// Of sums without cancellation, so that what all steps store adds up to what is stored.
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1], Real (&r)[1]) const {
-    const bool owned = e < static_cast<int>(gained.extent(0));
-    r[0] = owned ? capacity(e) * rate * (x[0] - initial(e) - gained(e, 0)) : 0;
+    r[0] = 0;
+    if (e >= static_cast<int>(gained.extent(0))) return;  // another rank's
+    const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
+    const Real pores = porosity(e) + growth(e) * gained(e, 0);
+    const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
+    r[0] = volume(e) * rate * (pores * fluid.density(old) * denser + growth(e) * step * fluid.density(x[0]));
   }
-  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[1], Real (&J)[1][1]) const {
-    J[0][0] = capacity(e) * rate;
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[1], Real (&J)[1][1]) const {
+    const Real pores = porosity(e) + growth(e) * (x[0] - initial(e));
+    J[0][0] = volume(e) * rate * fluid.density(x[0]) * (pores * fluid.compressibility + growth(e));
   }
 };
 
 /// Of one entity.
 struct Stored {
-  Real capacity, initial;
+  Real volume;
+  Pores pores;
+  Real initial;
 };
 
 /// Finds what is stored in the entities of a loop, in their order.
@@ -45,8 +56,10 @@ using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
 
 class FluidStorage final : public assembly::Module {
  public:
-  FluidStorage(std::string name, std::string field, fields::Entity entity, Loop loop, Find find)
-      : name_(std::move(name)), field_(std::move(field)), entity_(entity), loop_(loop), find_(std::move(find)) {}
+  FluidStorage(std::string name, std::string field, fields::Entity entity, Loop loop, laws::Fluid fluid, Find find)
+      : name_(std::move(name)), field_(std::move(field)), entity_(entity), loop_(loop), find_(std::move(find)) {
+    op_.fluid = fluid;
+  }
 
   std::string name() const override { return name_; }
 
@@ -59,13 +72,17 @@ class FluidStorage final : public assembly::Module {
 
   void bind(const assembly::Context& context) override {
     pressure_ = context.field(field_);
-    std::vector<Real> capacity, initial;
+    std::vector<Real> volume, porosity, growth, initial;
     for (const auto& stored : find_(*context.mesh())) {
-      capacity.push_back(stored.capacity);
+      volume.push_back(stored.volume);
+      porosity.push_back(stored.pores.porosity);
+      growth.push_back(stored.pores.growth);
       initial.push_back(stored.initial);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
-    op_.capacity = assembly::to_device(capacity, "capacity");
+    op_.volume = assembly::to_device(volume, "volume");
+    op_.porosity = assembly::to_device(porosity, "porosity");
+    op_.growth = assembly::to_device(growth, "growth of pores");
     op_.initial = assembly::to_device(initial, "initial pressure");
     assembler_ = std::make_unique<Assembler>(context, loop_, std::vector<int>{pressure_}, std::vector<int>{pressure_},
                                              Assembler::Positions::keep);
@@ -109,27 +126,28 @@ class FluidStorage final : public assembly::Module {
   std::unique_ptr<Assembler> assembler_;
 };
 
-/// The integral over points of an entity, and the mean of the initial pressure there. `each` calls its argument with
-/// (measure, place) of every point.
+/// The size of an entity, and the mean of the initial pressure there. `each` calls its argument with (measure, place)
+/// of every point.
 template <class Each>
-Stored integrate(Real storage, const base::Expression& initial, const Each& each) {
+Stored integrate(const Pores& pores, const base::Expression& initial, const Each& each) {
   Real total = 0, sum = 0;
   each([&](Real part, const std::array<Real, 3>& x) {
     total += part;
     sum += part * initial(x, 0);
   });
-  return {storage * total, sum / total};
+  return {total, pores, sum / total};
 }
 
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_fluid_storage(FluidStorageParameters parameters) {
+  const auto fluid = parameters.fluid;
   const auto find = [parameters = std::move(parameters)](const mesh::Mesh& mesh) {
-    const auto& of_cell = parameters.storage_of_cell;
+    const auto& of_cell = parameters.pores_of_cell;
     std::vector<Stored> stored;
     mesh::for_shape(mesh.shape, [&](auto shape) {
       for (LocalIndex c = 0; c < mesh.n_cells(); ++c)
-        stored.push_back(integrate(parameters.storage[of_cell.empty() ? mesh.cell_region[c] : of_cell[c]],
+        stored.push_back(integrate(parameters.pores[of_cell.empty() ? mesh.cell_region[c] : of_cell[c]],
                                    parameters.initial, [&](const auto& visit) {
                                      assembly::for_each_cell_point<shape()>(
                                          mesh, c, [&](const auto&, Real part, const auto& x) { visit(part, x); });
@@ -137,15 +155,16 @@ std::unique_ptr<assembly::Module> make_fluid_storage(FluidStorageParameters para
     });
     return stored;
   };
-  return std::make_unique<FluidStorage>("fluid storage", "pressure", fields::Entity::cell, Loop::cells, find);
+  return std::make_unique<FluidStorage>("fluid storage", "pressure", fields::Entity::cell, Loop::cells, fluid, find);
 }
 
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
+  const auto fluid = parameters.fluid;
   const auto find = [parameters = std::move(parameters)](const mesh::Mesh& mesh) {
     std::vector<Stored> stored;
     mesh::for_shape(mesh.shape, [&](auto shape) {
       for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-        stored.push_back(integrate(parameters.storage[f], parameters.initial, [&](const auto& visit) {
+        stored.push_back(integrate({parameters.aperture[f], 0}, parameters.initial, [&](const auto& visit) {
           const auto& face = mesh.fracture_faces[f];
           assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
                                                  [&](const auto&, Real part, const auto& x) { visit(part, x); });
@@ -154,7 +173,7 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
     return stored;
   };
   return std::make_unique<FluidStorage>("fracture storage", "face pressure", fields::Entity::fracture_face,
-                                        Loop::fracture_faces, find);
+                                        Loop::fracture_faces, fluid, find);
 }
 
 }  // namespace sprekk::physics

@@ -14,45 +14,33 @@ using assembly::Loop;
 
 namespace {
 
-/// Flow along one fracture face, from its pressure and those on its ridges.
+/// HybridFlow of one fracture face through its ridges.
 ///
-/// | symbol | shape            | unit       |                                  |
-/// | x      | 1 + n            | Pa         | p_F, pressures on ridges         |
-/// | r      | 1 + n            | m^3/s      | sum q, -q (2D: m^2/s)            |
-/// | T      | [face, n * n]    | m^3/(Pa s) | (2D: m^2/(Pa s))                 |
-/// | lift   | [face, n]        | Pa         | rho g . d                        |
+/// | symbol | shape         | unit       |                            |
+/// | x      | 1 + n         | Pa         | p_F, pressures on ridges   |
+/// | r      | 1 + n         | m^3/s      | sum q, -q (2D: m^2/s)      |
+/// | T      | [face, n * n] | m^3/(Pa s) | (2D: m^2/(Pa s))           |
+/// | lift   | [face, n]     | Pa         | rho_0 g . d                |
 template <int n>
 struct FractureFace {
   using Columns = assembly::Slots<assembly::Slot<1 + n, 1>>;
   using Rows = Columns;
   ConstView<Real**> T, lift;
+  laws::Fluid fluid;
 
-  KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[1 + n], Real (&q)[n]) const {
+  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int face) const {
+    HybridFlow<n> result{fluid, {}, {}};
     for (int i = 0; i < n; ++i) {
-      q[i] = 0;
-      for (int j = 0; j < n; ++j) q[i] += T(face, i * n + j) * (x[0] - x[1 + j] + lift(face, j));
+      for (int j = 0; j < n; ++j) result.T[i][j] = T(face, i * n + j);
+      result.lift[i] = lift(face, i);
     }
+    return result;
   }
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
-    Real q[n];
-    flow(face, x, q);
-    r[0] = 0;
-    for (int i = 0; i < n; ++i) {
-      r[0] += q[i];
-      r[1 + i] = -q[i];
-    }
+    at(face).residual(x, r);
   }
-  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
-    J[0][0] = 0;
-    for (int i = 0; i < n; ++i) {
-      J[0][1 + i] = 0;
-      for (int j = 0; j < n; ++j) {
-        J[0][1 + i] -= T(face, j * n + i);
-        J[1 + i][1 + j] = T(face, i * n + j);
-      }
-      J[1 + i][0] = J[0][1 + i];
-      J[0][0] -= J[0][1 + i];
-    }
+  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    at(face).jacobian(x, J);
   }
 };
 
@@ -111,7 +99,7 @@ class FractureFlow final : public assembly::Module {
     d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
     d.outputs = {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1},
                  {"fluid flux", "m^2/s", fields::Entity::fracture_face, 3}};
-    d.linear = true;
+    d.linear = is_linear();
     return d;
   }
 
@@ -120,8 +108,9 @@ class FractureFlow final : public assembly::Module {
     size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
     set_faces();
-    assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, std::vector<int>{block_},
-                                             std::vector<int>{block_}, Assembler::Positions::once);
+    assembler_ =
+        std::make_unique<Assembler>(context, Loop::fracture_cells, std::vector<int>{block_}, std::vector<int>{block_},
+                                    is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
     for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
       if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
@@ -142,6 +131,7 @@ class FractureFlow final : public assembly::Module {
     assembler_->add_jacobian(op_, state, J);
     exchange_.add_jacobian(J);
   }
+  bool symmetric(const assembly::State&) const override { return is_linear(); }
 
   bool constant_load() const override {
     return std::all_of(parameters_.source.begin(), parameters_.source.end(),
@@ -190,11 +180,12 @@ class FractureFlow final : public assembly::Module {
       const Plane plane(*mesh_, f, parameters_.faces[f].transmissivity, parameters_.scheme);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
-      op_.flow(f, x, q);
+      op_.at(f).flow(x, q);
+      const Real scale = 1 / (parameters_.fluid.density(x[0]) * plane.area);
       fields[0].values.push_back(x[0]);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
-        for (int k = 0; k < n; ++k) flux += q[k] * plane.d[k][i] / plane.area;
+        for (int k = 0; k < n; ++k) flux += q[k] * plane.d[k][i] * scale;
         fields[1].values.push_back(flux);
       }
     }
@@ -202,6 +193,8 @@ class FractureFlow final : public assembly::Module {
 
  private:
   using Assembler = assembly::Assembler<Op>;
+
+  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
 
   void set_faces() {
     const LocalIndex n_faces = mesh_->n_fracture_faces();
@@ -217,7 +210,7 @@ class FractureFlow final : public assembly::Module {
     }
     Kokkos::deep_copy(T, T_host);
     Kokkos::deep_copy(lift, lift_host);
-    op_ = {T, lift};
+    op_ = {T, lift, parameters_.fluid};
   }
 
   /// Calls visit(area, source) at the points of a face.

@@ -4,6 +4,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/geometry.hpp"
 #include "laws/darcy.hpp"
+#include "laws/fluid.hpp"
 
 #include <cmath>
 
@@ -172,15 +173,66 @@ struct FlowMatrix {
   }
 };
 
-/// The balance of one cell, sum_i q_i, and the flow into it through its faces, -q_i, with
-/// q_i = sum_j T_ij (p - p_j + rho g . d_j).
+/// The balance of an entity with n ends, sum_i q_i, and the flow into it through them, -q_i, with
+/// q_i = sum_j T_ij ((e - e_j)/c + e e_j lift_j): mass per density at reference conditions, see laws::Fluid; for a
+/// constant density q_i = sum_j T_ij (p - p_j + lift_j).
+///
+/// | symbol | shape  | unit       |                                                     |
+/// | x      | 1 + n  | Pa         | pressure of the entity, pressures on its ends       |
+/// | r      | 1 + n  | m^3/s      | (2D: m^2/s)                                         |
+/// | T      | [n, n] | m^3/(Pa s) |                                                     |
+/// | lift   | [n]    | Pa         | rho_0 g . d, d from the entity's centre to an end's |
+template <int n>
+struct HybridFlow {
+  laws::Fluid fluid;
+  Real T[n][n], lift[n];
+
+  /// Outward flow through each end.
+  KOKKOS_INLINE_FUNCTION void flow(const Real (&x)[1 + n], Real (&q)[n]) const {
+    Real drop[n];
+    for (int j = 0; j < n; ++j) drop[j] = fluid.drop(x[0], x[1 + j], lift[j]);
+    for (int i = 0; i < n; ++i) {
+      q[i] = 0;
+      for (int j = 0; j < n; ++j) q[i] += T[i][j] * drop[j];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void residual(const Real (&x)[1 + n], Real (&r)[1 + n]) const {
+    Real q[n];
+    flow(x, q);
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      r[0] += q[i];
+      r[1 + i] = -q[i];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    Real of_entity[n], of_end[n];
+    for (int j = 0; j < n; ++j) {
+      of_entity[j] = fluid.ddrop_da(x[0], x[1 + j], lift[j]);
+      of_end[j] = fluid.ddrop_db(x[0], x[1 + j], lift[j]);
+    }
+    for (int k = 0; k < 1 + n; ++k) J[0][k] = 0;
+    for (int i = 0; i < n; ++i) {
+      J[1 + i][0] = 0;
+      for (int j = 0; j < n; ++j) {
+        J[1 + i][0] -= T[i][j] * of_entity[j];
+        J[1 + i][1 + j] = -T[i][j] * of_end[j];
+      }
+      for (int k = 0; k < 1 + n; ++k) J[0][k] -= J[1 + i][k];
+    }
+  }
+};
+
+/// HybridFlow of one cell through its faces.
 ///
 /// | symbol   | shape         | unit          |                                            |
 /// | x        | 1 + faces     | Pa            | pressure of the cell, pressures on faces   |
 /// | r        | 1 + faces     | m^3/s         | (2D: m^2/s)                                |
 /// | mobility | [number]      | m^2/(Pa s)    | k/mu                                       |
 /// | number   | [cell]        | -             | which mobility                             |
-/// | weight   | [dim]         | N/m^3         | rho g                                      |
+/// | weight   | [dim]         | N/m^3         | rho_0 g                                    |
 /// | beside   | [cell]        | -             | row of resistance, -1 for none; empty: all |
 /// | resistance | [row, face] | Pa s/m^3      | of sides of fractures, 0 for none          |
 template <Shape shape>
@@ -195,59 +247,35 @@ struct HybridCell {
   ConstView<int*> number;
   Kokkos::Array<Real, 3> weight;
   FluxScheme scheme;
+  laws::Fluid fluid;
   ConstView<int*> beside = {};
   ConstView<Real**> resistance = {};
 
-  KOKKOS_INLINE_FUNCTION Faces faces(int cell) const {
-    Real X[mesh::n_nodes(shape)][dim];
-    geometry.gather(cell, X);
-    return Faces(X);
-  }
-
-  KOKKOS_INLINE_FUNCTION FlowMatrix<shape> matrix(int cell, const Faces& faces) const {
-    FlowMatrix<shape> result(faces, mobility(number(cell)), scheme);
-    if (beside.extent(0) == 0 || beside(cell) < 0) return result;
-    for (int f = 0; f < n; ++f)
-      if (resistance(beside(cell), f) > 0) result.add_resistance(f, resistance(beside(cell), f));
+  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int cell, const Faces& faces) const {
+    FlowMatrix<shape> matrix(faces, mobility(number(cell)), scheme);
+    if (beside.extent(0) > 0 && beside(cell) >= 0)
+      for (int f = 0; f < n; ++f)
+        if (resistance(beside(cell), f) > 0) matrix.add_resistance(f, resistance(beside(cell), f));
+    HybridFlow<n> result{fluid, {}, {}};
+    for (int f = 0; f < n; ++f) {
+      for (int g = 0; g < n; ++g) result.T[f][g] = matrix.T[f][g];
+      for (int i = 0; i < dim; ++i) result.lift[f] += weight[i] * faces.centre[f][i];
+    }
     return result;
   }
 
-  /// Outward flow through each face.
-  KOKKOS_INLINE_FUNCTION void flow(const Faces& faces, const FlowMatrix<shape>& matrix, const Real (&x)[1 + n],
-                                   Real (&q)[n]) const {
-    for (int i = 0; i < n; ++i) {
-      q[i] = 0;
-      for (int j = 0; j < n; ++j) {
-        Real drop = x[0] - x[1 + j];
-        for (int k = 0; k < dim; ++k) drop += weight[k] * faces.centre[j][k];
-        q[i] += matrix.T[i][j] * drop;
-      }
-    }
-  }
-
   KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
-    const Faces of_cell = faces(cell);
-    Real q[n];
-    flow(of_cell, matrix(cell, of_cell), x, q);
-    r[0] = 0;
-    for (int i = 0; i < n; ++i) {
-      r[0] += q[i];
-      r[1 + i] = -q[i];
-    }
+    at(cell).residual(x, r);
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    at(cell).jacobian(x, J);
   }
 
-  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
-    const FlowMatrix<shape> matrix = this->matrix(cell, faces(cell));
-    J[0][0] = 0;
-    for (int i = 0; i < n; ++i) {
-      J[0][1 + i] = 0;
-      for (int j = 0; j < n; ++j) {
-        J[0][1 + i] -= matrix.T[j][i];
-        J[1 + i][1 + j] = matrix.T[i][j];
-      }
-      J[1 + i][0] = J[0][1 + i];
-      J[0][0] -= J[0][1 + i];
-    }
+ private:
+  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int cell) const {
+    Real X[mesh::n_nodes(shape)][dim];
+    geometry.gather(cell, X);
+    return at(cell, Faces(X));
   }
 };
 

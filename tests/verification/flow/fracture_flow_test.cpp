@@ -1,70 +1,8 @@
 // Flow along and across fractures, against exact solutions.
-#include "../scenes.hpp"
+#include "boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
-
-const char* const all_cells[] = {"triangle", "quadrilateral", "tetrahedron", "hexahedron"};
-constexpr Real aperture = 1e-3, viscosity = 2;
-
-bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
-
-/// The unit square or cube with fractures at y = 1/2, "a", and x = 1/2, "b"; closed on all sides.
-model::Scene closed_box(const std::string& cell, bool with_b = true, int n = 4) {
-  const bool flat = is_flat(cell);
-  auto scene = read_scene(flat ? "flow/source_2d.xml" : "flow/source_3d.xml");
-  scene.mesh.cell = cell;
-  for (int& count : scene.mesh.cells) count = n;
-  using Corner = std::vector<Real>;
-  scene.mesh.fractures["a"] = {flat ? Corner{0, 0.5} : Corner{0, 0.5, 0}, flat ? Corner{1, 0.5} : Corner{1, 0.5, 1}};
-  if (with_b)
-    scene.mesh.fractures["b"] = {flat ? Corner{0.5, 0} : Corner{0.5, 0, 0}, flat ? Corner{0.5, 1} : Corner{0.5, 1, 1}};
-  auto& joint = scene.materials["joint"];
-  joint.type = "joint";
-  joint.initial_aperture = aperture;
-  for (const auto& [name, fracture] : scene.mesh.fractures) scene.fractures[name].material = "joint";
-  scene.flow->source = 0;
-  scene.flow->viscosity = viscosity;
-  scene.boundary_conditions.clear();
-  return scene;
-}
-
-/// A pressure on one side, of the rock and of fractures that end there, or of a fracture alone.
-void hold(model::Scene& scene, const std::string& side, const std::string& pressure, const std::string& fracture = "") {
-  auto& condition = scene.boundary_conditions[side];
-  condition.boundary = side;
-  condition.pressure = base::Expression(pressure);
-  if (!fracture.empty()) condition.fracture = fracture;
-}
-
-/// What flows in at a side with a prescribed pressure. Collective.
-Real inflow(model::Model& model, const std::string& condition) {
-  for (const auto& reaction : model.system().reactions(model.state()))
-    if (reaction.condition == condition) return reaction.force.at(0);
-  ADD_FAILURE() << condition;
-  return 0;
-}
-
-/// The largest difference from an exact vector or number on owned entities, over all ranks.
-template <class Exact>
-Real error(model::Model& model, const std::string& output, const Exact& exact) {
-  const auto field = model.output(output);
-  const auto& mesh = model.mesh();
-  Real here = 0, all = 0;
-  for (std::size_t e = 0; e < field.values.size() / field.n_components; ++e) {
-    Vector3 x{};
-    const auto cell = static_cast<LocalIndex>(e);
-    const int n = mesh::n_corners(mesh.shape);
-    for (int k = 0; k < n && field.entity == fields::Entity::cell; ++k)
-      for (int i = 0; i < mesh.dim(); ++i) x[i] += mesh.coordinates[mesh.cells[cell * n + k] * mesh.dim() + i] / n;
-    if (field.entity == fields::Entity::fracture_face) x = mesh.fracture_faces[e].centre;
-    const auto value = exact(x, field.entity == fields::Entity::fracture_face ? mesh.fracture_faces[e].frame[0] : x);
-    for (int c = 0; c < field.n_components; ++c)
-      here = std::max(here, std::abs(field.values[e * field.n_components + c] - value[c]));
-  }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &all);
-  return all;
-}
 
 /// Linear pressure in a network whose fractures all end on the boundary, under gravity, with any transmissivity: in
 /// rock q = -k/mu (G - rho g), in fractures the part along them, times the aperture.
@@ -188,33 +126,6 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
       const auto p = [&](const auto& x, const auto&) { return Vector3{7 + 3 / 0.25 + slope * (1 - x[0])}; };
       EXPECT_LT(error(model, in_fracture ? "fracture pressure" : "pressure", p), 1e-7) << cell << in_fracture;
     }
-}
-
-/// What is put into a fracture in a closed box is stored there and in the rock.
-TEST(FractureFlow, StoresWhatIsPutIn) {
-  for (const std::string cell : all_cells) {
-    auto scene = closed_box(cell);
-    scene.flow->compressibility = 0.5;
-    scene.materials.at("rock").compressibility = 0.3;
-    scene.materials.at("joint").initial_aperture = 0.2;
-    scene.materials.at("joint").normal_permeability = 0.01;
-    scene.fractures.at("a").source = base::Expression("2*t");
-    model::Model model(scene, Tpetra::getDefaultComm());
-    Real put_in = 0;
-    for (const Real t : {0.5, 0.75, 1.5}) {
-      const Real before = model.time();
-      ASSERT_TRUE(model.step_to(t).converged) << cell;
-      put_in += 2 * t * (t - before);
-      const auto& mesh = model.mesh();
-      Real here = 0, all = 0;
-      const auto rock = model.output("pressure").values, fracture = model.output("fracture pressure").values;
-      const Real volume = 1.0 / static_cast<Real>(mesh.n_global_cells);  // all cells have the same
-      for (const Real p : rock) here += 0.3 * volume * p;
-      for (std::size_t f = 0; f < fracture.size(); ++f) here += 0.5 * 0.2 * mesh.fracture_faces[f].area * fracture[f];
-      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-      EXPECT_NEAR(all, put_in, 1e-11) << cell;
-    }
-  }
 }
 
 }  // namespace
