@@ -168,7 +168,23 @@ Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
     }
     return {table.finish(), width};
   }
-  SPREKK_CHECK(loop == Loop::cells, "field {}: no stencil in a loop over fracture faces", field.name);
+  if (loop == Loop::fracture_sides || loop == Loop::tip_sides) {
+    const auto sides = fracture_sides(mesh);
+    const auto selected = sides_of(mesh, loop);
+    TableBuilder table(selected.size(), 1);
+    for (LocalIndex s : selected) {
+      const auto [f, side] = sides[s];
+      table.add((on_cells ? mesh.fracture_faces[f].cell[side] : mesh.facets->fracture_face[f]) * width);
+    }
+    return {table.finish(), width};
+  }
+  if (on_cells && loop == Loop::tip_cells) {
+    const auto cells = tip_cells(mesh);
+    TableBuilder table(cells.size(), 1);
+    for (LocalIndex cell : cells) table.add(cell * width);
+    return {table.finish(), width};
+  }
+  SPREKK_CHECK(loop == Loop::cells, "field {}: no stencil in this loop", field.name);
   TableBuilder table(mesh.n_cells(), on_cells ? 1 : n_faces);
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
     if (on_cells) table.add(cell * width);
@@ -186,9 +202,11 @@ Stencil face_stencil(const mesh::Mesh& mesh, Loop loop, int n_components) {
     for (LocalIndex s : selected) table.add(sides[s][0] * n_components + (two_sided ? sides[s][1] * mesh.dim() : 0));
     return {table.finish(), two_sided ? mesh.dim() : n_components};
   }
-  SPREKK_CHECK(loop == Loop::fracture_faces, "a field on fracture faces is out of reach of a loop over cells");
-  TableBuilder table(mesh.n_owned_fracture_faces, 1);
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) table.add(f * n_components);
+  SPREKK_CHECK(loop == Loop::fracture_faces || loop == Loop::fracture_cells,
+               "a field on fracture faces is out of reach of a loop over cells");
+  const LocalIndex n = loop == Loop::fracture_faces ? mesh.n_owned_fracture_faces : mesh.n_fracture_faces();
+  TableBuilder table(n, 1);
+  for (LocalIndex f = 0; f < n; ++f) table.add(f * n_components);
   return {table.finish(), n_components};
 }
 

@@ -37,11 +37,12 @@ bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 /// | loop                      | node field                           | fracture-face field                         |
 /// | cells, tip_cells          | the cell's nodes                     | -                                           |
 /// | fracture_sides, tip_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
-/// | fracture_faces            | face nodes of side minus, then plus  | all components                              |
+/// | fracture_faces, fracture_cells | face nodes of side minus, then plus; - | all components                   |
 /// | boundary_faces            | the face's nodes                     | -                                           |
 ///
-/// A field on cells has one group in cells and boundary_faces, that of the cell; one on facets all of the cell's, or
-/// the face's; in fracture_faces the face itself, in fracture_cells the face, then its ridges.
+/// A field on cells has one group in cells, tip_cells, boundary_faces and on sides, that of the cell; one on facets all
+/// of the cell's, or the face's; on sides and in fracture_faces the fracture face itself, in fracture_cells the face,
+/// then its ridges.
 ///
 /// A two-sided field has 2 dim components per face: those of side minus, then those of side plus. A field on enriched
 /// nodes is a node field, absent (first = -1) on nodes that are not enriched, and on faces without a tip: there

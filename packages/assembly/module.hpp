@@ -34,8 +34,10 @@ struct Unknown {
   fields::Field field;
   Quantity value, row;  ///< what the unknown and its equation are measured in
   NearNullSpace near_null_space = NearNullSpace::none;
-  std::string local_group = "";  ///< fields with one group name are eliminated together, entity by entity; "" stays
-  std::string enriches = "";     ///< the field that a field on enriched nodes adds to: zero where that is prescribed
+  std::string local_group = "";     ///< fields with one group name are eliminated together, entity by entity; "" stays
+  std::string enriches = "";        ///< the field that a field on enriched nodes adds to: zero where that is prescribed
+  std::string condensed_into = "";  ///< of a field whose unknowns hardly couple among themselves: the one that they
+                                    ///< couple to, from which preconditioners eliminate it
 };
 
 /// Rows that the module adds to in a loop, and the fields that those rows then depend on.
@@ -67,6 +69,7 @@ struct Declaration {
   std::vector<Coupling> couplings;
   std::vector<History> history;
   std::vector<OutputField> outputs;  ///< without values
+  std::vector<std::string> schur;    ///< the fields that add_schur() adds to
   bool linear =
       false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
 };
@@ -132,10 +135,15 @@ class Module {
   virtual Real fluid_load(Real t) const { return 0; }
   /// The residual at x = 0 is the same at all times.
   virtual bool constant_load() const { return true; }
+  /// Sets unknowns [field](owned unknown) of the initial state that are known to differ from zero.
+  virtual void initial(const Rows& x) const {}
   /// Called at the start of a step, before any residual at its end t.
   virtual void set_time(Real t, const Scales& scales) {}
   /// Moves the histories on to `state`.
   virtual void commit(State& state) const {}
+  /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
+  /// Schur complement, for preconditioners and for sizes of rows.
+  virtual void add_schur(const State& state, const Rows& diagonals) const {}
   /// Appends measures that see what |residual| cannot, as maxima over this rank.
   virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
   /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows; without them 1/|diagonal| is taken.
@@ -144,7 +152,8 @@ class Module {
   virtual void states(const State& state, std::vector<char>& states) const {}
   /// Adds to the grips [owned fracture face] how the module makes the sides of faces hold each other at `state`.
   virtual void grip(const State& state, std::vector<Grip>& grips) const {}
-  /// After elimination of the local groups, the Jacobian at `state` is symmetric as far as this rank's part goes.
+  /// After elimination of the local groups, blocks on the diagonal of the Jacobian at `state` are symmetric as far as
+  /// this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }
   /// Fills the values of the declared outputs, in their order, from a committed state. Local.
   virtual void output(const State& state, std::vector<OutputField>& fields) const {}

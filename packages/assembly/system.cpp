@@ -140,13 +140,23 @@ void System::declare_fields() {
     const auto& layout = layouts_[b];
     fields::Block block{layout.field().name, layout.owned(), layout.field().n_components, 1, 1, {}, {}};
     block.enriches = unknowns_[b].enriches;
+    block.condensed_into = unknowns_[b].condensed_into;
     if (unknowns_[b].near_null_space != NearNullSpace::none) set_multigrid(unknowns_[b], layout, block);
     blocks_.push_back(block);
     ghosted_.push_back(rcp(new Vector(layout.ghosted())));
     weights_.push_back(rcp(new Vector(layout.owned())));
     diagonals_.push_back(rcp(new Vector(layout.owned())));
+    schur_.push_back(Teuchos::null);
     load_.push_back(rcp(new Vector(layout.owned())));
   }
+  for (const auto& declaration : declarations_)
+    for (const auto& name : declaration.schur)
+      if (auto& schur = schur_[Context(mesh_, geometry_, layouts_).field(name)]; schur.is_null())
+        schur = rcp(new Vector(layouts_[Context(mesh_, geometry_, layouts_).field(name)].owned()));
+  const auto has = [&](Quantity value) {
+    return std::any_of(unknowns_.begin(), unknowns_.end(), [&](const auto& u) { return u.value == value; });
+  };
+  coupled_ = has(Quantity::length) && has(Quantity::pressure);
   face_area_ = typical_face_area(*mesh_);
 }
 
@@ -323,6 +333,8 @@ bool System::linear_part_is_invariant() const {
 BlockVector System::initial() const {
   BlockVector x;
   for (const auto& block : blocks_) x.push_back(rcp(new Vector(block.map)));
+  const auto views = rows(x);
+  for (const auto& module : modules_) module->initial(views);
   return x;
 }
 

@@ -43,7 +43,8 @@ class System : public fields::BlockProblem {
   void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
   void jacobian(const fields::BlockVector& x) override;
   const fields::BlockMatrix& matrix() const override { return matrix_; }
-  bool symmetric() const override { return symmetric_; }
+  bool symmetric() const override { return symmetric_ && !coupled_; }
+  bool symmetric_blocks() const override { return symmetric_; }
   ConstView<char*> constrained(int block) const override { return constraints_[block].mask(); }
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
@@ -51,6 +52,7 @@ class System : public fields::BlockProblem {
   std::vector<char> states(const fields::BlockVector& x) override;  ///< [owned fracture face]
   std::string where(const std::vector<char>& flagged) override;
   RCP<const fields::Vector> proximal(int block) const override;
+  RCP<const fields::Vector> schur(int block) const override { return schur_[block]; }
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
@@ -58,7 +60,7 @@ class System : public fields::BlockProblem {
   bool calibrate(const fields::BlockVector& x, bool first) override;
   bool settle(fields::BlockVector& x) override;
 
-  /// Zero displacement, zero traction. [block]
+  /// Zero but for what modules know of the initial state. [block]
   fields::BlockVector initial() const;
   /// Everything the modules can show of the last committed state x.
   std::vector<OutputField> outputs(const fields::BlockVector& x);
@@ -116,6 +118,7 @@ class System : public fields::BlockProblem {
   int calibration_class(const Grip& grip) const;
   void correct_augmentation(const std::vector<Grip>& grips);
   void find_loose();
+  void find_schur();
   /// Adds to dx what of a motion brings the forces along it into balance; with `mode`, of its opposite too. Empty, or
   /// the part that finds no resistance: it goes a little way then, as a mode none.
   std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
@@ -137,18 +140,19 @@ class System : public fields::BlockProblem {
   std::vector<char> needs_ghosts_;                  // [block]
   fields::BlockVector ghosted_;                     // [block] unknowns with ghosts
   fields::BlockVector weights_;                     // [block] of merit()
-  fields::BlockVector diagonals_;                   // [block] of linear_
-  fields::BlockVector load_;                        // [block] residual of the linear modules at x = 0, time t_
-  std::unique_ptr<LoosePieces> loose_;              // null without displacement, or where modules hold bodies
-  std::vector<Grip> grips_;                         // of the last calibrate()
-  ConstView<Real*> augmentation_;                   // [owned fracture face] factor of the face law's constant
-  std::vector<Real> calibration_;                   // [class of faces] that factor; 0: not yet compared with the rock
-  RCP<fields::Vector> committed_;                   // displacement; null: not needed
-  RCP<fields::Vector> deformation_;                 // ghosted displacement without rigid motions; null: not needed
-  LoosePieces::Motion driven_;                      // where forces out of balance move what is loose, if they do
-  int displacement_ = -1;                           // its block
-  fields::BlockMatrix linear_;                      // what the linear modules write
-  fields::BlockMatrix matrix_;                      // df/dx; shares the blocks that only linear modules write
+  fields::BlockVector diagonals_;       // [block] of linear_; where rock and fluid couple, of flow: of matrix_
+  fields::BlockVector schur_;           // [block] of the last jacobian(); null: none
+  fields::BlockVector load_;            // [block] residual of the linear modules at x = 0, time t_
+  std::unique_ptr<LoosePieces> loose_;  // null without displacement, or where modules hold bodies
+  std::vector<Grip> grips_;             // of the last calibrate()
+  ConstView<Real*> augmentation_;       // [owned fracture face] factor of the face law's constant
+  std::vector<Real> calibration_;       // [class of faces] that factor; 0: not yet compared with the rock
+  RCP<fields::Vector> committed_;       // displacement; null: not needed
+  RCP<fields::Vector> deformation_;     // ghosted displacement without rigid motions; null: not needed
+  LoosePieces::Motion driven_;          // where forces out of balance move what is loose, if they do
+  int displacement_ = -1;               // its block
+  fields::BlockMatrix linear_;          // what the linear modules write
+  fields::BlockMatrix matrix_;          // df/dx; shares the blocks that only linear modules write
   Reference reference_;
   Scales scales_;
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
@@ -157,6 +161,8 @@ class System : public fields::BlockProblem {
   RCP<base::Timers> timers_;
   Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;
+  bool coupled_ = false;  // fluid and rock move each other
+  bool sized_ = false;    // diagonals_ of flow are those of this step's first Jacobian, with schur_
 };
 
 }  // namespace sprekk::assembly

@@ -99,6 +99,10 @@ void System::update_scales(Real t) {
   scales_.stress = std::max({scales_.stress, all[1], E * all[0] / L, 1e-12 * E});
   scales_.length = std::max({scales_.length, all[0], scales_.stress * L / E});
   scales_.pressure = std::max({scales_.pressure, all[2], 1e-12 * E});
+  if (coupled_) {
+    scales_.pressure = scales_.stress = std::max(scales_.pressure, scales_.stress);
+    scales_.length = std::max(scales_.length, scales_.stress * L / E);
+  }
   const auto scale = [&](Quantity q) {
     switch (q) {
       case Quantity::length:
@@ -112,7 +116,8 @@ void System::update_scales(Real t) {
       case Quantity::pressure:
         return scales_.pressure;
       default:
-        return reference_.mobility * scales_.pressure / L * face_area_;
+        return (reference_.mobility * scales_.pressure / L + (coupled_ && dt_ > 0 ? scales_.length / dt_ : 0)) *
+               face_area_;
     }
   };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -125,6 +130,7 @@ void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
   t_ = t;
   dt_ = dt;
+  sized_ = false;
   update_scales(t);
   bool changes = !loaded_;
   base::collectively(*comm(), [&] {
@@ -198,7 +204,24 @@ void System::jacobian(const BlockVector& x) {
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &asymmetric, &anywhere);
   symmetric_ = !anywhere;
+  find_schur();
   find_loose();
+}
+
+void System::find_schur() {
+  Rows sums;
+  for (const auto& schur : schur_) {
+    if (!schur.is_null()) schur->putScalar(0);
+    sums.push_back(schur.is_null() ? View<Real*>() : owned_view(*schur));
+  }
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
+  for (std::size_t b = 0; b < blocks_.size() && coupled_ && !sized_; ++b)  // rates are no part of the linear one
+    if (unknowns_[b].row == Quantity::flow) {
+      matrix_(b, b)->getLocalDiagCopy(*diagonals_[b]);
+      if (!schur_[b].is_null()) diagonals_[b]->update(1, *schur_[b], 1);
+    }
+  sized_ = true;
 }
 
 /// Of an accepted state, what modules do not keep as histories.
@@ -238,12 +261,14 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto diagonal = const_view(*diagonals_[b]);
     const Real rounding_of_block = rounding(x, unknowns_[b].value);
     const bool of_flow = unknowns_[b].row == Quantity::flow;  // some rows let much less through than others
+    const Real moved = of_flow && coupled_ ? rounding(x, Quantity::length) * face_area_ / dt_ : 0;
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real noise = mask(i) ? 0 : rounding_of_block * diagonal(i), size_of_row = row(i) < 0 ? -row(i) : row(i);
+          const Real noise = mask(i) ? 0 : rounding_of_block * diagonal(i) + moved,
+                     size_of_row = row(i) < 0 ? -row(i) : row(i);
           const Real weak = of_flow ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
@@ -271,16 +296,17 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const auto row = const_view(*r[b]);
     const auto weight = const_view(*weights_[b]);
     const auto diagonal = const_view(*diagonals_[b]);
-    const Real of_flow = unknowns_[b].row == Quantity::flow ? rounding(x, unknowns_[b].value) : 0;
+    const bool flows = unknowns_[b].row == Quantity::flow, powers = flows && coupled_;
+    const Real of_flow = flows ? rounding(x, unknowns_[b].value) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
           const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * diagonal(i);
-          if (!mask(i) && !(size <= 0)) s += weight(i) * size * size;
+          if (!mask(i) && !(size <= 0)) s += (powers ? 1 / diagonal(i) : weight(i)) * size * size;
         },
         part);
-    sum += part;
+    sum += powers ? dt_ * part : part;  // the energy of a power
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 1, &sum, &total);
   return total;

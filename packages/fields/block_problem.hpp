@@ -22,7 +22,8 @@ struct Block {
   /// Of order 2: from the unknowns of order 1 that multigrid starts from, and that coordinates and near_null_space
   /// belong to, to those of the block. Null: multigrid starts from the block itself.
   RCP<const CrsMatrix> interpolation = {};
-  std::string enriches = "";  ///< the block whose functions it adds to; multigrid on that one does without it
+  std::string enriches = "";        ///< the block whose functions it adds to; multigrid on that one does without it
+  std::string condensed_into = "";  ///< its own matrix is about diagonal: preconditioners eliminate it from this block
 };
 
 /// Blocks whose unknowns couple only within one entity among themselves, so that they can be eliminated entity by
@@ -63,6 +64,8 @@ class BlockProblem {
   virtual const BlockMatrix& matrix() const = 0;
   /// The present matrix() is symmetric after elimination of the local groups.
   virtual bool symmetric() const = 0;
+  /// Its blocks on the diagonal are.
+  virtual bool symmetric_blocks() const { return symmetric(); }
   /// The owned unknowns of a block whose value is prescribed: 1, else 0. [owned unknown]
   virtual ConstView<char*> constrained(int block) const = 0;
 
@@ -73,6 +76,9 @@ class BlockProblem {
   /// A positive diagonal of a block [owned unknown] that linear solves add to the Jacobian of the last jacobian(), so
   /// that it is regular also where bodies are free to move; null where none is needed. Solutions do not depend on it.
   virtual RCP<const Vector> proximal(int block) const { return Teuchos::null; }
+  /// About what elimination of all other blocks adds to the diagonal of a block [owned unknown] in the Jacobian of the
+  /// last jacobian(), for preconditioners; null where that is nothing.
+  virtual RCP<const Vector> schur(int block) const { return Teuchos::null; }
   /// For a step dx from the x of the last jacobian(): replaces its share of motions that nothing resists, whose length
   /// means nothing, by one after which something does. Empty, or which body finds no resistance wherever it goes.
   virtual std::string balance(const BlockVector& x, BlockVector& dx) { return ""; }

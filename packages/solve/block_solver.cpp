@@ -1,4 +1,4 @@
-// Multigrid for one block, Ifpack2 for another, and the sweep that joins them.
+// Multigrid for one block, Ifpack2 for another.
 #include <Ifpack2_Factory.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
 
@@ -208,37 +208,6 @@ class Relaxation : public BlockSolver {
   RCP<Ifpack2::Preconditioner<Real, LocalIndex, GlobalIndex>> relaxation_;
 };
 
-/// y = sum_r of the parts y_r = (s_r^2 A_rr)^-1 (x - A (y_1 + ... + y_(r-1)))_r.
-class BlockSweep : public Operator {
- public:
-  BlockSweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers)
-      : joined_(system.joined), A_(system.joined_operator()) {
-    for (const auto& solver : solvers) inverses_.push_back(solver->inverse());
-  }
-  RCP<const Map> getDomainMap() const override { return joined_->map(); }
-  RCP<const Map> getRangeMap() const override { return joined_->map(); }
-
-  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
-    MultiVector sum(y.getMap(), y.getNumVectors()), rest(x, Teuchos::Copy);
-    for (int r = 0; r < joined_->n_blocks(); ++r) {
-      if (r > 0) {
-        A_->apply(sum, rest);
-        rest.update(1, x, -1);
-      }
-      const auto from = rest.offsetView(joined_->map(r), joined_->first(r));
-      const auto to = sum.offsetViewNonConst(joined_->map(r), joined_->first(r));
-      inverses_[r]->apply(*from, *to);
-      to->scale(1 / (joined_->scale(r) * joined_->scale(r)));
-    }
-    y.update(alpha, sum, beta);
-  }
-
- private:
-  std::shared_ptr<const Joined> joined_;
-  RCP<const Operator> A_;
-  std::vector<RCP<const Operator>> inverses_;
-};
-
 }  // namespace
 
 bool takes_muelu(const ParameterList& muelu, const Block& block) {
@@ -263,10 +232,6 @@ RCP<BlockSolver> make_block_solver(const ParameterList& muelu, const Block& bloc
 RCP<BlockSolver> make_multigrid(const ParameterList& muelu, const Block& block) {
   if (!takes_muelu(muelu, block)) return rcp(new NodeMultigrid(block.name));
   return rcp(new MueLuMultigrid(block.name, multigrid_parameters(muelu, block)));
-}
-
-RCP<const Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers) {
-  return rcp(new BlockSweep(system, solvers));
 }
 
 }  // namespace sprekk::solve

@@ -1,4 +1,4 @@
-// Approximate inverses of single blocks, and of several by a sweep over them: the preconditioners of Krylov's method.
+// Approximate inverses of single blocks: the preconditioners of Krylov's method.
 #pragma once
 
 #include "solve/linear_solver.hpp"
@@ -41,8 +41,5 @@ RCP<BlockSolver> make_multigrid(const Teuchos::ParameterList& muelu, const Block
 
 /// All that MueLu is told of a block.
 Teuchos::ParameterList multigrid_parameters(const Teuchos::ParameterList& muelu, const Block& block);
-
-/// One sweep of block Gauss-Seidel over the system with these solvers, [block].
-RCP<const fields::Operator> make_block_sweep(const LinearSystem& system, const std::vector<RCP<BlockSolver>>& solvers);
 
 }  // namespace sprekk::solve

@@ -47,7 +47,11 @@ LinearSystem CondensedSolve::system() {
   const bool with_bulk = !problem_.local_groups().empty();
   const auto blocks = remaining();
   for (int r = 0; r < static_cast<int>(blocks.size()); ++r) {
-    system.diagonal.push_back({blocks[r], elimination_.condensed(r, r), {}, symmetric_});
+    system.diagonal.push_back({blocks[r],
+                               elimination_.condensed(r, r),
+                               {},
+                               problem_.symmetric_blocks(),
+                               problem_.schur(elimination_.remaining()[r])});
     // of displacements, whose aggregates must not cross fractures; other fields couple by what was eliminated
     if (with_bulk && !blocks[r].near_null_space.is_null())
       system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };

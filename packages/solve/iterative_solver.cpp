@@ -8,6 +8,7 @@
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
+#include "solve/families.hpp"
 #include "solve/fine_level.hpp"
 #include "solve/multigrid.hpp"
 
@@ -117,10 +118,10 @@ class IterativeSolver : public LinearSolver {
   /// Multigrid of an earlier matrix stays, as long as solves with it are worth it.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
-    kept_ = !renew_ && !preconditioner_.is_null() && solvers_.size() <= 1 && system.symmetric == system_.symmetric &&
+    kept_ = !renew_ && !preconditioner_.is_null() && !families_ && system.symmetric == system_.symmetric &&
             !system.diagonal.front().matrix.is_null() && n_changed(*system.diagonal.front().matrix) <= most_changed;
     system_ = system;
-    symmetric_ = system.symmetric && solvers_.size() <= 1;  // a sweep over blocks is not symmetric
+    symmetric_ = system.symmetric && !families_;  // a sweep over families is not symmetric
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
     set_scale();
@@ -149,16 +150,14 @@ class IterativeSolver : public LinearSolver {
 
   std::vector<SolverCost> costs() const override {
     if (fine_level_) return {*fine_cost_, fine_level_->order_one_cost()};
-    std::vector<SolverCost> all;
-    for (const auto& solver : solvers_)
-      for (const auto& cost : solver->costs()) all.push_back(cost);
-    return all;
+    if (families_) return families_->costs();
+    return solver_.is_null() ? std::vector<SolverCost>() : solver_->costs();
   }
 
  private:
   void set_scale() {
     const auto& first = system_.diagonal.front();
-    const bool scalar = solvers_.size() == 1 && first.block.n_components == 1 && first.block.near_null_space.is_null();
+    const bool scalar = !solver_.is_null() && first.block.n_components == 1 && first.block.near_null_space.is_null();
     scale_ = scalar ? root_of_diagonal(*first.matrix, false) : Teuchos::null;
     if (!scalar) return;
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
@@ -216,14 +215,17 @@ class IterativeSolver : public LinearSolver {
 
   void make_solvers(const std::vector<Block>& blocks) {
     blocks_ = blocks;
-    solvers_.clear();
+    solver_.reset();
     fine_level_.reset();
+    families_.reset();
     if (have_fine_level(blocks)) {
       fine_level_ = std::make_unique<FineLevel>(muelu_, blocks);
       fine_cost_ = std::make_shared<SolverCost>();
       fine_cost_->name = fmt::format("fine level of '{}'", blocks.front().name);
+    } else if (blocks.size() == 1) {
+      solver_ = make_block_solver(muelu_, blocks.front());
     } else {
-      for (const auto& block : blocks) solvers_.push_back(make_block_solver(muelu_, block));
+      families_ = std::make_unique<Families>(muelu_, blocks);
     }
   }
 
@@ -247,8 +249,10 @@ class IterativeSolver : public LinearSolver {
       diagonal_ = rcp(new Vector(first->getRowMap()));
       first->getLocalDiagCopy(*diagonal_);
     }
-    for (std::size_t r = 0; r < solvers_.size() && failure_.empty() && !kept_; ++r)
-      prepare(system_.diagonal[r].block.name, [&] { solvers_[r]->setup(system_.diagonal[r]); });
+    if (!solver_.is_null() && !kept_)
+      prepare(system_.diagonal.front().block.name, [&] { solver_->setup(system_.diagonal.front()); });
+    for (int f = 0; families_ && f < families_->n() && failure_.empty(); ++f)
+      prepare(families_->name(f), [&] { families_->setup(f, system_); });
     if (fine_level_)
       prepare(system_.diagonal.front().block.name,
               [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system_, kept_); }); });
@@ -260,7 +264,7 @@ class IterativeSolver : public LinearSolver {
       ++fine_cost_->n_setups;
       preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
     } else if (!kept_) {
-      preconditioner_ = solvers_.size() == 1 ? solvers_.front()->inverse() : make_block_sweep(system_, solvers_);
+      preconditioner_ = families_ ? families_->sweep(system_) : solver_->inverse();
     }
   }
 
@@ -324,8 +328,9 @@ class IterativeSolver : public LinearSolver {
   ParameterList muelu_, parameters_;
   std::unique_ptr<LinearSolver> coarse_;
   std::vector<Block> blocks_;
-  std::vector<RCP<BlockSolver>> solvers_;  // [block], or
-  std::unique_ptr<FineLevel> fine_level_;  // of all blocks
+  RCP<BlockSolver> solver_;                // of the only block, or
+  std::unique_ptr<FineLevel> fine_level_;  // of all blocks, or
+  std::unique_ptr<Families> families_;     // of several
   std::shared_ptr<SolverCost> fine_cost_;
   RCP<const Comm> comm_;
   RCP<const Operator> matrix_;

@@ -55,6 +55,7 @@ struct DiagonalBlock {
   /// Makes it without what crosses interfaces, on the same graph, by whose values multigrid aggregates; or empty.
   std::function<RCP<CrsMatrix>()> bulk;
   bool symmetric = true;
+  RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
 };
 
 /// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.
