@@ -12,6 +12,7 @@
 #include "physics/fluid_storage.hpp"
 #include "physics/fracture_flow.hpp"
 #include "physics/mechanics.hpp"
+#include "physics/poroelastic_coupling.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -155,7 +156,7 @@ assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh
 }
 
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  if (scene.flow) return reference_of_flow(scene, mesh);
+  if (!scene.deforms()) return reference_of_flow(scene, mesh);
   Real here = 0, modulus = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
@@ -163,7 +164,7 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
     here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  return {modulus, mesh::largest_extent(mesh)};
+  return {modulus, mesh::largest_extent(mesh), scene.flow ? reference_of_flow(scene, mesh).mobility : 0};
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -205,11 +206,27 @@ std::vector<physics::FluidCondition> fluid_conditions(const Scene& scene, const 
   return conditions;
 }
 
-std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh) {
+/// The values of owned fracture faces and of ghosts. Collective.
+std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& owned) {
+  const fields::Layout layout({"value", fields::Entity::fracture_face, 1, ""}, mesh);
+  fields::Vector from(layout.owned()), to(layout.ghosted());
+  const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
+  to.doImport(from, *layout.import(), Tpetra::REPLACE);
+  const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<Real> values;
+  for (std::size_t f = 0; f < all.extent(0); ++f) values.push_back(all(f, 0));
+  return values;
+}
+
+/// `initial_jumps` [local fracture face], along the normal; empty: zero.
+std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh,
+                                                         const std::vector<Real>& initial_jumps = {}) {
   const auto& flow = *scene.flow;
   const auto rock = mobility(scene, mesh);
   physics::DarcyFlowParameters darcy{rock.values, rock.number};
   darcy.scheme = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
+  darcy.deforms = scene.deforms();
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
@@ -219,13 +236,16 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   });
   physics::FractureFlowParameters fractures{{},          {},           darcy.scheme,
                                             darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true)};
+  fractures.widens = scene.deforms();
   std::vector<Real> aperture;
-  for (const auto& face : mesh.fracture_faces) {
+  for (std::size_t f = 0; f < mesh.fracture_faces.size(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
     const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
     const auto hydraulics = at_place(scene, joint, [&] { return joint.hydraulics(flow.viscosity, face.centre); });
     fractures.faces.push_back(hydraulics.along);
+    if (!initial_jumps.empty()) fractures.faces.back().aperture += initial_jumps[f];
     darcy.exchange.push_back(hydraulics.exchange);
-    aperture.push_back(hydraulics.along.aperture);
+    aperture.push_back(fractures.faces.back().hydraulic_aperture());
   }
   for (const auto& name : mesh.fracture_names) fractures.source.push_back(scene.fractures.at(name).source);
   std::vector<std::unique_ptr<assembly::Module>> modules;
@@ -236,25 +256,58 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
     modules.push_back(physics::make_fluid_storage({pores, {}, fluid, flow.initial_pressure}));
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(physics::make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (flow.compressibility > 0)
-    modules.push_back(physics::make_fracture_storage({aperture, fluid, flow.initial_pressure}));
+  if (flow.compressibility > 0 || scene.deforms())
+    modules.push_back(physics::make_fracture_storage({aperture, fluid, flow.initial_pressure, scene.deforms()}));
   return modules;
 }
 
-}  // namespace
+/// What mechanics and flow are to each other.
+std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto rock = elasticity(scene, mesh);
+  const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
+  physics::PoroelasticCouplingParameters coupling;
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
+    const int region = mesh.cell_region[cell];
+    coupling.rock.push_back({biot[region], rock.values[rock.number.empty() ? region : rock.number[cell]]});
+    coupling.rock_of_cell.push_back(cell);
+  }
+  const auto flow = mobility(scene, mesh);
+  coupling.initial = scene.flow->initial_pressure;
+  coupling.scheme = physics::flux_scheme(scene.flow->scheme, mesh, flow.values, flow.number);
+  coupling.fractures = !mesh.fracture_names.empty();
+  coupling.tips = mesh.n_global_enriched > 0;
+  return physics::make_poroelastic_coupling(mesh.shape, std::move(coupling));
+}
 
-std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
-  if (scene.flow) return make_flow(scene, mesh);
+physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = elasticity(scene, mesh);
   physics::BulkMomentumParameters bulk{rock.values, body_force(scene, mesh), {}, scene.initial_stress(), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
                                 condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  if (mesh.fracture_names.empty()) return physics::make_mechanics(mesh, {bulk});
+  if (mesh.fracture_names.empty()) return {bulk};
   const auto joint = joints(scene, mesh);
-  return physics::make_mechanics(mesh, {bulk, joint.values, joint.number, scene.fluid_pressure(mesh.fracture_names),
-                                        scene.time.start, scene.augmentation});
+  physics::FluidPressure initial;
+  if (scene.flow) initial.value.assign(mesh.fracture_names.size(), scene.flow->initial_pressure);
+  return {bulk,    joint.values,           joint.number,     scene.fluid_pressure(mesh.fracture_names),
+          initial, scene.flow.has_value(), scene.time.start, scene.augmentation};
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
+  if (!scene.deforms()) return make_flow(scene, mesh);
+  physics::MechanicsParameters parameters;
+  base::collectively(*mesh.comm, [&] { parameters = mechanics(scene, mesh); });
+  auto modules = physics::make_mechanics(mesh, parameters);
+  if (!scene.flow) return modules;
+  std::vector<Real> widths;
+  for (const auto& jump : physics::initial_jumps(mesh, physics::jump_parameters(mesh, parameters)))
+    widths.push_back(jump[0]);
+  for (auto& module : make_flow(scene, mesh, with_ghosts(mesh, widths))) modules.push_back(std::move(module));
+  modules.push_back(make_coupling(scene, mesh));
+  return modules;
 }
 
 std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
@@ -362,11 +415,13 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {{"time", time_},
-                        {"dt", memory.dt},
-                        {"scales", {{"stress", memory.scales.stress}, {"length", memory.scales.length}}},
-                        {"calibration", memory.calibration},
-                        {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {
+      {"time", time_},
+      {"dt", memory.dt},
+      {"scales",
+       {{"stress", memory.scales.stress}, {"length", memory.scales.length}, {"pressure", memory.scales.pressure}}},
+      {"calibration", memory.calibration},
+      {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
 }
@@ -385,7 +440,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
   const auto& scales = content.at("scales");
   system_->resume(x_, {time_,
                        content.at("dt"),
-                       {scales.at("stress"), scales.at("length")},
+                       {scales.at("stress"), scales.at("length"), scales.at("pressure")},
                        content.value("calibration", std::vector<Real>())});
   start_solver();
 }

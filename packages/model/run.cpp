@@ -114,6 +114,13 @@ void describe(const Model& model, base::Log& log) {
              partition.fracture_faces[1], partition.fracture_face_imbalance, partition.edge_cut);
   log.info("linear solver: {}", model.newton().linear().solver().describe());
   if (const auto doubt = dilation_doubt(model.scene(), mesh); !doubt.empty()) log.warning("{}", doubt);
+  const auto& scene = model.scene();
+  for (const auto& [name, material] : scene.materials)
+    if (scene.flow && scene.deforms() && material.type == "elastic" && material.biot < material.porosity)
+      log.warning(
+          "{}: Sprekk > Materials > {} > \"Biot coefficient\": is {}, below the porosity {}; rock whose grains are "
+          "stiffer than its skeleton has more",
+          scene.origin, name, material.biot, material.porosity);
 }
 
 /// A line for each part of the preconditioner: what it has cost on this rank.

@@ -68,8 +68,14 @@ void Material::describe(base::Section& s) {
             "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ "
             "in 3D");
     s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
-    s.entry(compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
-            "growth of the porosity with the fluid's pressure");
+    s.entry(
+        compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
+        "growth of the porosity with the fluid's pressure; of rock that deforms: at constant strain, (Biot coefficient "
+        "- porosity)/bulk modulus of the grains");
+    s.entry(
+        biot, "Biot coefficient", "-", base::between(0, 1),
+        "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
+        "grow by alpha div u");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
     if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
@@ -170,8 +176,9 @@ Material::Hydraulics Material::hydraulics(Real viscosity, const Point& x) const 
                "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
                x[0], x[1], x[2]);
-  const Real k = tangential_permeability ? (*tangential_permeability)(x, 0) : a * a / 12;
-  return {{a, a * k / viscosity}, 2 * normal_permeability(x, 0) / (a * viscosity)};
+  const Real k = tangential_permeability ? (*tangential_permeability)(x, 0) : 0;
+  return {{initial_aperture(x, 0), residual_aperture(x, 0), k, viscosity},
+          2 * normal_permeability(x, 0) / (a * viscosity)};
 }
 
 physics::JointParameters Material::joint(const Point& x) const {
@@ -226,8 +233,6 @@ void Flow::describe(base::Section& s) {
            "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
            "orthogonal, else mimetic");
   check_constant_in_time(s, "initial pressure", initial_pressure);
-  if (s.complete() && !rigid_rock)
-    s.fail("rigid rock", "must be true: flow through rock that deforms is not available yet");
 }
 
 void Region::describe(base::Section& s) {

@@ -35,6 +35,7 @@ struct Material {
   std::optional<Value> density;              ///< needed with gravity
   std::vector<Value> permeability;           ///< one value, or those of a tensor; needed with flow
   Real porosity = 0, compressibility = 0;    ///< of rock
+  Real biot = 1;                             ///< coefficient of rock
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
@@ -55,7 +56,7 @@ struct Material {
   laws::Mobility mobility(int dim, Real viscosity, const Point& x) const;
   /// Of the flow in and through a joint with sides at rest.
   struct Hydraulics {
-    physics::FractureFlowParameters::Face along;
+    laws::Conduit along;
     Real exchange;  ///< of each side, 2 k_n/(a mu), m/(Pa s)
   };
   Hydraulics hydraulics(Real viscosity, const Point& x) const;

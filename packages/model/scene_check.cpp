@@ -129,7 +129,7 @@ class Comparison {
     if (scene_.deforms() && !joint.friction_coefficient && !joint.friction_angle)
       fail(place, "give either \"friction coefficient\" or \"friction angle\"");
     const auto zero = [](const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; };
-    if (scene_.flow && !scene_.deforms() && !zero(fracture.fluid_pressure))
+    if (scene_.flow && !zero(fracture.fluid_pressure))
       fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
     if (!scene_.flow && is_absent(draft_, "Flow") && !zero(fracture.source))
       fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
@@ -188,8 +188,8 @@ class Comparison {
     const auto& bulk = scene_.bulk;
     if (!scene_.deforms() && (!bulk.body_force.empty() || !bulk.initial_stress.empty() || bulk.lithostatic_stress))
       fail("Bulk", "has a force or stress of the rock, which \"Flow > rigid rock\" says does not deform");
-    if (scene_.output.error_estimate && !scene_.deforms())
-      fail("Output > \"error estimate\"", "is of stress and jumps; with \"Flow > rigid rock\" there are none");
+    if (scene_.output.error_estimate)
+      fail("Output > \"error estimate\"", "is of stress and jumps without a fluid; not available with \"Flow\"");
     compare_pressure();
     compare_fluid_conditions();
     for (const auto& name : names_.regions.value_or(Names()))
@@ -204,11 +204,12 @@ class Comparison {
       return c.pressure && !(c.conductance && c.conductance->is_constant() && (*c.conductance)({}, 0) == 0);
     });
     if (!names_.regions || !names_.fractures) return;
-    const bool in_fractures = !names_.fractures->empty() && scene_.flow->compressibility > 0;
+    const bool in_fractures = !names_.fractures->empty() && (scene_.flow->compressibility > 0 || scene_.deforms());
     const bool stored =
         in_fractures || std::any_of(names_.regions->begin(), names_.regions->end(), [&](const auto& name) {
           const auto* rock = rock_of(name);
-          return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0;
+          return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0 ||
+                 (scene_.deforms() && rock->biot > 0);
         });
     const bool known =
         is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));

@@ -29,7 +29,8 @@ class DarcyFlow final : public assembly::Module {
     using assembly::Quantity;
     assembly::Declaration d;
     assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, Quantity::pressure, Quantity::flow};
-    cells.local_group = "fluid in cells";
+    (parameters_.deforms ? cells.condensed_into : cells.local_group) =
+        parameters_.deforms ? "face pressure" : "fluid in cells";
     assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, Quantity::pressure, Quantity::flow};
     facets.near_null_space = assembly::NearNullSpace::constants;
     d.unknowns = {cells, facets};

@@ -16,6 +16,28 @@ using mesh::Shape;
 
 namespace {
 
+/// mean(sigma_0 n) + p n in the frames of owned faces, Pa; zero without initial stress.
+std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
+                                                   const ElasticPlasticJumpParameters& parameters) {
+  std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
+  const auto& stress = parameters.initial_stress;
+  const auto& fluid = parameters.fluid_pressure;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f)
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      const auto& face = mesh.fracture_faces[f];
+      const auto mean = mean_initial_traction<shape()>(stress, mesh, face, mesh::minus);
+      for (int k = 0; k < mesh.dim(); ++k)
+        for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i];
+      if (!fluid.empty())
+        tractions[f][0] += mean_fluid_pressure<shape()>(fluid, mesh, face, mesh::minus, parameters.start);
+    });
+  return tractions;
+}
+
+int joint_of(const ElasticPlasticJumpParameters& parameters, const mesh::Mesh& mesh, LocalIndex face) {
+  return parameters.joint_of_face.empty() ? mesh.fracture_faces[face].fracture : parameters.joint_of_face[face];
+}
+
 template <Shape shape, bool tips>
 class ElasticPlasticJump final : public assembly::Module {
  public:
@@ -42,6 +64,7 @@ class ElasticPlasticJump final : public assembly::Module {
         d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
     for (const char* name : {"opening", "slip", "aperture"}) d.outputs.push_back({name, "m", face, 1});
     for (const char* name : {"state", "slip tendency"}) d.outputs.push_back({name, "-", face, 1});
+    if (parameters_.holds_fluid) d.schur = {"face pressure"};
     return d;
   }
 
@@ -54,6 +77,7 @@ class ElasticPlasticJump final : public assembly::Module {
     op.damping = state.damping;
     faces_->add_jacobian(op, state, J);
   }
+  void initial(const assembly::Rows& x) const override;
   void commit(assembly::State& state) const override;
   void measure(const assembly::State& state, const assembly::Scales& scales,
                std::vector<fields::Measure>& measures) const override;
@@ -64,6 +88,7 @@ class ElasticPlasticJump final : public assembly::Module {
     for_each_face(state, [&](LocalIndex f, const Point& point) { states[f] = static_cast<char>(point.state); });
   }
   void grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const override;
+  void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override;
 
@@ -104,9 +129,7 @@ class ElasticPlasticJump final : public assembly::Module {
     return shares;
   }
 
-  int joint_of(LocalIndex face) const {
-    return parameters_.joint_of_face.empty() ? mesh_->fracture_faces[face].fracture : parameters_.joint_of_face[face];
-  }
+  int joint_of(LocalIndex face) const { return physics::joint_of(parameters_, *mesh_, face); }
   int elasticity_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
   }
@@ -120,6 +143,8 @@ class ElasticPlasticJump final : public assembly::Module {
   std::unique_ptr<assembly::Assembler<Op>> faces_;
   View<Real*> merit_weight_;   // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
   std::vector<Real> modulus_;  // [owned face] Young's, of the softer side, Pa
+  std::vector<Real> size_;     // [fracture] m
+  int pressure_ = -1;          // the block of face pressures, if it holds fluid
 };
 
 template <Shape shape, bool tips>
@@ -127,20 +152,21 @@ ConstView<Real**> ElasticPlasticJump<shape, tips>::initial_jump() const {
   if (parameters_.initial_stress.empty()) return {};
   View<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
   const auto host = Kokkos::create_mirror_view(rest);
-  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-    const auto& face = mesh_->fracture_faces[f];
-    const auto& law = parameters_.joints[joint_of(f)].law;
-    const auto mean = mean_initial_traction<shape>(parameters_.initial_stress, *mesh_, face, mesh::minus);
-    Real traction[dim] = {};
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) traction[k] += face.frame[k][i] * mean[i];
-    if (const auto& fluid = parameters_.fluid_pressure; !fluid.empty())
-      traction[0] += mean_fluid_pressure<shape>(fluid, *mesh_, face, mesh::minus, parameters_.start);
-    host(f, 0) = law.gap.initial + (traction[0] < 0 ? law.gap.closure(traction[0]) : 0);
-    for (int k = 1; k < dim; ++k) host(f, k) = law.elastic.compliance * traction[k];
-  }
+  const auto jumps = initial_jumps(*mesh_, parameters_);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+    for (int k = 0; k < dim; ++k) host(f, k) = jumps[f][k];
   Kokkos::deep_copy(rest, host);
   return rest;
+}
+
+/// That of the initial stress, where it presses.
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::initial(const assembly::Rows& x) const {
+  const auto traction = Kokkos::create_mirror_view(x[fields_[2]]);
+  const auto known = initial_tractions(*mesh_, parameters_);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+    for (int k = 0; k < dim; ++k) traction(f * dim + k) = known[f][0] < 0 ? known[f][k] : 0;
+  Kokkos::deep_copy(x[fields_[2]], traction);
 }
 
 template <Shape shape, bool tips>
@@ -148,6 +174,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
   if (tips) fields_.push_back(context.field("tip displacement"));
+  if (parameters_.holds_fluid) pressure_ = context.field("face pressure");
   using Assembler = assembly::Assembler<Op>;
   faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
                                        Assembler::Positions::keep);
@@ -167,7 +194,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   const auto number_h = Kokkos::create_mirror_view(number);
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
   const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
-  const auto extents = mesh::fracture_extents(*mesh_);
+  for (const auto& extents : mesh::fracture_extents(*mesh_)) size_.push_back(mesh::norm(extents));
   for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
   for (LocalIndex f = 0; f < n_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];
@@ -190,7 +217,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
       assembly::for_each_cell_point<shape>(
           *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
     }
-    augmentation_h(f) = parameters_.augmentation * modulus / mesh::norm(extents[face.fracture]);
+    augmentation_h(f) = parameters_.augmentation * modulus / size_[face.fracture];
     for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
   }
   Kokkos::deep_copy(frame, frame_h);
@@ -276,6 +303,20 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
   });
 }
 
+/// A fluid opens a fracture of size L by about L/E times its pressure where the sides do not touch.
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, const assembly::Rows& diagonals) const {
+  const auto rows = Kokkos::create_mirror_view(diagonals[pressure_]);
+  Kokkos::deep_copy(rows, diagonals[pressure_]);
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    if (point.state != ContactState::open) return;
+    const auto& face = mesh_->fracture_faces[f];
+    const Real softness = size_[face.fracture] / modulus_[f];
+    rows(mesh_->facets->fracture_face[f]) += face.area * softness / state.dt;
+  });
+  Kokkos::deep_copy(diagonals[pressure_], rows);
+}
+
 /// Sliding is the only source of non-symmetry.
 template <Shape shape, bool tips>
 bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) const {
@@ -319,6 +360,18 @@ void ElasticPlasticJump<shape, tips>::output(const assembly::State& state,
 }
 
 }  // namespace
+
+std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const ElasticPlasticJumpParameters& parameters) {
+  auto jumps = initial_tractions(mesh, parameters);
+  if (parameters.initial_stress.empty()) return jumps;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    const auto& law = parameters.joints[joint_of(parameters, mesh, f)].law;
+    const Real pressed = jumps[f][0];
+    jumps[f][0] = law.gap.initial + (pressed < 0 ? law.gap.closure(pressed) : 0);
+    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] *= law.elastic.compliance;
+  }
+  return jumps;
+}
 
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(Shape shape, ElasticPlasticJumpParameters parameters) {
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {

@@ -26,9 +26,13 @@ struct ElasticPlasticJumpParameters {
   /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
   Real augmentation = 0.3;
   FluidPressure fluid_pressure = {};
-  Real start = 0;     ///< time of the initial state, s
-  bool tips = false;  ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
+  Real start = 0;            ///< time of the initial state, s
+  bool tips = false;         ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
+  bool holds_fluid = false;  ///< of unknown pressure, "face pressure": given is what it is at the start
 };
+
+/// w_0 of make_elastic_plastic_jump in the frames of owned fracture faces, m.
+std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const ElasticPlasticJumpParameters& parameters);
 
 /// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its
 /// rows the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump

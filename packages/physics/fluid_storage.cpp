@@ -44,6 +44,25 @@ struct StorageCell {
   }
 };
 
+/// The same of a fracture face whose aperture is a_0 and a widening b, the second of x, m:
+/// r = |f| (a e - a_old e_old)/dt.
+/// | gained   | [owned face, 2] | Pa, m | p_old less that at the start, b_old                        |
+struct StorageFace : StorageCell {
+  using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
+  using Rows = assembly::Slots<assembly::Slot<1, 1>>;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[2], Real (&r)[1]) const {
+    const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
+    const Real a_old = porosity(e) + gained(e, 1), opened = x[1] - gained(e, 1);
+    const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
+    r[0] = volume(e) * rate * (a_old * fluid.density(old) * denser + opened * fluid.density(x[0]));
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
+    J[0][1] = volume(e) * rate * fluid.density(x[0]);
+    J[0][0] = J[0][1] * (porosity(e) + x[1]) * fluid.compressibility;
+  }
+};
+
 /// Of one entity.
 struct Stored {
   Real volume;
@@ -54,8 +73,11 @@ struct Stored {
 /// Finds what is stored in the entities of a loop, in their order.
 using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
 
+template <class Op>
 class FluidStorage final : public assembly::Module {
  public:
+  static constexpr int n = Op::Columns::size;  // of the history
+
   FluidStorage(std::string name, std::string field, fields::Entity entity, Loop loop, laws::Fluid fluid, Find find)
       : name_(std::move(name)), field_(std::move(field)), entity_(entity), loop_(loop), find_(std::move(find)) {
     op_.fluid = fluid;
@@ -66,7 +88,8 @@ class FluidStorage final : public assembly::Module {
   assembly::Declaration declare() const override {
     assembly::Declaration d;
     d.couplings = {{loop_, field_, {field_}}};
-    d.history = {{"gained pressure", entity_, 1}};
+    if (n == 2) d.couplings[0].columns.push_back("widening");
+    d.history = {{n == 1 ? "gained pressure" : "gained pressure, widening", entity_, n}};
     return d;
   }
 
@@ -84,8 +107,10 @@ class FluidStorage final : public assembly::Module {
     op_.porosity = assembly::to_device(porosity, "porosity");
     op_.growth = assembly::to_device(growth, "growth of pores");
     op_.initial = assembly::to_device(initial, "initial pressure");
-    assembler_ = std::make_unique<Assembler>(context, loop_, std::vector<int>{pressure_}, std::vector<int>{pressure_},
-                                             Assembler::Positions::keep);
+    std::vector<int> columns = {pressure_};
+    if (n == 2) columns.push_back(context.field("widening"));
+    assembler_ =
+        std::make_unique<Assembler>(context, loop_, std::vector<int>{pressure_}, columns, Assembler::Positions::keep);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -101,16 +126,17 @@ class FluidStorage final : public assembly::Module {
     const auto initial = op_.initial;
     const auto gained = state.history[0];
     assembler_->for_each(
-        op_, state, KOKKOS_LAMBDA(int e, const Real(&x)[1]) {
-          if (e < static_cast<int>(gained.extent(0))) gained(e, 0) = x[0] - initial(e);
+        op_, state, KOKKOS_LAMBDA(int e, const Real(&x)[n]) {
+          if (e >= static_cast<int>(gained.extent(0))) return;
+          for (int k = 0; k < n; ++k) gained(e, k) = k == 0 ? x[0] - initial(e) : x[k];
         });
   }
 
  private:
-  using Assembler = assembly::Assembler<StorageCell>;
+  using Assembler = assembly::Assembler<Op>;
 
-  StorageCell at(const assembly::State& state) const {
-    StorageCell op = op_;
+  Op at(const assembly::State& state) const {
+    Op op = op_;
     op.gained = state.history[0];
     op.rate = 1 / state.dt;
     return op;
@@ -122,7 +148,7 @@ class FluidStorage final : public assembly::Module {
   Find find_;
   int pressure_ = -1;
   Real largest_ = 0;  // initial pressure on this rank, Pa
-  StorageCell op_;
+  Op op_;
   std::unique_ptr<Assembler> assembler_;
 };
 
@@ -155,11 +181,13 @@ std::unique_ptr<assembly::Module> make_fluid_storage(FluidStorageParameters para
     });
     return stored;
   };
-  return std::make_unique<FluidStorage>("fluid storage", "pressure", fields::Entity::cell, Loop::cells, fluid, find);
+  return std::make_unique<FluidStorage<StorageCell>>("fluid storage", "pressure", fields::Entity::cell, Loop::cells,
+                                                     fluid, find);
 }
 
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
   const auto fluid = parameters.fluid;
+  const bool widens = parameters.widens;
   const auto find = [parameters = std::move(parameters)](const mesh::Mesh& mesh) {
     std::vector<Stored> stored;
     mesh::for_shape(mesh.shape, [&](auto shape) {
@@ -172,8 +200,11 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
     });
     return stored;
   };
-  return std::make_unique<FluidStorage>("fracture storage", "face pressure", fields::Entity::fracture_face,
-                                        Loop::fracture_faces, fluid, find);
+  const auto make = [&](auto op) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<FluidStorage<decltype(op)>>(
+        "fracture storage", "face pressure", fields::Entity::fracture_face, Loop::fracture_faces, fluid, find);
+  };
+  return widens ? make(StorageFace()) : make(StorageCell());
 }
 
 }  // namespace sprekk::physics

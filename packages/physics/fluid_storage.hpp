@@ -32,6 +32,7 @@ struct FractureStorageParameters {
   std::vector<Real> aperture;  ///< [local fracture face] m
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
+  bool widens = false;           ///< the aperture grows by "widening" of PoroelasticCoupling
 };
 
 /// The same for "face pressure" on fracture faces, of which all is space for fluid: area for V, aperture for phi.

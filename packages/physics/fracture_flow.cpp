@@ -19,7 +19,7 @@ namespace {
 /// | symbol | shape         | unit       |                            |
 /// | x      | 1 + n         | Pa         | p_F, pressures on ridges   |
 /// | r      | 1 + n         | m^3/s      | sum q, -q (2D: m^2/s)      |
-/// | T      | [face, n * n] | m^3/(Pa s) | (2D: m^2/(Pa s))           |
+/// | T      | [face, n * n] | m^3/(Pa s) |                            |
 /// | lift   | [face, n]     | Pa         | rho_0 g . d                |
 template <int n>
 struct FractureFace {
@@ -27,6 +27,7 @@ struct FractureFace {
   using Rows = Columns;
   ConstView<Real**> T, lift;
   laws::Fluid fluid;
+  ConstView<laws::Conduit*> conduit = {};
 
   KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int face) const {
     HybridFlow<n> result{fluid, {}, {}};
@@ -41,6 +42,38 @@ struct FractureFace {
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
     at(face).jacobian(x, J);
+  }
+};
+
+/// The same where T is that of a transmissivity of 1, and the face's own follows from its widening, the last of x, m.
+template <int n>
+struct WideningFace : FractureFace<n> {
+  using Base = FractureFace<n>;
+  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
+  using Rows = typename Base::Columns;
+
+  explicit WideningFace(const Base& base) : Base(base) {}
+  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
+    evaluate(face, x, this->conduit(face).transmissivity(x[1 + n]), r);
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
+    Real p[1 + n], by_widening[1 + n], own[1 + n][1 + n];
+    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
+    Base::at(face).jacobian(p, own);
+    evaluate(face, x, this->conduit(face).dtransmissivity(x[1 + n]), by_widening);
+    const Real transmissivity = this->conduit(face).transmissivity(x[1 + n]);
+    for (int i = 0; i < 1 + n; ++i) {
+      for (int k = 0; k < 1 + n; ++k) J[i][k] = transmissivity * own[i][k];
+      J[i][1 + n] = by_widening[i];
+    }
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void evaluate(int face, const Real (&x)[2 + n], Real transmissivity, Real (&r)[1 + n]) const {
+    Real p[1 + n];
+    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
+    Base::at(face).residual(p, r);
+    for (Real& row : r) row *= transmissivity;
   }
 };
 
@@ -97,6 +130,7 @@ class FractureFlow final : public assembly::Module {
   assembly::Declaration declare() const override {
     assembly::Declaration d;
     d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
+    if (parameters_.widens) d.couplings[0].columns.push_back("widening");
     d.outputs = {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1},
                  {"fluid flux", "m^2/s", fields::Entity::fracture_face, 3}};
     d.linear = is_linear();
@@ -108,9 +142,15 @@ class FractureFlow final : public assembly::Module {
     size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
     set_faces();
-    assembler_ =
-        std::make_unique<Assembler>(context, Loop::fracture_cells, std::vector<int>{block_}, std::vector<int>{block_},
-                                    is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
+    const std::vector<int> rows = {block_};
+    if (parameters_.widens) {
+      widening_ = context.field("widening");
+      widening_assembler_ = std::make_unique<WideningAssembler>(
+          context, Loop::fracture_cells, rows, std::vector<int>{block_, widening_}, WideningAssembler::Positions::keep);
+    } else {
+      assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, rows, rows,
+                                               is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
+    }
     for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
       if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
@@ -119,7 +159,10 @@ class FractureFlow final : public assembly::Module {
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    assembler_->add_residual(op_, state, r);
+    if (parameters_.widens)
+      widening_assembler_->add_residual(WideningFace<n>(op_), state, r);
+    else
+      assembler_->add_residual(op_, state, r);
     exchange_.add_residual(state, r);
     const auto rows = r[block_];
     const auto load = load_;
@@ -128,10 +171,13 @@ class FractureFlow final : public assembly::Module {
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    assembler_->add_jacobian(op_, state, J);
+    if (parameters_.widens)
+      widening_assembler_->add_jacobian(WideningFace<n>(op_), state, J);
+    else
+      assembler_->add_jacobian(op_, state, J);
     exchange_.add_jacobian(J);
   }
-  bool symmetric(const assembly::State&) const override { return is_linear(); }
+  bool symmetric(const assembly::State&) const override { return is_linear() || parameters_.widens; }
 
   bool constant_load() const override {
     return std::all_of(parameters_.source.begin(), parameters_.source.end(),
@@ -160,7 +206,7 @@ class FractureFlow final : public assembly::Module {
       if (flow != 0) largest = std::max(largest, size_ * std::abs(flow) / transmissivity);
     };
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].transmissivity); });
+      for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].transmissivity()); });
     for (const auto& rim : mesh_->facets->rims)
       for (const auto& condition : parameters_.conditions)
         if (holds(condition, rim)) {
@@ -169,19 +215,22 @@ class FractureFlow final : public assembly::Module {
           if (condition.conductance)
             largest = std::max(largest, std::abs(value));
           else
-            let(face.aperture * value, face.transmissivity);
+            let(face.hydraulic_aperture() * value, face.transmissivity());
         }
     return largest;
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+    const auto widening =
+        parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const Plane plane(*mesh_, f, parameters_.faces[f].transmissivity, parameters_.scheme);
+      const Plane plane(*mesh_, f, 1, parameters_.scheme);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
       op_.at(f).flow(x, q);
-      const Real scale = 1 / (parameters_.fluid.density(x[0]) * plane.area);
+      const Real wider = parameters_.widens ? parameters_.faces[f].transmissivity(widening(f)) : 1;
+      const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
       fields[0].values.push_back(x[0]);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
@@ -193,15 +242,17 @@ class FractureFlow final : public assembly::Module {
 
  private:
   using Assembler = assembly::Assembler<Op>;
+  using WideningAssembler = assembly::Assembler<WideningFace<n>>;
 
-  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
 
   void set_faces() {
     const LocalIndex n_faces = mesh_->n_fracture_faces();
     View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
     const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
     for (LocalIndex f = 0; f < n_faces; ++f) {
-      const Plane plane(*mesh_, f, parameters_.faces[f].transmissivity, parameters_.scheme);
+      const Real transmissivity = parameters_.widens ? 1 : parameters_.faces[f].transmissivity();
+      const Plane plane(*mesh_, f, transmissivity, parameters_.scheme);
       for (int k = 0; k < n; ++k) {
         for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
         lift_host(f, k) = 0;
@@ -210,7 +261,7 @@ class FractureFlow final : public assembly::Module {
     }
     Kokkos::deep_copy(T, T_host);
     Kokkos::deep_copy(lift, lift_host);
-    op_ = {T, lift, parameters_.fluid};
+    op_ = {T, lift, parameters_.fluid, assembly::to_device(parameters_.faces, "conduits")};
   }
 
   /// Calls visit(area, source) at the points of a face.
@@ -234,17 +285,18 @@ class FractureFlow final : public assembly::Module {
       for (const auto& rim : mesh_->facets->rims)
         if (holds(condition, rim))
           visit(condition, mesh_->facets->ridge[rim.face * n + rim.ridge],
-                parameters_.faces[rim.face].aperture * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
+                parameters_.faces[rim.face].hydraulic_aperture() * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
                 mesh::ridge_centre(*mesh_, rim.face, rim.ridge));
   }
 
   FractureFlowParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
-  int block_ = -1;  // face pressure
-  Real size_ = 0;   // largest extent of the domain, m
+  int block_ = -1, widening_ = -1;  // face pressure, widening
+  Real size_ = 0;                   // largest extent of the domain, m
   bool loaded_ = false;
   Op op_;
   std::unique_ptr<Assembler> assembler_;
+  std::unique_ptr<WideningAssembler> widening_assembler_;
   Exchange exchange_;  // with what is beyond the ends
   View<Real*> load_;   // [owned row], m^3/s
 };

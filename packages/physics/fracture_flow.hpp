@@ -11,17 +11,13 @@
 namespace sprekk::physics {
 
 struct FractureFlowParameters {
-  /// Of one fracture face.
-  struct Face {
-    Real aperture;        ///< a, m
-    Real transmissivity;  ///< a k_t/mu, m^3/(Pa s)
-  };
-  std::vector<Face> faces;               ///< [local fracture face]
+  std::vector<laws::Conduit> faces;      ///< [local fracture face]
   std::vector<base::Expression> source;  ///< [fracture] volume of fluid per area and time, m/s
   FluxScheme scheme = FluxScheme::rt0;   ///< as in the rock
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};                 ///< rho_0 g, N/m^3
   std::vector<FluidCondition> conditions = {};  ///< those with a fracture
+  bool widens = false;                          ///< by "widening" of PoroelasticCoupling, which T then depends on
 };
 
 /// Adds to the rows of "face pressure", for a fracture face F with ridges i,

@@ -129,6 +129,15 @@ struct FlowMatrix {
     }
   }
 
+  /// Lets nothing through face e: the limit of that for large R.
+  KOKKOS_INLINE_FUNCTION void close(int e) {
+    const Real own = T[e][e];
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        if (i != e && j != e && own > 0) T[i][j] -= T[i][e] * T[e][j] / own;
+    for (int i = 0; i < n; ++i) T[i][e] = T[e][i] = 0;
+  }
+
  private:
   /// On simplices the functions phi_i = (x - x_i)/(d V) have M_ij = integral phi_i . (k/mu)^-1 phi_j, and T = M^-1.
   /// Since the centres of faces add up to zero, T is A (k/mu) A^T / V + a 1 1^T, with 1/a = 1^T M 1.

@@ -11,9 +11,14 @@ struct MechanicsParameters {
   std::vector<JointParameters> joints = {};  ///< different ones
   std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
   FluidPressure fluid_pressure = {};
-  Real start = 0;           ///< time of the initial state, s
-  Real augmentation = 0.3;  ///< see ElasticPlasticJumpParameters
+  FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
+  bool holds_fluid = false;             ///< of unknown pressure
+  Real start = 0;                       ///< time of the initial state, s
+  Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
 };
+
+/// Of the module for jumps.
+ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
 
 /// What a mesh needs: the momentum of the bulk; with fractures, the traction balance of their sides and the split of
 /// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them.

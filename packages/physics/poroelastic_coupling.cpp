@@ -1,0 +1,475 @@
+#include "physics/poroelastic_coupling.hpp"
+
+#include "assembly/assembler.hpp"
+#include "assembly/tip_cell.hpp"
+#include "mesh/facets.hpp"
+
+#include <algorithm>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using assembly::Slot;
+
+namespace {
+
+/// A pressure p and displacements that change the volume V it works on.
+///
+/// | symbol    | shape          | unit  |                                                        |
+/// | x         | displacements [m], p | m, Pa | unknowns                                         |
+/// | r         | forces [m], dV/dt    | N, m^3/s (2D: m^2/s) | -(p - p_0) dV/du, rate V          |
+/// | volume    | [entity, m]    | m^2   | dV/du                                                  |
+/// | reference | [entity]       | Pa    | p_0; empty: zero                                       |
+/// | rate      |                | 1/s   | 1/dt                                                   |
+template <class... Displacements>
+struct Work {
+  using Columns = assembly::Slots<Displacements..., Slot<1, 1>>;
+  using Rows = Columns;
+  static constexpr int m = Columns::size - 1;
+  View<Real**> volume;
+  ConstView<Real*> reference = {};
+  Real rate = 0;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1], Real (&r)[m + 1]) const {
+    const Real p = x[m] - (reference.extent(0) > 0 ? reference(e) : 0);
+    r[m] = 0;
+    for (int k = 0; k < m; ++k) {
+      r[k] = -volume(e, k) * p;
+      r[m] += rate * volume(e, k) * x[k];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[m + 1], Real (&J)[m + 1][m + 1]) const {
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    for (int k = 0; k < m; ++k) {
+      J[k][m] = -volume(e, k);
+      J[m][k] = rate * volume(e, k);
+    }
+  }
+};
+
+/// A fluid that pushes a side of a fracture face, and the share of the side in how far the face has opened.
+///
+/// | symbol    | shape                       | unit     |                                                     |
+/// | x         | displacements [m], p, b     | m, Pa, m | unknowns                                            |
+/// | r         | forces [m], row of b        | N, m^3 (2D: m^2) | -p dW/du, share |f| b - W                   |
+/// | volume    | [entity, m]                 | m^2      | dW/du                                               |
+/// | part      | [entity]                    | m^2      | share |f|                                           |
+template <class... Displacements>
+struct Opening {
+  using Columns = assembly::Slots<Displacements..., Slot<1, 1>, Slot<1, 1>>;
+  using Rows = assembly::Slots<Displacements..., Slot<1, 1>>;
+  static constexpr int m = Rows::size - 1;
+  View<Real**> volume;
+  ConstView<Real*> part;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 2], Real (&r)[m + 1]) const {
+    r[m] = part(e) * x[m + 1];
+    for (int k = 0; k < m; ++k) {
+      r[k] = -volume(e, k) * x[m];
+      r[m] -= volume(e, k) * x[k];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[m + 2], Real (&J)[m + 1][m + 2]) const {
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    J[m][m + 1] = part(e);
+    for (int k = 0; k < m; ++k) J[k][m] = J[m][k] = -volume(e, k);
+  }
+};
+
+/// The flow of a pressure's rate of change against oscillation: T(beta)/dt (p - p_j - (p_0 - p_0j)), see make_.
+///
+/// | symbol  | shape        | unit    |                                                                      |
+/// | x       | 1 + faces    | Pa      | pressure of the cell, pressures on faces                             |
+/// | r       | 1 + faces    | m^3/s   | sum q, -q (2D: m^2/s)                                                |
+/// | T       | [cell, faces * faces] | m^3/Pa | of beta, zero in rows of fractures (2D: m^2/Pa)             |
+/// | drop    | [cell, faces] | Pa     | p_0 - p_0j; empty: zero                                              |
+/// | rate    |              | 1/s     | 1/dt                                                                 |
+template <Shape shape>
+struct StabilisedCell {
+  static constexpr int n = mesh::n_faces(shape);
+  using Columns = assembly::Slots<Slot<1, 1>, Slot<n, 1>>;
+  using Rows = Columns;
+  View<Real**> T, drop;
+  Real rate = 0;
+
+  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      Real q = 0;
+      for (int j = 0; j < n; ++j)
+        q += T(cell, i * n + j) * (x[0] - x[1 + j] - (drop.extent(0) > 0 ? drop(cell, j) : 0));
+      r[0] += rate * q;
+      r[1 + i] = -rate * q;
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    J[0][0] = 0;
+    for (int i = 0; i < n; ++i) {
+      J[0][1 + i] = 0;
+      for (int j = 0; j < n; ++j) {
+        J[1 + i][1 + j] = rate * T(cell, i * n + j);
+        J[0][1 + i] -= J[1 + i][1 + j];
+      }
+      J[1 + i][0] = J[0][1 + i];
+      J[0][0] -= J[0][1 + i];
+    }
+  }
+};
+
+template <Shape shape>
+class PoroelasticCoupling final : public assembly::Module {
+ public:
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape), n_faces = mesh::n_faces(shape);
+
+  explicit PoroelasticCoupling(PoroelasticCouplingParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "poroelastic coupling"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    const auto work = [&](Loop loop, const char* displacement) {
+      d.couplings.push_back({loop, displacement, {"pressure"}});
+      d.couplings.push_back({loop, "pressure", {displacement}});
+    };
+    const auto open = [&](Loop loop, const char* displacement) {
+      d.couplings.push_back({loop, displacement, {"face pressure"}});
+      d.couplings.push_back({loop, "widening", {displacement, "widening"}});
+    };
+    work(Loop::cells, "displacement");
+    if (parameters_.fractures) {
+      assembly::Unknown widening{
+          {"widening", fields::Entity::fracture_face, 1, "m"}, assembly::Quantity::length, assembly::Quantity::volume};
+      widening.local_group = "fracture face";
+      d.unknowns = {widening};
+      work(Loop::fracture_sides, "side bubble");
+      open(Loop::fracture_sides, "displacement");
+      open(Loop::fracture_sides, "side bubble");
+    }
+    if (parameters_.tips) {
+      work(Loop::tip_cells, "tip displacement");
+      open(Loop::tip_sides, "tip displacement");
+    }
+    for (const char* row : {"pressure", "face pressure"})
+      d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
+    d.schur = {"pressure"};
+    d.history = {{"volume", fields::Entity::cell, 1}, {"exchange", fields::Entity::facet, 1}};
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override;
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    add_rates(state, r, 1 / state.dt);
+    for_each_opening(*this, [&](const auto& part) { part.assembler->add_residual(part.op, state, r); });
+    for (int k = 0; k < 2; ++k) {
+      const auto rows = r[pressures_[k]];
+      const auto old = state.history[k];
+      const Real rate = 1 / state.dt;
+      Kokkos::parallel_for(
+          "old", Kokkos::RangePolicy<Execution>(0, rows.extent(0)),
+          KOKKOS_LAMBDA(int i) { rows(i) -= rate * old(i, 0); });
+    }
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override;
+  void add_schur(const assembly::State& state, const assembly::Rows& diagonal) const override {
+    const auto rows = diagonal[pressures_[0]];
+    const auto schur = schur_;
+    const Real rate = 1 / state.dt;
+    Kokkos::parallel_for(
+        "schur", Kokkos::RangePolicy<Execution>(0, rows.extent(0)),
+        KOKKOS_LAMBDA(int i) { rows(i) += rate * schur(i); });
+  }
+
+  void initial(const assembly::Rows& x) const override;
+
+  /// What was in the rows of pressures, times dt.
+  void commit(assembly::State& state) const override {
+    assembly::Rows volumes;
+    for (const auto& x : state.x) volumes.emplace_back("volumes", x.extent(0));
+    add_rates(state, volumes, 1);
+    for (int k = 0; k < 2; ++k) {
+      const auto kept = state.history[k];
+      const auto now = volumes[pressures_[k]];
+      Kokkos::parallel_for(
+          "keep", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int i) { kept(i, 0) = now(i); });
+    }
+  }
+
+ private:
+  using Nodes = Slot<n, dim>;
+  using OfNodes = Work<Nodes>;
+  using OfBubble = Work<Slot<1, dim>>;
+  using OfSide = Opening<Nodes, Slot<1, dim>>;
+  using Stabilised = StabilisedCell<shape>;
+  template <class Op>
+  struct Part {
+    Op op;
+    std::unique_ptr<assembly::Assembler<Op>> assembler;
+
+    void bind(const assembly::Context& context, Loop loop, const std::vector<int>& rows,
+              const std::vector<int>& columns) {
+      using Assembler = assembly::Assembler<Op>;
+      assembler = std::make_unique<Assembler>(context, loop, rows, columns, Assembler::Positions::keep);
+    }
+    Op at(Real rate) const {
+      Op moved = op;
+      moved.rate = rate;
+      return moved;
+    }
+  };
+
+  /// Calls visit(part) for all parts with rates that there are.
+  template <class Self, class Visit>
+  static void for_each_rate(Self& self, const Visit& visit) {
+    visit(self.cells_);
+    visit(self.stabilised_);
+    if (self.parameters_.fractures) visit(self.bubbles_);
+    if (self.parameters_.tips) visit(self.tip_cells_);
+  }
+  /// The same for those of fractures.
+  template <class Self, class Visit>
+  static void for_each_opening(Self& self, const Visit& visit) {
+    if (self.parameters_.fractures) visit(self.sides_);
+    if (self.parameters_.tips) visit(self.tip_sides_);
+  }
+
+  void add_rates(const assembly::State& state, const assembly::Rows& r, Real rate) const {
+    for_each_rate(*this, [&](const auto& part) { part.assembler->add_residual(part.at(rate), state, r); });
+  }
+
+  const PoroelasticCouplingParameters::Rock& rock(LocalIndex cell) const {
+    return parameters_
+        .rock[parameters_.rock_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.rock_of_cell[cell]];
+  }
+
+  void build_cells();
+  void build_stabilisation();
+  void build_sides();
+  void build_tips();
+  Real mean_initial(LocalIndex cell) const;
+
+  PoroelasticCouplingParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
+  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: what fixes the stress, of V_K
+  Part<OfNodes> cells_, tip_cells_;
+  Part<Opening<Nodes>> tip_sides_;
+  Part<OfBubble> bubbles_;
+  Part<OfSide> sides_;
+  Part<Stabilised> stabilised_;
+};
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::bind(const assembly::Context& context) {
+  mesh_ = context.mesh();
+  const int u = context.field("displacement");
+  const auto [p, trace] = pressures_ = {context.field("pressure"), context.field("face pressure")};
+  cells_.bind(context, Loop::cells, {u, p}, {u, p});
+  stabilised_.bind(context, Loop::cells, {p, trace}, {p, trace});
+  build_cells();
+  build_stabilisation();
+  if (!parameters_.fractures) return;
+  const int beta = context.field("side bubble"), b = context.field("widening");
+  bubbles_.bind(context, Loop::fracture_sides, {beta, p}, {beta, p});
+  sides_.bind(context, Loop::fracture_sides, {u, beta, b}, {u, beta, trace, b});
+  build_sides();
+  if (!parameters_.tips) return;
+  const int q = context.field("tip displacement");
+  tip_cells_.bind(context, Loop::tip_cells, {q, p}, {q, p});
+  tip_sides_.bind(context, Loop::tip_sides, {q, b}, {q, trace, b});
+  build_tips();
+}
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
+  for_each_rate(*this, [&](const auto& part) { part.assembler->add_jacobian(part.at(1 / state.dt), state, J); });
+  for_each_opening(*this, [&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
+}
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::initial(const assembly::Rows& x) const {
+  constexpr int n_ridges = mesh::n_face_corners(shape);
+  const auto p = Kokkos::create_mirror_view(x[pressures_[0]]), trace = Kokkos::create_mirror_view(x[pressures_[1]]);
+  const auto put = [&](LocalIndex facet, const mesh::Vector& place) {
+    if (facet < mesh_->facets->n_owned) trace(facet) = parameters_.initial(place, 0);
+  };
+  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+    if (c < mesh_->n_owned_cells) p(c) = mean_initial(c);
+    for (int k = 0; k < n_faces; ++k)
+      put(mesh_->facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(*mesh_, c, k)));
+  }
+  for (LocalIndex f = 0; f < mesh_->n_fracture_faces(); ++f)
+    for (int k = 0; k < n_ridges; ++k) put(mesh_->facets->ridge[f * n_ridges + k], mesh::ridge_centre(*mesh_, f, k));
+  Kokkos::deep_copy(x[pressures_[0]], p);
+  Kokkos::deep_copy(x[pressures_[1]], trace);
+}
+
+template <Shape shape>
+Real PoroelasticCoupling<shape>::mean_initial(LocalIndex cell) const {
+  Real sum = 0, volume = 0;
+  assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const auto&, Real part, const auto& x) {
+    sum += part * parameters_.initial(x, 0);
+    volume += part;
+  });
+  return sum / volume;
+}
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::build_cells() {
+  using Cell = assembly::ReferenceCell<shape>;
+  cells_.op.volume = View<Real**>("volume", mesh_->n_cells(), n * dim);
+  const auto volume = Kokkos::create_mirror_view(cells_.op.volume);
+  std::vector<Real> reference, schur;
+  Real X[n][dim], dN[n][dim], g[dim];
+  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+    assembly::gather_host<shape>(*mesh_, c, X);
+    Real size = 0;
+    assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real part, const auto&) {
+      Cell::gradients(xi, dN);
+      const assembly::CellPoint<shape> point(X, dN);
+      size += part;
+      for (int a = 0; a < n; ++a) {
+        point.gradient(dN[a], g);
+        for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * rock(c).biot * g[i];
+      }
+    });
+    const auto& [biot, law] = rock(c);
+    reference.push_back(mean_initial(c));
+    if (c < mesh_->n_owned_cells) schur.push_back(biot * biot * size / (law.lambda + 2 * law.G));
+  }
+  Kokkos::deep_copy(cells_.op.volume, volume);
+  cells_.op.reference = assembly::to_device(reference, "initial pressure");
+  schur_ = assembly::to_device(schur, "schur");
+}
+
+/// Faces of fractures get no share: what would flow through them is spread over the others.
+template <Shape shape>
+void PoroelasticCoupling<shape>::build_stabilisation() {
+  constexpr int n_corners = mesh::n_corners(shape);
+  std::vector<int> closed(mesh_->n_cells() * n_faces, 0);
+  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
+    const auto& face = mesh_->fracture_faces[f];
+    closed[face.cell[side] * n_faces + face.local_face[side]] = 1;
+  }
+  auto& op = stabilised_.op;
+  op.T = View<Real**>("T", mesh_->n_cells(), n_faces * n_faces);
+  const auto T = Kokkos::create_mirror_view(op.T);
+  const bool falls = !parameters_.initial.is_constant();
+  op.drop = View<Real**>("drop", falls ? mesh_->n_cells() : 0, n_faces);
+  const auto drop = Kokkos::create_mirror_view(op.drop);
+  Real X[n][dim];
+  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+    assembly::gather_host<shape>(*mesh_, c, X);
+    const CellFaces<shape> faces(X);
+    const auto& [biot, law] = rock(c);
+    laws::Mobility beta;
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        for (int k = 0; k < n_corners; ++k)
+          beta.value[i][j] +=
+              biot * biot / (law.lambda + 2 * law.G) * faces.corners[k][i] * faces.corners[k][j] / n_corners;
+    FlowMatrix<shape> matrix(faces, beta, parameters_.scheme);
+    for (int e = 0; e < n_faces; ++e)
+      if (closed[c * n_faces + e]) matrix.close(e);
+    for (int i = 0; i < n_faces; ++i)
+      for (int j = 0; j < n_faces; ++j) T(c, i * n_faces + j) = matrix.T[i][j];
+    const Real mean = falls ? mean_initial(c) : 0;
+    for (int j = 0; j < n_faces && falls; ++j) {
+      Real sum = 0, area = 0;
+      assembly::for_each_face_point<shape>(*mesh_, c, j, [&](const auto&, Real part, const auto& x) {
+        sum += part * parameters_.initial(x, 0);
+        area += part;
+      });
+      drop(c, j) = mean - sum / area;
+    }
+  }
+  Kokkos::deep_copy(op.T, T);
+  Kokkos::deep_copy(op.drop, drop);
+}
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::build_sides() {
+  using Cell = assembly::ReferenceCell<shape>;
+  const auto all = assembly::fracture_sides(*mesh_);
+  bubbles_.op.volume = View<Real**>("volume", all.size(), dim);
+  sides_.op.volume = View<Real**>("volume", all.size(), n * dim + dim);
+  const auto bubble = Kokkos::create_mirror_view(bubbles_.op.volume),
+             side_volume = Kokkos::create_mirror_view(sides_.op.volume);
+  std::vector<Real> reference, halves;
+  Real X[n][dim], dN[n][dim], db[dim], gb[dim];
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    const auto [f, side] = all[s];
+    const auto& face = mesh_->fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
+    const int local_face = face.local_face[side];
+    assembly::gather_host<shape>(*mesh_, cell, X);
+    assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
+      Cell::gradients(xi, dN);
+      Cell::bubble(local_face, xi, db);
+      assembly::CellPoint<shape>(X, dN).gradient(db, gb);
+      for (int i = 0; i < dim; ++i) bubble(s, i) += part * rock(cell).biot * gb[i];
+    });
+    reference.push_back(mean_initial(cell));
+    halves.push_back(face.area / 2);
+    const Real area = side == mesh::plus ? face.area : -face.area;
+    const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
+    const Real mean = assembly::bubble_mean<shape>(*mesh_, cell, local_face);
+    for (int i = 0; i < dim; ++i) {
+      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+        side_volume(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
+      side_volume(s, n * dim + i) = area * mean * face.frame[0][i];
+    }
+  }
+  Kokkos::deep_copy(bubbles_.op.volume, bubble);
+  Kokkos::deep_copy(sides_.op.volume, side_volume);
+  bubbles_.op.reference = assembly::to_device(reference, "initial pressure");
+  sides_.op.part = assembly::to_device(halves, "half of the area");
+}
+
+template <Shape shape>
+void PoroelasticCoupling<shape>::build_tips() {
+  if constexpr (mesh::order(shape) == 1) {
+    using Tip = assembly::TipCell<shape>;
+    const auto rules = std::make_shared<assembly::TipRules>();
+    const auto cells = assembly::tip_cells(*mesh_);
+    tip_cells_.op.volume = View<Real**>("volume", cells.size(), n * dim);
+    const auto volume = Kokkos::create_mirror_view(tip_cells_.op.volume);
+    std::vector<Real> reference;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      Tip(*mesh_, cells[c], rules).for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * rock(cells[c]).biot * v.grad_psi[a][i];
+      });
+      reference.push_back(mean_initial(cells[c]));
+    }
+    Kokkos::deep_copy(tip_cells_.op.volume, volume);
+    tip_cells_.op.reference = assembly::to_device(reference, "initial pressure");
+
+    const auto all = assembly::fracture_sides(*mesh_);
+    const auto selected = assembly::tip_sides(*mesh_);
+    tip_sides_.op.volume = View<Real**>("volume", selected.size(), n * dim);
+    const auto side_volume = Kokkos::create_mirror_view(tip_sides_.op.volume);
+    for (std::size_t s = 0; s < selected.size(); ++s) {
+      const auto [f, side] = all[selected[s]];
+      const auto& face = mesh_->fracture_faces[f];
+      const auto means = Tip(*mesh_, face.cell[side], rules).face_means(face.local_face[side]);
+      for (int k = 0; k < Tip::n_face; ++k)
+        for (int i = 0; i < dim; ++i)
+          side_volume(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
+              (side == mesh::plus ? face.area : -face.area) * means[k] * face.frame[0][i];
+    }
+    Kokkos::deep_copy(tip_sides_.op.volume, side_volume);
+    tip_sides_.op.part = assembly::to_device(std::vector<Real>(selected.size(), 0), "none of the area");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_poroelastic_coupling(Shape shape, PoroelasticCouplingParameters parameters) {
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<PoroelasticCoupling<s()>>(std::move(parameters));
+  });
+}
+
+}  // namespace sprekk::physics
