@@ -28,8 +28,8 @@ def section(name, content, indent=""):
     return "\n".join([f"{indent}<ParameterList name={quoteattr(name)}>", *lines, f"{indent}</ParameterList>"])
 
 
-def write(name, comment, content, writer="make_scenes.py"):
-    content["Time"] = {"end": 1.0, "steps": 1}
+def write(name, comment, content, writer="make_scenes.py", time=None):
+    content["Time"] = time or {"end": 1.0, "steps": 1}
     comment = f"<!-- {comment} Written by perf/verification/{writer}. -->"
     (FOLDER / f"{name}.xml").write_text(f"{comment}\n{section('Sprekk', content)}\n")
 

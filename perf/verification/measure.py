@@ -50,7 +50,7 @@ def simplex_rule(dimension, points=GAUSS):
 class Run:
     results: dict
     rock: object        # grid of VTK
-    faces: object       # read.Surface: points, polygons, cell_data
+    faces: object       # read.Surface: points, polygons, cell_data; None: no fractures
     dimension: int
 
     def corners(self):
@@ -99,7 +99,8 @@ def start(binary, scene, sets, directory, ranks=1):
         raise RunError(f"status {done.returncode}: {words[-1]}")
     results = json.loads((directory / "results.json").read_text())
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
-    faces = read.segments(read.grid(read.written_steps(directory, "fractures")[-1][1]))
+    of_fractures = read.written_steps(directory, "fractures")
+    faces = read.segments(read.grid(of_fractures[-1][1])) if of_fractures else None
     return Run(results, rock, faces, results["mesh"]["dimension"])
 
 

@@ -17,9 +17,10 @@ import cases  # noqa: E402
 import flow_cases  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
+import poro_cases  # noqa: E402
 import style  # noqa: E402
 
-CASES = cases.CASES + flow_cases.CASES
+CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES
 ESTIMATES = ("jump", "stress")
 ESTIMATE = ("Output.error estimate=true",)
 WITHIN = 2  # a factor by which an estimate may be off
@@ -55,6 +56,8 @@ def run(options, case, series, label, source):
 
 def add_orders(row, before, dimension):
     finer = math.log(row.cells / before.cells) / dimension
+    if finer == 0:
+        return
     row.orders = {name: math.log(before.errors[name] / error) / finer for name, error in row.errors.items() if error > 0 and before.errors[name] > 0}
 
 

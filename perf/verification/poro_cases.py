@@ -1,0 +1,92 @@
+"""The cases of poroelasticity: scenes, meshes, what is measured on them, and the bounds."""
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import flow_measure
+import poro_exact
+from cases import Bound, Case, Order, Series
+
+CALLED = ("pressure", "settlement")
+SHAPES = {2: ("triangle", "quadrilateral"), 3: ("tetrahedron", "hexahedron")}
+
+
+def case(name, title, series, errors, headline, bounds, orders=("", "")):
+    return Case(name, title, "", series, errors, None, headline, None, orders, None, bounds, called=CALLED)
+
+
+def numbers(values):
+    return "{" + ", ".join(f"{value:.17g}" for value in values) + "}"
+
+
+def column(d, n, steps):
+    return (f"n={n}", (f"Mesh.cells={numbers([n // 5] * (d - 1) + [n])}", f"Time.steps={steps}"))
+
+
+def pressures(run, exact_at, axis):
+    """Relative L2 error of the mean pressures of cells, against those at their centres' coordinate."""
+    points, weights = flow_measure.cell_points(run)
+    return flow_measure.mean_error(flow_measure.array(run, "pressure")[:, None], lambda x: exact_at(x[:, axis])[:, None], points, weights)
+
+
+def terzaghi():
+    """Steps are as the square of the size of cells, for implicit Euler."""
+    known, t = poro_exact.COLUMN, 0.1 / poro_exact.COLUMN.rock.c
+
+    def errors(run, _):
+        up = run.dimension - 1
+        u, points = (vtk_to_numpy(values)[:, up] for values in (run.rock.GetPointData().GetArray("displacement"), run.rock.GetPoints().GetData()))
+        top = -u[np.isclose(points, known.H)].mean()
+        return {"pressure": pressures(run, lambda z: known.pressure(known.H - z, t), up), "settlement": abs(top / known.settlement(t) - 1)}
+    series = [Series(f"{cell} order 1", [column(d, n, n * n // 4) for n in ((10, 20, 40) if d == 2 else (5, 10, 20))], f"verification/terzaghi_{d}d.xml",
+                     (f"Mesh.cell={cell}",), known, 2) for d in (2, 3) for cell in SHAPES[d]]
+    bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 2), ("settlement", 2))]
+    bounds += [Bound(one.name, one.meshes[-1][0], "pressure", 5e-3) for one in series]
+    return case("terzaghi", "consolidation of a column", series, errors, ("triangle order 1", "n=40", "pressure"), bounds, ("pressure", "settlement"))
+
+
+def undrained():
+    """The pressure of a column that is loaded quickly rises to its undrained value and no higher, of one kind of rock and of layers;
+    one that drains a little follows the exact profile."""
+    known = poro_exact.COLUMN
+
+    def errors(run, exact):
+        p, t = flow_measure.array(run, "pressure"), run.results["steps"][-1]["time"]
+        found = {"above": max(p.max() / known.undrained - 1, 1e-17), "below": max(-p.min() / known.undrained, 1e-17)}
+        return {**found, "pressure": pressures(run, lambda z: exact.pressure(exact.H - z, t), run.dimension - 1)} if exact else found
+    times = [(f"t={t:g}", (f"Time.end={t:g}", "Time.steps=1", f"Mesh.cells={{cells}}")) for t in (1e-12, 1e-6, 1e-4, 1e-3, 1e-2)]
+    series = []
+    for d in (2, 3):
+        cells = numbers([4] * (d - 1) + [20])
+        steps = [(label, tuple(entry.replace("{cells}", cells) for entry in entries)) for label, entries in times]
+        series += [Series(f"{cell} {kind}", steps, f"verification/{scene}_{d}d.xml", (f"Mesh.cell={cell}",), known if kind == "alike" else None, 2)
+                   for cell in SHAPES[d] for kind, scene in (("alike", "terzaghi"), ("layers", "layers"))]
+    bounds = [Bound(one.name, label, name, 1e-2) for one in series for label, _ in one.meshes for name in ("above", "below")]
+    return case("undrained", "steps too short for drainage", series, errors, ("triangle alike", "t=1e-12", "above"), bounds)
+
+
+def mandel():
+    """The error at 50 s, of steps of 5 s and less, and the rise of the pressure in the middle after the load (Mandel and Cryer)."""
+    known = poro_exact.PLATE
+
+    def errors(run, _):
+        t = run.results["steps"][-1]["time"]
+        return {"pressure": pressures(run, lambda x: known.pressure(x, t), 0)}
+
+    def steps(n, m, step, end=50.0):
+        times = poro_exact.mandel_times(step, end)
+        way = known.way(times)
+        return (f"{n} x {m}, {step:g} s", (f"Mesh.cells={numbers([n, m])}", f"Time.schedule={numbers(times)}", f"Tables.plate.arguments={numbers(way[0])}",
+                                          f"Tables.plate.values={numbers(way[1])}"))
+    series = [Series("quadrilateral 5 s", [steps(50, 4, 5.0), steps(100, 4, 5.0), steps(200, 4, 5.0), steps(400, 4, 5.0)], "verification/mandel.xml",
+                     ("Mesh.cell=quadrilateral",), known, 2, dimension=1),
+              Series("triangle 5 s", [steps(50, 4, 5.0), steps(100, 8, 5.0), steps(150, 8, 5.0)], "verification/mandel.xml", (), known, 1),
+              Series("quadrilateral step 1", [steps(50, 4, 4.0, 48.0), steps(100, 4, 1.0, 48.0), steps(200, 4, 0.25, 48.0)], "verification/mandel.xml",
+                     ("Mesh.cell=quadrilateral",), known, 2, dimension=1),
+              Series("quadrilateral 5000 s", [steps(50, 4, 250.0, 5000.0), steps(100, 4, 62.5, 5000.0)], "verification/mandel.xml",
+                     ("Mesh.cell=quadrilateral",), known, 1, dimension=1)]
+    bounds = [Bound("quadrilateral 5 s", "400 x 4, 5 s", "pressure", 3.5e-3), Bound("triangle 5 s", "150 x 8, 5 s", "pressure", 4e-3),
+              Order("quadrilateral step 1", "pressure", 2), Order("quadrilateral 5000 s", "pressure", 2)]
+    return case("mandel", "a plate pressed together", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
+
+
+CASES = (terzaghi, undrained, mandel)

@@ -1,0 +1,117 @@
+"""Exact solutions of poroelasticity: consolidation of a column, and a plate squeezed between two others.
+
+SI units; the rock's constants are Lame's, alpha is Biot's coefficient, S the storage at constant strain."""
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass
+class Rock:
+    lam: float
+    G: float
+    S: float
+    mobility: float
+    alpha: float = 1.0
+
+    @property
+    def M(self):
+        """Of uniaxial strain."""
+        return self.lam + 2 * self.G
+
+    @property
+    def c(self):
+        """Diffusivity of the pressure."""
+        return self.mobility / (self.S + self.alpha**2 / self.M)
+
+    @property
+    def nu(self):
+        return self.lam / (2 * (self.lam + self.G))
+
+    @property
+    def undrained_nu(self):
+        lam = self.lam + self.alpha**2 / self.S
+        return lam / (2 * (lam + self.G))
+
+    @property
+    def skempton(self):
+        K = self.lam + 2 * self.G / 3
+        return self.alpha / self.S / (K + self.alpha**2 / self.S)
+
+
+@dataclass
+class Terzaghi:
+    """Column of height H, drained and loaded by sigma at its top from time zero on (Terzaghi 1923)."""
+    rock: Rock
+    H: float
+    sigma: float
+
+    @property
+    def undrained(self):
+        return self.rock.alpha * self.sigma / (self.rock.M * self.rock.S + self.rock.alpha**2)
+
+    def pressure(self, depth, t):
+        k = (2 * np.arange(2000) + 1) * np.pi / 2
+        waves = 2 / k * np.sin(np.outer(depth / self.H, k))
+        return self.undrained * (waves * np.exp(-k**2 * self.rock.c * t / self.H**2)).sum(axis=1)
+
+    def settlement(self, t):
+        """Of the top."""
+        k = (2 * np.arange(2000) + 1) * np.pi / 2
+        mean = self.undrained * (2 / k**2 * np.exp(-k**2 * self.rock.c * t / self.H**2)).sum()
+        return (self.sigma - self.rock.alpha * mean) * self.H / self.rock.M
+
+
+@dataclass
+class Mandel:
+    """The quarter 0 < x < a, 0 < y < b of a plate between two rigid ones without friction, which a force of 2 F per length presses
+    together from time zero on; drained at x = a (Mandel 1953; displacements of Cheng and Detournay 1988)."""
+    rock: Rock
+    a: float
+    b: float
+    F: float
+
+    @cached_property
+    def roots(self):
+        """Of tan x = x (1 - nu)/(nu_u - nu), one in each interval (n pi, n pi + pi/2), by bisection."""
+        ratio = (1 - self.rock.nu) / (self.rock.undrained_nu - self.rock.nu)
+        n = np.arange(400)
+        low, high = n * np.pi + np.where(n == 0, 1e-6, 0), n * np.pi + np.pi / 2
+        for _ in range(100):
+            middle = (low + high) / 2
+            below = (-1.0)**n * (np.sin(middle) - ratio * middle * np.cos(middle)) < 0
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return (low + high) / 2
+
+    @property
+    def undrained(self):
+        return self.F * self.rock.skempton * (1 + self.rock.undrained_nu) / (3 * self.a)
+
+    def modes(self, t):
+        x = self.roots
+        return np.exp(-x**2 * self.rock.c * t / self.a**2) / (x - np.sin(x) * np.cos(x))
+
+    def pressure(self, x, t):
+        r = self.roots
+        return 2 * self.undrained * (np.sin(r) * self.modes(t) * (np.cos(np.outer(x / self.a, r)) - np.cos(r))).sum(axis=1)
+
+    def approach(self, t):
+        """Displacement of the plate at y = b, along y."""
+        r, nu, undrained_nu = self.roots, self.rock.nu, self.rock.undrained_nu
+        sum_of = (np.sin(r) * np.cos(r) * self.modes(t)).sum()
+        return (-self.F * (1 - nu) / (2 * self.rock.G * self.a) + self.F * (1 - undrained_nu) / (self.rock.G * self.a) * sum_of) * self.b
+
+
+    def way(self, times):
+        """Times and displacements of the plate, from rest on."""
+        return [0.0, *times], [0.0, *(self.approach(t) for t in times)]
+
+
+def mandel_times(step, end=50.0):
+    """Of steps; the first is over before anything drains."""
+    return [1e-6, *(step * k for k in range(1, round(end / step) + 1))]
+
+
+COLUMN = Terzaghi(Rock(1.65e9, 1.475e9, 0.0, 9.86e-11), 1.0, 1e4)
+PLATE = Mandel(Rock(1.65e9, 2.475e9, 6.0606e-11, 9.869e-11), 100.0, 10.0, 6e8)

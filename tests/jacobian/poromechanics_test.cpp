@@ -1,0 +1,73 @@
+// The Jacobians of rock and fractures that a fluid moves, against differences.
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+#include "assembly/jacobian_check.hpp"
+#include "model/model.hpp"
+#include "unit/assembly/dense.hpp"
+#include "unit/mesh/meshes.hpp"
+
+namespace sprekk {
+namespace {
+
+/// Rock with fractures that cross and end in it, filled with a fluid; apertures grow and shrink.
+model::Scene make_scene(const std::string& cell, Real compressibility) {
+  model::Scene scene;
+  scene.mesh = mesh::testing::crossed(cell);
+  const int dim = static_cast<int>(scene.mesh.lower_corner.size());
+  auto& rock = scene.materials["rock"];
+  rock.type = "elastic";
+  rock.E = base::Expression(3);
+  rock.nu = base::Expression(0.3);
+  rock.permeability = {base::Expression(2)};
+  rock.porosity = 0.2;
+  rock.compressibility = 0.1;
+  rock.biot = 0.8;
+  auto& joint = scene.materials["joint"];
+  joint.type = "joint";
+  joint.friction_coefficient = base::Expression(0.6);
+  joint.tangential_stiffness = base::Expression(2);
+  joint.dilation_angle = base::Expression(5);
+  joint.initial_aperture = base::Expression(1);
+  joint.residual_aperture = base::Expression(0.8);
+  joint.normal_permeability = base::Expression(0.1);
+  scene.bulk.material = "rock";
+  scene.bulk.gravity.assign(dim, 0.5);
+  rock.density = base::Expression(2);
+  scene.flow.emplace();
+  scene.flow->viscosity = 2;
+  scene.flow->density = 3;
+  scene.flow->compressibility = compressibility;
+  scene.flow->initial_pressure = base::Expression("0.1*x + 0.2*y");
+  for (const auto& [name, fracture] : scene.mesh.fractures) scene.fractures[name].material = "joint";
+  auto &floor = scene.boundary_conditions["floor"], &lid = scene.boundary_conditions["lid"];
+  floor.boundary = "south";
+  floor.displacement.assign(dim, base::Expression(0));
+  lid.boundary = "north";
+  lid.displacement.assign(dim, base::Expression(0));
+  lid.pressure = base::Expression(1);
+  return scene;
+}
+
+class PoromechanicsJacobian : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(PoromechanicsJacobian, OfEveryModuleIsItsDerivative) {
+  for (const Real compressibility : {0.0, 0.4}) {
+    model::Model model(make_scene(GetParam(), compressibility), Tpetra::getDefaultComm());
+    auto& system = model.system();
+    system.set_time(1, 0.5);
+    auto x = system.initial();
+    test::randomize(x, 0.3, 1);
+    system.commit(x);
+    test::randomize(x, 0.3, 2);
+    const auto errors = assembly::check_jacobian(system, x, 1e-5);
+    for (const auto& e : errors) EXPECT_LE(e.error, 1e-6) << e.module << ": " << e.row << ", " << e.column;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, PoromechanicsJacobian, ::testing::ValuesIn(mesh::testing::all_cells),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace sprekk

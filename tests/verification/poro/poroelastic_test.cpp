@@ -1,0 +1,142 @@
+// Rock and fractures that a fluid moves, against exact solutions.
+#include "../flow/boxes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+constexpr Real G = 3, lambda = 2, biot = 0.7, growth = 0.4;
+
+/// The box of the suites of flow, with fractures that cross; with one more that ends inside. Its sides in the planes
+/// of axes may not move along their normals.
+model::Scene deforming_box(const std::string& cell, bool tips = false) {
+  auto scene = closed_box(cell);
+  const bool flat = is_flat(cell);
+  if (tips) {
+    scene.mesh.fractures["a"].upper_corner[0] = 0.75;
+    scene.mesh.fractures.erase("b");
+    scene.fractures.erase("b");
+  }
+  scene.flow->rigid_rock = false;
+  auto& rock = scene.materials.at("rock");
+  rock.G = base::Expression(G);
+  rock.lambda = base::Expression(lambda);
+  rock.biot = biot;
+  rock.compressibility = growth;
+  auto& joint = scene.materials.at("joint");
+  joint.friction_coefficient = base::Expression(0.6);
+  joint.tangential_stiffness = base::Expression(10);
+  const std::vector<std::string> sides = {"west", "south", "bottom"};
+  for (int axis = 0; axis < (flat ? 2 : 3); ++axis) {
+    auto& condition = scene.boundary_conditions[sides[axis] + " held"];
+    condition.boundary = sides[axis];
+    condition.displacement.assign(flat ? 2 : 3, base::Expression("free"));
+    condition.displacement[axis] = base::Expression(0);
+  }
+  return scene;
+}
+
+/// Presses on the other sides.
+void press(model::Scene& scene, Real pressure) {
+  const int dim = static_cast<int>(scene.mesh.lower_corner.size());
+  const std::vector<std::string> sides = {"east", "north", "top"};
+  for (int axis = 0; axis < dim; ++axis) {
+    auto& condition = scene.boundary_conditions[sides[axis] + " pressed"];
+    condition.boundary = sides[axis];
+    condition.traction.assign(dim, base::Expression(0));
+    condition.traction[axis] = base::Expression(-pressure);
+  }
+}
+
+/// Checks that strain, pressure and the traction on fractures are those of a state without gradients.
+void expect_uniform(model::Model& model, Real strain, Real p, Real traction, Real tolerance) {
+  const int dim = model.mesh().dim();
+  const auto u = model.output("displacement");
+  for (LocalIndex node = 0; node < model.mesh().n_nodes(); ++node)
+    for (int i = 0; i < dim; ++i)
+      EXPECT_NEAR(u.values[node * dim + i], strain * model.mesh().coordinates[node * dim + i], tolerance);
+  const auto pressure = [&](const auto&, const auto&) { return Vector3{p}; };
+  EXPECT_LT(error(model, "pressure", pressure), tolerance);
+  EXPECT_LT(error(model, "fracture pressure", pressure), tolerance);
+  EXPECT_LT(error(model, "traction local", [&](const auto&, const auto&) { return Vector3{traction}; }), tolerance);
+}
+
+/// In a box under an all-round load P_0 that drains to the pressure P on all sides: the strain follows from the
+/// effective stress -P_0 + alpha P, the sides of fractures press on each other with P_0 - P.
+TEST(Poroelasticity, ADrainedBoxFollowsTheEffectiveStress) {
+  for (const std::string cell : all_cells)
+    for (const bool tips : {false, true})
+      for (const int order : {1, 2}) {
+        SCOPED_TRACE(fmt::format("{}, {}, order {}", cell, tips ? "tips" : "crossing", order));
+        auto scene = deforming_box(cell, tips);
+        scene.mesh.order = order;
+        const int dim = is_flat(cell) ? 2 : 3;
+        press(scene, 3);
+        for (const std::string side : {"west", "east", "south", "north", "bottom", "top"})
+          if (dim == 3 || (side != "bottom" && side != "top")) hold(scene, side, "1");
+        model::Model model(scene, Tpetra::getDefaultComm());
+        ASSERT_TRUE(model.step_to(1e9).converged);
+        expect_uniform(model, (-3 + biot) / (2 * G + dim * lambda), 1, -2, 1e-8);
+      }
+}
+
+/// In a closed box the fluid bears its part of the load, Skempton's: p = P_0 alpha M/(K + alpha^2 M), 1/M the storage
+/// at constant strain. With constant time steps, or a first one of almost nothing.
+TEST(Poroelasticity, AClosedBoxIsUndrained) {
+  for (const std::string cell : all_cells)
+    for (const Real first : {1e-9, 1e3}) {
+      SCOPED_TRACE(fmt::format("{}, {} s", cell, first));
+      auto scene = deforming_box(cell, true);
+      const int dim = is_flat(cell) ? 2 : 3;
+      press(scene, 3);
+      model::Model model(scene, Tpetra::getDefaultComm());
+      if (first < 1) ASSERT_TRUE(model.step_to(first).converged);
+      ASSERT_TRUE(model.step_to(1e3).converged);
+      const Real K = lambda + 2 * G / dim, p = 3 * biot / growth / (K + biot * biot / growth);
+      expect_uniform(model, (-3 + biot * p) / (2 * G + dim * lambda), p, -3 + p, 1e-8);
+    }
+}
+
+/// What is put into a fracture of a closed box is found in its pores and in the apertures, with a fluid of constant
+/// density and with one that is compressible; also where the fracture opens.
+TEST(Poroelasticity, NoFluidIsLost) {
+  for (const std::string cell : all_cells)
+    for (const Real compressibility : {0.0, 0.05}) {
+      SCOPED_TRACE(fmt::format("{}, compressibility {}", cell, compressibility));
+      auto scene = deforming_box(cell, true);
+      const int dim = is_flat(cell) ? 2 : 3;
+      scene.flow->compressibility = compressibility;
+      scene.fractures.at("a").source = base::Expression(0.2);
+      press(scene, 0.2);
+      model::Model model(scene, Tpetra::getDefaultComm());
+      for (const Real t : {0.1, 0.5, 1.0}) ASSERT_TRUE(model.step_to(t).converged);
+      const auto& mesh = model.mesh();
+      Real here = 0, all = 0;
+      const auto pressure = model.output("pressure"), inside = model.output("fracture pressure"),
+                 opening = model.output("opening"), stress = model.output("stress");
+      const auto volumes = model.field("poroelastic coupling: volume");
+      const auto content = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), volumes.values);
+      mesh::for_shape(mesh.shape, [&](auto shape) {
+        for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
+          const Real p = pressure.values[c];
+          assembly::for_each_cell_point<shape()>(mesh, c, [&](const auto&, Real volume, const auto&) {
+            here += volume * growth * p * std::exp(compressibility * p);
+          });
+        }
+      });
+      Real wider = 0;
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+        const Real denser = std::exp(compressibility * inside.values[f]);
+        here += mesh.fracture_faces[f].area * ((aperture + opening.values[f]) * denser - aperture);
+        wider += opening.values[f];
+      }
+      for (std::size_t c = 0; c < content.extent(0); ++c) here += content(c, 0);
+      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+      EXPECT_NEAR(all, 0.2 * 0.75, 1e-10);
+      Real opened = 0;
+      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &wider, &opened);
+      EXPECT_GT(opened, 1e-3) << "it is to open, else this says little (dim " << dim << ")";
+    }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
