@@ -63,6 +63,13 @@ struct OutputField {
   std::vector<Real> values = {};
 };
 
+/// A number that describes a state, the sum of what ranks say; its names lead to it in results.json, where totals of
+/// the same names are added up.
+struct Total {
+  std::vector<std::string> names;
+  Real value;
+};
+
 /// All that the framework needs to know to derive sparsity, ghost exchange, storage and output.
 struct Declaration {
   std::vector<Unknown> unknowns;
@@ -155,6 +162,8 @@ class Module {
   /// After elimination of the local groups, blocks on the diagonal of the Jacobian at `state` are symmetric as far as
   /// this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }
+  /// Appends this rank's parts of totals, the same ones on all ranks in the same order. Local.
+  virtual void totals(const State& state, std::vector<Total>& totals) const {}
   /// Fills the values of the declared outputs, in their order, from a committed state. Local.
   virtual void output(const State& state, std::vector<OutputField>& fields) const {}
 };

@@ -56,7 +56,7 @@ class System : public fields::BlockProblem {
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
-  void tether(Real stiffness, const fields::BlockVector& x) override;
+  bool tether(Real stiffness, const fields::BlockVector& x) override;
   bool calibrate(const fields::BlockVector& x, bool first) override;
   bool settle(fields::BlockVector& x) override;
 
@@ -67,6 +67,8 @@ class System : public fields::BlockProblem {
   /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
   /// counts for the first. Collective.
   std::vector<Reaction> reactions(const fields::BlockVector& x);
+  /// Those of all modules, summed over the ranks. Collective.
+  std::vector<Total> totals(const fields::BlockVector& x);
 
   /// What the modules keep, as "MODULE: HISTORY"; the values, [owned entity, component], may be written.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;

@@ -66,9 +66,11 @@ void System::damp(Real everywhere, const std::vector<Real>& here) {
   damping_ = damping;
 }
 
-void System::tether(Real stiffness, const BlockVector& x) {
+bool System::tether(Real stiffness, const BlockVector& x) {
   tether_ = 0;
-  if (stiffness == 0) return;
+  const bool contact = std::any_of(unknowns_.begin(), unknowns_.end(),
+                                   [](const auto& unknown) { return unknown.value == Quantity::stress; });
+  if (stiffness == 0 || !contact) return contact;
   refresh_ghosts(x, false);
   const auto held = grips();
   View<Real**> anchor("anchor", held.size(), mesh_->dim());
@@ -78,6 +80,7 @@ void System::tether(Real stiffness, const BlockVector& x) {
   Kokkos::deep_copy(anchor, host);
   anchor_ = anchor;
   tether_ = stiffness;
+  return true;
 }
 
 /// Evaluates the loads at time t and lets the scales grow with them.
@@ -378,6 +381,20 @@ std::vector<OutputField> System::outputs(const BlockVector& x) {
     for (auto& field : fields) outputs.push_back(std::move(field));
   }
   return outputs;
+}
+
+std::vector<Total> System::totals(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  std::vector<Total> totals;
+  base::collectively(*comm(), [&] {
+    for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->totals(state(static_cast<int>(m)), totals);
+  });
+  std::vector<Real> here, all(totals.size());
+  for (const auto& total : totals) here.push_back(total.value);
+  if (!here.empty())
+    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+  for (std::size_t k = 0; k < all.size(); ++k) totals[k].value = all[k];
+  return totals;
 }
 
 std::vector<Reaction> System::reactions(const BlockVector& x) {

@@ -90,8 +90,8 @@ class BlockProblem {
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
   /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
   /// about as much as the rock around it does): so every body is held, and where they rub friction decides little. Zero
-  /// is f as it is.
-  virtual void tether(Real stiffness, const BlockVector& x) {}
+  /// is f as it is. False where there is no contact, and f stays as it is.
+  virtual bool tether(Real stiffness, const BlockVector& x) { return false; }
   /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
   /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,
   /// and f is another function. The same on every rank.

@@ -225,7 +225,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   const auto& flow = *scene.flow;
   const auto rock = mobility(scene, mesh);
   physics::DarcyFlowParameters darcy{rock.values, rock.number};
-  darcy.scheme = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
+  const auto chosen = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
+  darcy.scheme = chosen.scheme;
+  darcy.reason = chosen.reason;
   darcy.deforms = scene.deforms();
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
@@ -273,7 +275,7 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
   }
   const auto flow = mobility(scene, mesh);
   coupling.initial = scene.flow->initial_pressure;
-  coupling.scheme = physics::flux_scheme(scene.flow->scheme, mesh, flow.values, flow.number);
+  coupling.scheme = physics::flux_scheme(scene.flow->scheme, mesh, flow.values, flow.number).scheme;
   coupling.fractures = !mesh.fracture_names.empty();
   coupling.tips = mesh.n_global_enriched > 0;
   return physics::make_poroelastic_coupling(mesh.shape, std::move(coupling));

@@ -294,7 +294,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   return contact_counts(*model_.mesh().comm, outputs);
 }
 
-/// Forces and moments of the supports, and what flows in at prescribed pressures, by boundary.
+/// Forces and moments of the supports and what flows in, by boundary, and what modules have to tell.
 json Results::reactions() const {
   json forces = json::object(), moments = json::object(), flows = json::object();
   const auto add = [](json& sum, const auto& values) {
@@ -312,6 +312,12 @@ json Results::reactions() const {
   }
   json all = {{"reactions", forces}, {"reaction_moments", moments}};
   if (!flows.empty()) all["inflows"] = flows;
+  for (const auto& total : model_.system().totals(model_.state())) {
+    json* place = &all;
+    for (const auto& name : total.names) place = &(*place)[name];
+    if (place->is_array()) place = &(*place)[0];
+    *place = total.value + (place->is_null() ? 0 : place->get<Real>());
+  }
   return all;
 }
 

@@ -8,6 +8,7 @@
 #include "model/uniqueness.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -112,6 +113,9 @@ void describe(const Model& model, base::Log& log) {
     log.info("partition: {} to {} cells per rank (largest/mean {:.3f}), {} to {} fracture faces ({:.3f}); {} cut edges",
              partition.cells[0], partition.cells[1], partition.cell_imbalance, partition.fracture_faces[0],
              partition.fracture_faces[1], partition.fracture_face_imbalance, partition.edge_cut);
+  std::vector<std::string> modules;
+  for (const auto& module : model.system().modules()) modules.push_back(module->name());
+  log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
   if (const auto doubt = dilation_doubt(model.scene(), mesh); !doubt.empty()) log.warning("{}", doubt);
   const auto& scene = model.scene();

@@ -23,7 +23,10 @@ class DarcyFlow final : public assembly::Module {
 
   explicit DarcyFlow(DarcyFlowParameters parameters) : parameters_(std::move(parameters)) {}
 
-  std::string name() const override { return "Darcy flow, " + name_of(parameters_.scheme); }
+  std::string name() const override {
+    return "Darcy flow, " + name_of(parameters_.scheme) +
+           (parameters_.reason.empty() ? "" : " (" + parameters_.reason + ")");
+  }
 
   assembly::Declaration declare() const override {
     using assembly::Quantity;
@@ -58,7 +61,7 @@ class DarcyFlow final : public assembly::Module {
     for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
       if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
-    exchange_.bind(context, blocks_[1]);
+    exchange_.bind(context, blocks_[1], parameters_.fluid);
     for (int k = 0; k < 2; ++k) load_[k] = View<Real*>("load", context.layout(blocks_[k]).n_owned());
   }
 
@@ -75,7 +78,7 @@ class DarcyFlow final : public assembly::Module {
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     assembler_->add_jacobian(*op_, state, J);
-    exchange_.add_jacobian(J);
+    exchange_.add_jacobian(state, J);
   }
   bool symmetric(const assembly::State&) const override { return is_linear(); }
 
@@ -94,9 +97,14 @@ class DarcyFlow final : public assembly::Module {
       assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real volume, const auto& x) {
         cells(c) -= volume * parameters_.source[0](x, t);
       });
+    std::vector<Real> beyond;
     for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (facet < mesh_->facets->n_owned) facets(facet) += area * condition.load(x, t);
+      if (condition.conductance)
+        beyond.push_back(condition.value(x, t));
+      else if (facet < mesh_->facets->n_owned)
+        facets(facet) += area * condition.value(x, t);
     });
+    exchange_.set_outside(beyond);
     Kokkos::deep_copy(load_[0], cells);
     Kokkos::deep_copy(load_[1], facets);
     loaded_ = true;
@@ -116,6 +124,16 @@ class DarcyFlow final : public assembly::Module {
     for (Real component : parameters_.weight) weight += component * component;
     for (const auto& each : parameters_.mobility) mobility = std::max(mobility, each.template trace<dim>() / dim);
     return std::max(beyond, size_ * (std::sqrt(weight) + flux / mobility));
+  }
+
+  void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    const auto first = add_inflows(parameters_.conditions, *mesh_, totals);
+    for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (facet >= mesh_->facets->n_owned) return;
+      const auto number = &condition - parameters_.conditions.data();
+      totals[first + number].value -= area * condition.outflow(p(facet), x, state.t, parameters_.fluid);
+    });
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
@@ -209,14 +227,14 @@ bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility
 
 }  // namespace
 
-FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
-                       const std::vector<int>& mobility_of_cell) {
+ChosenScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
+                         const std::vector<int>& mobility_of_cell) {
   const bool simplices = mesh::is_simplex(mesh.shape);
   SPREKK_CHECK(name != "rt0" || simplices,
                "Sprekk > Flow > \"scheme\": \"rt0\" takes triangles and tetrahedra; others take tpfa or mimetic");
-  if (name == "tpfa") return FluxScheme::tpfa;
-  if (name == "mimetic") return FluxScheme::mimetic;
-  if (simplices) return FluxScheme::rt0;
+  if (name != "auto")
+    return {name == "tpfa" ? FluxScheme::tpfa : name == "mimetic" ? FluxScheme::mimetic : FluxScheme::rt0, ""};
+  if (simplices) return {FluxScheme::rt0, "auto: cells are simplices"};
   int here = 0, anywhere = 0;  // cells that are not
   mesh::for_shape(mesh.shape, [&](auto shape) {
     Real X[mesh::n_nodes(shape())][mesh::dimension(shape())];
@@ -227,7 +245,15 @@ FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const st
     }
   });
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-  return anywhere ? FluxScheme::mimetic : FluxScheme::tpfa;
+  if (anywhere) return {FluxScheme::mimetic, "auto: permeability and cells are not orthogonal"};
+  return {FluxScheme::tpfa, "auto: permeability and cells are orthogonal"};
+}
+
+std::size_t add_inflows(const std::vector<FluidCondition>& conditions, const mesh::Mesh& mesh,
+                        std::vector<assembly::Total>& totals) {
+  const std::size_t first = totals.size();
+  for (const auto& condition : conditions) totals.push_back({{"inflows", mesh.boundary_names[condition.boundary]}, 0});
+  return first;
 }
 
 std::string name_of(FluxScheme scheme) {

@@ -15,7 +15,7 @@ namespace sprekk::physics {
 /// Volumes of fluid here and below are those at reference conditions, mass over the density rho_0 there.
 
 /// Fluid that leaves through a boundary: volume per area and time, m/s; or with a conductance c, m/(Pa s), as much as
-/// c (p - value), the value being the pressure beyond, Pa.
+/// c (p - value) (see Exchange), the value being the pressure beyond, Pa.
 struct FluidCondition {
   int boundary;
   base::Expression value;
@@ -23,9 +23,9 @@ struct FluidCondition {
   int region = -1;    ///< only on faces of cells of this region; -1: all
   int fracture = -1;  ///< through the end of this fracture, of which the area is length times aperture; -1: of rock
 
-  /// What leaves where p is zero.
-  Real load(const std::array<Real, 3>& x, Real t) const {
-    return conductance ? -(*conductance)(x, t) * value(x, t) : value(x, t);
+  /// What leaves where the pressure is p.
+  Real outflow(Real p, const std::array<Real, 3>& x, Real t, const laws::Fluid& fluid) const {
+    return conductance ? (*conductance)(x, t) * fluid.drop(p, value(x, t), 0) : value(x, t);
   }
 };
 
@@ -33,6 +33,7 @@ struct DarcyFlowParameters {
   std::vector<laws::Mobility> mobility;  ///< different ones
   std::vector<int> mobility_of_cell;     ///< [local cell] which of them; empty: the number of the cell's region
   FluxScheme scheme = FluxScheme::rt0;
+  std::string reason = "";  ///< why this one
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};                 ///< rho_0 g, N/m^3
   std::vector<base::Expression> source = {};    ///< volume of fluid per volume and time, 1/s; empty or one
@@ -42,11 +43,20 @@ struct DarcyFlowParameters {
                                     ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };
 
+struct ChosenScheme {
+  FluxScheme scheme;
+  std::string reason;
+};
+
 /// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
 /// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
-FluxScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
-                       const std::vector<int>& mobility_of_cell = {});
+ChosenScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
+                         const std::vector<int>& mobility_of_cell = {});
 std::string name_of(FluxScheme scheme);
+
+/// Appends a total of what flows in for each condition, still zero; returns the number of the first.
+std::size_t add_inflows(const std::vector<FluidCondition>& conditions, const mesh::Mesh& mesh,
+                        std::vector<assembly::Total>& totals);
 
 /// Declares the unknowns "pressure" (cells, Pa) and "face pressure" (facets, Pa) and adds to their rows, for a cell K
 /// with faces i,

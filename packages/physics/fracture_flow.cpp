@@ -4,6 +4,7 @@
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "physics/exchange.hpp"
+#include "physics/face_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,45 +78,6 @@ struct WideningFace : FractureFace<n> {
   }
 };
 
-/// A fracture face in coordinates of its own, and the flow matrix for a transmissivity. In 2D a face is a line, and two
-/// points are exact for constant gradients.
-template <Shape shape>
-class FacePlane {
- public:
-  static constexpr int dim = mesh::dimension(shape), n = mesh::n_face_corners(shape);
-  Real T[n][n] = {}, d[n][3] = {};  // flow matrix; from the centre of the face to those of its ridges, m
-  Real area = 0;
-
-  FacePlane(const mesh::Mesh& mesh, LocalIndex face, Real transmissivity, FluxScheme scheme) {
-    const auto& f = mesh.fracture_faces[face];
-    if constexpr (dim == 2) {
-      area = f.area;
-      for (int k = 0; k < n; ++k) {
-        const auto x = mesh::ridge_centre(mesh, face, k);
-        for (int i = 0; i < dim; ++i) d[k][i] = x[i] - f.centre[i];
-        T[k][k] = 2 * transmissivity / area;
-      }
-    } else {
-      constexpr Shape plane = mesh::face_shape(shape);
-      const int side = f.cell[mesh::minus] >= 0 ? mesh::minus : mesh::plus;
-      Real X[n][2];
-      for (int k = 0; k < n; ++k)
-        for (int t = 0; t < 2; ++t) {
-          X[k][t] = 0;
-          for (int i = 0; i < 3; ++i)
-            X[k][t] += f.frame[1 + t][i] * (mesh.coordinates[f.nodes[side][k] * 3 + i] - f.centre[i]);
-        }
-      const CellFaces<plane> ends(X);
-      const FlowMatrix<plane> matrix(ends, laws::Mobility::isotropic(transmissivity), scheme);
-      area = ends.volume;
-      for (int k = 0; k < n; ++k) {
-        for (int i = 0; i < 3; ++i) d[k][i] = ends.centre[k][0] * f.frame[1][i] + ends.centre[k][1] * f.frame[2][i];
-        for (int j = 0; j < n; ++j) T[k][j] = matrix.T[k][j];
-      }
-    }
-  }
-};
-
 template <Shape shape>
 class FractureFlow final : public assembly::Module {
  public:
@@ -154,7 +116,7 @@ class FractureFlow final : public assembly::Module {
     for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
       if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
-    exchange_.bind(context, block_);
+    exchange_.bind(context, block_, parameters_.fluid);
     load_ = View<Real*>("load", context.layout(block_).n_owned());
   }
 
@@ -175,7 +137,7 @@ class FractureFlow final : public assembly::Module {
       widening_assembler_->add_jacobian(WideningFace<n>(op_), state, J);
     else
       assembler_->add_jacobian(op_, state, J);
-    exchange_.add_jacobian(J);
+    exchange_.add_jacobian(state, J);
   }
   bool symmetric(const assembly::State&) const override { return is_linear() || parameters_.widens; }
 
@@ -192,9 +154,14 @@ class FractureFlow final : public assembly::Module {
     Kokkos::deep_copy(facets, 0.0);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for_each_source(f, t, [&](Real area, Real source) { facets(mesh_->facets->fracture_face[f]) -= area * source; });
+    std::vector<Real> beyond;
     for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (facet < mesh_->facets->n_owned) facets(facet) += area * condition.load(x, t);
+      if (condition.conductance)
+        beyond.push_back(condition.value(x, t));
+      else if (facet < mesh_->facets->n_owned)
+        facets(facet) += area * condition.value(x, t);
     });
+    exchange_.set_outside(beyond);
     Kokkos::deep_copy(load_, facets);
     loaded_ = true;
   }
@@ -218,6 +185,16 @@ class FractureFlow final : public assembly::Module {
             let(face.hydraulic_aperture() * value, face.transmissivity());
         }
     return largest;
+  }
+
+  void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+    const auto first = add_inflows(parameters_.conditions, *mesh_, totals);
+    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
+      if (facet >= mesh_->facets->n_owned) return;
+      const auto number = &condition - parameters_.conditions.data();
+      totals[first + number].value -= area * condition.outflow(p(facet), x, state.t, parameters_.fluid);
+    });
   }
 
   void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {

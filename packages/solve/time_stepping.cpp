@@ -47,7 +47,7 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
   Real stiffness = first_tether;
   for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
     const bool last = stiffness < least_tether;
-    problem_.tether(last ? 0 : stiffness, place);
+    if (!problem_.tether(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
     if (last) return newton;
     fields::copy(newton.converged ? x : place, newton.converged ? place : x);

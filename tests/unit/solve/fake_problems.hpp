@@ -290,9 +290,11 @@ class ScalarProblem : public BlockProblem {
     const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
     if (damps.empty() || damps.back() != damping) damps.push_back(damping);
   }
-  void tether(Real stiffness, const BlockVector& x) override {
+  bool has_contact = true;
+  bool tether(Real stiffness, const BlockVector& x) override {
     tethers.push_back(stiffness);
     anchor_.assign(x[0]->getData().begin(), x[0]->getData().end());
+    return has_contact;
   }
   std::vector<char> states(const BlockVector& x) override {
     std::vector<char> states;

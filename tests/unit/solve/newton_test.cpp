@@ -233,6 +233,27 @@ TEST(TimeStepper, CreepsWhereNewtonFails) {
   EXPECT_EQ(problem.tethers.back(), 0);
 }
 
+/// The same without contact: no iteration is spent on a problem that tethers leave as it is.
+TEST(TimeStepper, DoesNotTetherWhereThereIsNoContact) {
+  const auto iterations = [](bool tethers) {
+    ScalarProblem problem(
+        Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
+        [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+    problem.has_contact = false;
+    Newton newton(problem, {});
+    solve::TimeSteppingOptions options;
+    options.tethers = tethers;
+    options.max_halvings = 2;
+    TimeStepper stepper(problem, newton, options);
+    auto x = problem.constant(0);
+    Real t = 0;
+    const auto report = stepper.advance(x, t, 1);
+    EXPECT_FALSE(report.converged);
+    return report.newton_iterations;
+  };
+  EXPECT_EQ(iterations(true), iterations(false));
+}
+
 TEST(TimeStepper, TimeGoesWithTheStateWhereAnEvaluationThrows) {
   const auto f = [](Real x, Real t, Real dt) {
     if (t > 2.6 && dt <= 0.3) throw Error("no loads beyond 2.6");

@@ -125,7 +125,46 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
       const Real slope = 3 * viscosity / (in_fracture ? 10 : 1);
       const auto p = [&](const auto& x, const auto&) { return Vector3{7 + 3 / 0.25 + slope * (1 - x[0])}; };
       EXPECT_LT(error(model, in_fracture ? "fracture pressure" : "pressure", p), 1e-7) << cell << in_fracture;
+      const Real put_in = 3 * (in_fracture ? aperture : 1);
+      for (const auto& total : model.system().totals(model.state()))
+        EXPECT_NEAR(total.value / put_in, total.names[1] == "west" ? 1 : -1, 1e-9) << cell << in_fracture;
     }
+}
+
+/// Two fractures in tight rock that end on the boundary in one point. What is put in through the end of one leaves
+/// through that of the other; the report of what flows in knows of both.
+TEST(FractureFlow, TwoFracturesMeetOnTheBoundary) {
+  auto scene = read_scene("flow/source_2d.xml");
+  scene.mesh_file.emplace();
+  scene.mesh_file->path = std::string(SPREKK_SOURCE_DIR) + "/tests/data/meshes/meeting_on_boundary.msh";
+  scene.materials.at("rock").permeability = {base::Expression(1e-12)};
+  auto& joint = scene.materials["joint"];
+  joint.type = "joint";
+  joint.initial_aperture = aperture;
+  for (const char* name : {"a", "b"}) {
+    scene.mesh_file->fractures[name];
+    scene.fractures[name].material = "joint";
+  }
+  scene.flow->source = 0;
+  scene.boundary_conditions.clear();
+  auto& in = scene.boundary_conditions["in"];
+  in.boundary = "south";
+  in.fracture = "a";
+  in.flux = base::Expression(-3.0);
+  auto& out = scene.boundary_conditions["out"];
+  out.boundary = "south";
+  out.fracture = "b";
+  out.conductance = base::Expression(0.25);
+  out.pressure = base::Expression(7.0);
+  model::Model model(scene, Tpetra::getDefaultComm());
+  ASSERT_TRUE(model.step_to(1).converged);
+  const auto p = [](const auto&, const auto&) { return Vector3{7 + 3 / 0.25}; };
+  EXPECT_LT(error(model, "fracture pressure", p), 1e-9);
+  const auto totals = model.system().totals(model.state());
+  ASSERT_EQ(totals.size(), 2u);
+  for (const auto& total : totals) EXPECT_EQ(total.names, (std::vector<std::string>{"inflows", "south"}));
+  EXPECT_NEAR(totals[0].value, 3 * aperture, 1e-12 * aperture);
+  EXPECT_NEAR(totals[1].value, -3 * aperture, 1e-9 * aperture);
 }
 
 }  // namespace
