@@ -23,7 +23,11 @@ struct Fluid {
     if (compressibility == 0) return a - b + lift;
     return density(b) * (std::expm1(compressibility * (a - b)) / compressibility + density(a) * lift);
   }
-  /// Its derivatives in the pressures at a and b.
+  /// What the pressure of fluid at rest grows by from a point where it is p: ln of 1/(1 - c e lift), over c.
+  KOKKOS_INLINE_FUNCTION Real head(Real p, Real lift) const {
+    return compressibility == 0 ? lift : -std::log1p(-compressibility * density(p) * lift) / compressibility;
+  }
+  /// The derivatives of drop() in the pressures at a and b.
   KOKKOS_INLINE_FUNCTION Real ddrop_da(Real a, Real b, Real lift) const {
     return density(a) * (1 + compressibility * density(b) * lift);
   }

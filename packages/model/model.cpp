@@ -13,6 +13,7 @@
 #include "physics/fracture_flow.hpp"
 #include "physics/mechanics.hpp"
 #include "physics/poroelastic_coupling.hpp"
+#include "physics/wells.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -206,6 +207,17 @@ std::vector<physics::FluidCondition> fluid_conditions(const Scene& scene, const 
   return conditions;
 }
 
+std::vector<physics::Well> wells(const Scene& scene, int dim) {
+  std::vector<physics::Well> wells;
+  for (const auto& [name, one] : scene.flow->wells) {
+    wells.push_back({name, {}, one.radius, one.skin, one.rate, one.pressure});
+    for (std::size_t k = 0; k < one.points.size(); k += dim) {
+      std::copy_n(&one.points[k], dim, wells.back().points.emplace_back().begin());
+    }
+  }
+  return wells;
+}
+
 /// The values of owned fracture faces and of ghosts. Collective.
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& owned) {
   const fields::Layout layout({"value", fields::Entity::fracture_face, 1, ""}, mesh);
@@ -252,6 +264,11 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   for (const auto& name : mesh.fracture_names) fractures.source.push_back(scene.fractures.at(name).source);
   std::vector<std::unique_ptr<assembly::Module>> modules;
   const auto fluid = darcy.fluid;
+  if (!flow.wells.empty()) {
+    physics::WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
+    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.transmissivity);
+    modules.push_back(physics::make_wells(mesh.shape, std::move(all)));
+  }
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
   if (std::any_of(pores.begin(), pores.end(),
                   [&](const auto& of) { return of.growth > 0 || of.porosity * fluid.compressibility > 0; }))

@@ -232,7 +232,20 @@ void Flow::describe(base::Section& s) {
   s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
            "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
            "orthogonal, else mimetic");
+  s.named_sections(wells, "Wells", "by names of your choice");
   check_constant_in_time(s, "initial pressure", initial_pressure);
+}
+
+void Well::describe(base::Section& s) {
+  s.required(points, "points", "m", base::any(),
+             "2D: x, y of a line of length 1 across the plane; 3D: of a polyline, x0, y0, z0, x1, y1, z1, ...");
+  s.required(radius, "radius", "m", base::positive(), "r_w of the hole");
+  s.entry(skin, "skin", "-", base::any(),
+          "S: the pressure falls by S like flow by a further factor exp(S) of distance");
+  s.entry(rate, "rate", "m^3/s", base::any(),
+          "volume of fluid per time that is put in (2D: m^2/s), negative: taken out; an expression of t");
+  s.entry(pressure, "pressure", "Pa", base::any(), "in the well at its first point, an expression of t");
+  if (s.complete() && rate.has_value() == pressure.has_value()) s.fail("give either \"rate\" or \"pressure\"");
 }
 
 void Region::describe(base::Section& s) {

@@ -102,12 +102,21 @@ struct MeshFile {
   void describe(base::Section& section);
 };
 
+/// A line from which fluid flows into the rock, or back.
+struct Well {
+  std::vector<Real> points;  ///< 2D: one; 3D: of a polyline
+  Real radius = 0, skin = 0;
+  std::optional<base::Expression> rate, pressure;  ///< exactly one
+  void describe(base::Section& section);
+};
+
 /// A fluid that flows through the rock.
 struct Flow {
   bool rigid_rock = false;  ///< the rock does not deform: no mechanics
   Real viscosity = 1e-3, density = 1000, compressibility = 0, reference_pressure = 0;
   base::Expression source = 0, initial_pressure = 0;
   std::string scheme = "auto";
+  std::map<std::string, Well> wells;
   void describe(base::Section& section);
 };
 

@@ -190,19 +190,37 @@ class Comparison {
       fail("Bulk", "has a force or stress of the rock, which \"Flow > rigid rock\" says does not deform");
     if (scene_.output.error_estimate)
       fail("Output > \"error estimate\"", "is of stress and jumps without a fluid; not available with \"Flow\"");
+    compare_wells();
     compare_pressure();
     compare_fluid_conditions();
     for (const auto& name : names_.regions.value_or(Names()))
       if (const auto* rock = rock_of(name)) compare_permeability(*rock);
   }
 
+  void compare_wells() {
+    for (const auto& [name, well] : scene_.flow->wells) {
+      const std::string place = fmt::format("Flow > Wells > {} > \"points\"", name);
+      const auto n = well.points.size();
+      if (names_.dim == 2) check_length(place, n, 2);
+      if (names_.dim == 3 && n > 0 && (n < 6 || n % 3 != 0))
+        fail(place, fmt::format("has {}, must have three for each of two or more points", base::counted(n, "value")));
+      for (std::size_t k = 3; names_.dim == 3 && k + 2 < n; k += 3)
+        if (std::equal(&well.points[k], &well.points[k] + 3, &well.points[k - 3]))
+          fail(place, fmt::format("has the point ({}, {}, {}) twice in a row", well.points[k], well.points[k + 1],
+                                  well.points[k + 2]));
+    }
+  }
+
   /// Flow that no pressure and no storage ties to a level has none, or any.
   void compare_pressure() {
     const auto& conditions = scene_.boundary_conditions;
-    const bool given = std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
-      const auto& c = named.second;
-      return c.pressure && !(c.conductance && c.conductance->is_constant() && (*c.conductance)({}, 0) == 0);
-    });
+    const auto& wells = scene_.flow->wells;
+    const bool given = std::any_of(wells.begin(), wells.end(), [](const auto& w) { return w.second.pressure; }) ||
+                       std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
+                         const auto& c = named.second;
+                         const auto& k = c.conductance;
+                         return c.pressure && !(k && k->is_constant() && (*k)({}, 0) == 0);
+                       });
     if (!names_.regions || !names_.fractures) return;
     const bool in_fractures = !names_.fractures->empty() && (scene_.flow->compressibility > 0 || scene_.deforms());
     const bool stored =
@@ -215,7 +233,8 @@ class Comparison {
         is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
       fail("Flow",
-           "nothing says how high the pressure is: give a \"pressure\" on a boundary, or storage (\"compressibility of "
+           "nothing says how high the pressure is: give a \"pressure\" on a boundary or in a well, or storage "
+           "(\"compressibility of "
            "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
   }
 
