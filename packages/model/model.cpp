@@ -265,8 +265,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   std::vector<std::unique_ptr<assembly::Module>> modules;
   const auto fluid = darcy.fluid;
   if (!flow.wells.empty()) {
-    physics::WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
-    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.transmissivity);
+    physics::WellsParameters all{
+        wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
+    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.transmissivity());
     modules.push_back(physics::make_wells(mesh.shape, std::move(all)));
   }
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
