@@ -59,7 +59,7 @@ struct PatchEntity {
 };
 
 /// exp(-gamma)/4: of squares with two-point fluxes, over the root of the sum of the squares of their edges.
-constexpr Real two_point_radius = 0.14036;
+constexpr Real two_point_radius = 0.140364870891722;
 
 /// What is too much in the logarithm, because the pressure is exact on the outer ends already; found on uniform meshes:
 /// 0.07 on squares, 0.06 on half squares, 0.04 on Delaunay triangles.

@@ -1,5 +1,6 @@
 """The cases of flow: scenes, meshes, what is measured on them, and the bounds."""
 import csv
+import math
 from collections import namedtuple
 
 import numpy as np
@@ -99,6 +100,29 @@ def flow_barrier():
     return case("flow_barrier", "flow around and through a fracture that resists it", series, errors, ("c0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
+# Wells
+
+def flow_well(d, counts):
+    """The drawdown at the well, which is that from the middles of the sides to its radius; 4:1 is the anisotropy across the well."""
+    def errors(run, _):
+        return {"in well": max(abs(run.results["steps"][-1]["wells"]["well"]["pressure"]) / math.log(0.5 / 0.001), 1e-17)}
+    rock = {1: (), 4: (f"Materials.rock.permeability={{4, 1{', 1' * (d - 2)}}}", f"Tables.a.values={{{2**0.5!r}, {2**0.5!r}}}")}
+    series = [Series(f"{name} {ratio}:1", boxes(d, counts), f"verification/flow_well_{d}d.xml", (*sets, *rock[ratio]), None, 2)
+              for ratio in rock for name, sets in shapes(d).items()]
+    most = {"rt0 triangle": 0.02, "rt0 tetrahedron": 0.03, "mimetic": 0.02}
+    bounds = [Bound(one.name, label, "in well", value) for one in series for label, _ in one.meshes for start, value in most.items() if one.name.startswith(start)]
+    bounds += [Order(one.name, "in well", 1.5) for one in series if "tpfa" in one.name]
+    return case(f"flow_well{d}d", f"a well in {d}D", series, errors, (series[0].name, f"n={counts[-1]}", "in well"), bounds)
+
+
+def flow_well2d():
+    return flow_well(2, (11, 21, 41, 81))
+
+
+def flow_well3d():
+    return flow_well(3, (5, 9, 17))
+
+
 # Networks
 
 def flow_patch():
@@ -129,10 +153,11 @@ Line = namedtuple("Line", "name start end axis jumps", defaults=[()])
 
 
 class Lines:
-    """Pressures along lines and their references; `profiles` keeps what was measured, for pictures."""
+    """Pressures along lines and their references, and the mean pressure in the rock as a program of others has it, if it is known;
+    `profiles` keeps what was measured, for pictures."""
 
-    def __init__(self, mobility, *lines):
-        self.mobility, self.lines, self.profiles = mobility, lines, []
+    def __init__(self, mobility, *lines, mean=None):
+        self.mobility, self.lines, self.mean, self.profiles = mobility, lines, mean, []
 
     @staticmethod
     def reference(line):
@@ -159,7 +184,11 @@ class Lines:
             outside += int(((found < low) | (found > high)).sum())
             profile.append((fine, drawn))
         self.profiles.append((run.results["mesh"]["cells"], profile))
-        return {"line": worst, **({"outside": outside} if banded else {})}
+        return {"line": worst, **({"outside": outside} if banded else {}), **({"mean": self.mean_error(run)} if self.mean else {})}
+
+    def mean_error(self, run):
+        volume = flow_measure.cell_points(run)[1].sum(axis=1)
+        return abs((volume * flow_measure.array(run, "pressure")).sum() / volume.sum() / self.mean - 1)
 
 
 def draw_lines(series, file):
@@ -203,10 +232,13 @@ JOINTS = {"conductive": (), "blocking": tuple(f"Materials.joint.{which} permeabi
 def flow_regular2d():
     lines = {"conductive": (Line("regular 2D conductive x=0.5", (0.5, 0), (0.5, 1), 1), Line("regular 2D conductive y=0.7", (0, 0.7), (1, 0.7), 0)),
              "blocking": (Line("regular 2D blocking", (0, 0.1), (0.9, 1), 0),)}
-    series = [Series(f"{kind} {name}", boxes(2, (16, 32, 64, 128)), "verification/flow_regular_2d.xml", (*sets, *JOINTS[kind]), Lines(one, *of), 2)
+    peer = {"conductive": 1.19931, "blocking": 2.32257}  # PorePy, MPFA on 3822 triangles and 140 faces of fractures
+    series = [Series(f"{kind} {name}", boxes(2, (16, 32, 64, 128)), "verification/flow_regular_2d.xml", (*sets, *JOINTS[kind]), Lines(one, *of, mean=peer[kind]), 2)
               for kind, of in lines.items() for name, sets in shapes(2).items() if "mimetic" not in name]
-    return benchmark("flow_regular2d", "regular network in 2D, conductive and blocking", series,
-                     {"conductive": (1e-2, 2e-3), "blocking": (5e-4, 5e-4)}, ("conductive rt0 triangle", "n=128", "line"))
+    found = benchmark("flow_regular2d", "regular network in 2D, conductive and blocking", series,
+                      {"conductive": (1e-2, 2e-3), "blocking": (5e-4, 5e-4)}, ("conductive rt0 triangle", "n=128", "line"))
+    found.bounds += [Bound(one.name, "n=128", "mean", 1e-3) for one in series]
+    return found
 
 
 def flow_hydrocoin():
@@ -241,4 +273,4 @@ def flow_regular3d():
     return benchmark("flow_regular3d", "regular network in 3D, conductive and blocking", series, most, ("conductive tpfa hexahedron", "n=32", "line"), True)
 
 
-CASES = (mms_flow2d, mms_flow3d, flow_conductor, flow_barrier, flow_patch, flow_regular2d, flow_hydrocoin, flow_single, flow_regular3d)
+CASES = (mms_flow2d, mms_flow3d, flow_conductor, flow_barrier, flow_patch, flow_well2d, flow_well3d, flow_regular2d, flow_hydrocoin, flow_single, flow_regular3d)

@@ -110,6 +110,17 @@ def regular():
                 {name: "rock" if name == "outlet" else "tight rock" for name in regions}))
 
 
+def wells():
+    """Radial flow to the middle, exact on the sides: in x/a and y a it is isotropic, where the hole has a mean radius of (a + 1/a)/2 of its own."""
+    for d in (2, 3):
+        middle = [[0.5, 0.5], [0.5, 0.5, 0.0, 0.5, 0.5, 1.0]][d - 2]
+        pressure = "0.5*log(((x-0.5)/a(0))^2+((y-0.5)*a(0))^2)-log(0.001*(a(0)+1/a(0))/2)"
+        well = {"points": middle, "radius": 0.001, "rate": "-2*pi*a(0)^2"}
+        content = scene(box(d, 9, {}), {}, {}, {side: {"boundary": side, "pressure": pressure} for side in sides(2)}, fluid={"Wells": {"well": well}})
+        content["Tables"] = {"a": {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
+        write(f"flow_well_{d}d", "Flow to a well in a plane without end, whose pressure is prescribed on the sides (Thiem 1906).", content)
+
+
 def others():
     meshes.hydrocoin(make_scenes.FOLDER, 200).rename(make_scenes.FOLDER / "flow_hydrocoin.msh")
     joints = {name: {"initial aperture": width, "tangential permeability": 1e-6, "normal permeability": 1e-6}
@@ -124,7 +135,7 @@ def others():
 
 
 if __name__ == "__main__":
-    for make in (manufactured_solutions, single_fracture, patches, regular, others):
+    for make in (manufactured_solutions, single_fracture, patches, wells, regular, others):
         make()
     for geo in make_scenes.FOLDER.glob("*.geo"):
         geo.unlink()

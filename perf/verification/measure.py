@@ -99,8 +99,8 @@ def start(binary, scene, sets, directory, ranks=1):
         raise RunError(f"status {done.returncode}: {words[-1]}")
     results = json.loads((directory / "results.json").read_text())
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
-    of_fractures = read.written_steps(directory, "fractures")
-    faces = read.segments(read.grid(of_fractures[-1][1])) if of_fractures else None
+    written = read.written_steps(directory, "fractures")
+    faces = read.segments(read.grid(written[-1][1])) if written else None
     return Run(results, rock, faces, results["mesh"]["dimension"])
 
 

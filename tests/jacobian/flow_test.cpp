@@ -37,6 +37,15 @@ model::Scene make_scene(const std::string& cell) {
   scene.flow->compressibility = 0.4;
   scene.flow->reference_pressure = 0.3;
   for (const auto& [name, fracture] : scene.mesh.fractures) scene.fractures[name].material = "joint";
+  auto& well = scene.flow->wells["well"];
+  const auto &low = scene.mesh.lower_corner, &high = scene.mesh.upper_corner;
+  const auto at = [&](Real share) {
+    for (int i = 0; i < dim; ++i) well.points.push_back(low[i] + (i == dim - 1 ? share : 0.37) * (high[i] - low[i]));
+  };
+  at(0.1);
+  if (dim == 3) at(0.9);
+  well.radius = 1e-4;
+  well.pressure = base::Expression(2);
   auto &floor = scene.boundary_conditions["floor"], &lid = scene.boundary_conditions["lid"];
   floor.boundary = "south";
   floor.pressure = base::Expression(1);
@@ -51,14 +60,14 @@ class FlowJacobian : public ::testing::TestWithParam<std::string> {};
 TEST_P(FlowJacobian, OfEveryModuleIsItsDerivative) {
   model::Model model(make_scene(GetParam()), Tpetra::getDefaultComm());
   auto& system = model.system();
-  ASSERT_EQ(system.modules().size(), 4u);
+  ASSERT_EQ(system.modules().size(), 5u);
   system.set_time(1, 0.5);
   auto x = system.initial();
   test::randomize(x, 1, 1);
   system.commit(x);
   test::randomize(x, 1, 2);
   const auto errors = assembly::check_jacobian(system, x, 1e-5);
-  EXPECT_EQ(errors.size(), 16u);  // modules, rows, columns
+  EXPECT_EQ(errors.size(), 20u);  // modules, rows, columns
   for (const auto& e : errors) EXPECT_LE(e.error, 1e-8) << e.module << ": " << e.row << ", " << e.column;
 }
 
