@@ -248,26 +248,32 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   const auto pores = by_region(scene, mesh, [](const Material& m) {
     return physics::Pores{m.porosity, m.compressibility};
   });
-  physics::FractureFlowParameters fractures{{},          {},           darcy.scheme,
-                                            darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true)};
-  fractures.widens = scene.deforms();
+  physics::FractureFlowParameters fractures{
+      {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), scene.deforms()};
   std::vector<Real> aperture;
   for (std::size_t f = 0; f < mesh.fracture_faces.size(); ++f) {
     const auto& face = mesh.fracture_faces[f];
     const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
     const auto hydraulics = at_place(scene, joint, [&] { return joint.hydraulics(flow.viscosity, face.centre); });
-    fractures.faces.push_back(hydraulics.along);
-    if (!initial_jumps.empty()) fractures.faces.back().aperture += initial_jumps[f];
+    fractures.faces.push_back(hydraulics);
+    auto& along = fractures.faces.back().along;
+    if (!initial_jumps.empty()) along.aperture += initial_jumps[f];
     darcy.exchange.push_back(hydraulics.exchange);
-    aperture.push_back(fractures.faces.back().hydraulic_aperture());
+    aperture.push_back(along.hydraulic_aperture());
   }
-  for (const auto& name : mesh.fracture_names) fractures.source.push_back(scene.fractures.at(name).source);
+  fractures.cut_by.resize(mesh.fracture_names.size());
+  for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
+    const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
+    fractures.source.push_back(fracture.source);
+    for (const auto& name : fracture.cuts)
+      fractures.cut_by[index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
+  }
   std::vector<std::unique_ptr<assembly::Module>> modules;
   const auto fluid = darcy.fluid;
   if (!flow.wells.empty()) {
     physics::WellsParameters all{
         wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
-    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.transmissivity());
+    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.along.transmissivity());
     modules.push_back(physics::make_wells(mesh.shape, std::move(all)));
   }
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));

@@ -169,7 +169,7 @@ laws::Mobility Material::mobility(int dim, Real viscosity, const Point& x) const
   return m;
 }
 
-Material::Hydraulics Material::hydraulics(Real viscosity, const Point& x) const {
+physics::FractureFlowParameters::Face Material::hydraulics(Real viscosity, const Point& x) const {
   check(x);
   const Real a = std::max(initial_aperture(x, 0), residual_aperture(x, 0));
   SPREKK_CHECK(a > 0,
@@ -260,6 +260,10 @@ void Fracture::describe(base::Section& s) {
   s.entry(
       source, "source", "m/s", base::any(),
       "volume of fluid per area and time that is put into the fracture, with \"Flow\", an expression of x, y, z, t");
+  s.entry(
+      cuts, "cuts", "-",
+      "names of fractures that it divides where they meet: what flows from one part to the other crosses it, by its "
+      "normal permeability, with \"Flow\"");
 }
 
 void BoundaryCondition::describe(base::Section& s) {

@@ -55,11 +55,7 @@ struct Material {
   /// k/mu of the flow through rock. Throws an Error where k is no positive definite tensor of that dimension.
   laws::Mobility mobility(int dim, Real viscosity, const Point& x) const;
   /// Of the flow in and through a joint with sides at rest.
-  struct Hydraulics {
-    laws::Conduit along;
-    Real exchange;  ///< of each side, 2 k_n/(a mu), m/(Pa s)
-  };
-  Hydraulics hydraulics(Real viscosity, const Point& x) const;
+  physics::FractureFlowParameters::Face hydraulics(Real viscosity, const Point& x) const;
 
  private:
   /// Calls visit(name, value, least, least itself is allowed, upper limit) for each of the values that are given.
@@ -128,7 +124,8 @@ struct Region {
 struct Fracture {
   std::string material;
   base::Expression fluid_pressure = 0;
-  base::Expression source = 0;  ///< of fluid
+  base::Expression source = 0;    ///< of fluid
+  std::vector<std::string> cuts;  ///< names of fractures that its filling divides
   void describe(base::Section& section);
 };
 

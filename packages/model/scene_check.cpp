@@ -112,6 +112,12 @@ class Comparison {
       if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures)) {
         check_material("Fractures > " + name, fracture.material, "joint");
         compare_joint(name, fracture);
+        for (const auto& other : fracture.cuts) {
+          const std::string place = fmt::format("Fractures > {} > \"cuts\"", name);
+          if (check_name("Fractures > " + name, place, other, names_.fractures) && other == name)
+            fail(place, fmt::format("is \"{}\", the fracture itself", other));
+          if (scene_.flow && scene_.deforms()) fail(place, "needs \"Flow > rigid rock\"");
+        }
       }
     if (!names_.fractures || (scene_.fractures.empty() && !is_absent(draft_, "Fractures"))) return;
     for (const auto& name : *names_.fractures)

@@ -103,6 +103,7 @@ class FractureFlow final : public assembly::Module {
     mesh_ = context.mesh();
     size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
+    find_fillings(context.layout(block_));
     set_faces();
     const std::vector<int> rows = {block_};
     if (parameters_.widens) {
@@ -173,7 +174,8 @@ class FractureFlow final : public assembly::Module {
       if (flow != 0) largest = std::max(largest, size_ * std::abs(flow) / transmissivity);
     };
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].transmissivity()); });
+      for_each_source(f, t,
+                      [&](Real, Real source) { let(source * size_, parameters_.faces[f].along.transmissivity()); });
     for (const auto& rim : mesh_->facets->rims)
       for (const auto& condition : parameters_.conditions)
         if (holds(condition, rim)) {
@@ -182,7 +184,7 @@ class FractureFlow final : public assembly::Module {
           if (condition.conductance)
             largest = std::max(largest, std::abs(value));
           else
-            let(face.hydraulic_aperture() * value, face.transmissivity());
+            let(face.along.hydraulic_aperture() * value, face.along.transmissivity());
         }
     return largest;
   }
@@ -202,11 +204,11 @@ class FractureFlow final : public assembly::Module {
     const auto widening =
         parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const Plane plane(*mesh_, f, 1, parameters_.scheme);
+      const Plane plane = this->plane(f);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
       op_.at(f).flow(x, q);
-      const Real wider = parameters_.widens ? parameters_.faces[f].transmissivity(widening(f)) : 1;
+      const Real wider = parameters_.widens ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
       const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
       fields[0].values.push_back(x[0]);
       for (int i = 0; i < 3; ++i) {
@@ -223,13 +225,50 @@ class FractureFlow final : public assembly::Module {
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
 
+  /// Of each fracture that cuts others, what half of its width resists per area at its ridges, the mean over its faces
+  /// that end there. The owner of a ridge sees all of them.
+  void find_fillings(const fields::Layout& layout) {
+    fillings_.resize(parameters_.cut_by.size());
+    for (const auto& all : parameters_.cut_by)
+      for (const int cutting : all) {
+        auto& filling = fillings_[cutting];
+        if (!filling.empty()) continue;
+        fields::Vector owned(layout.owned()), everywhere(layout.ghosted());
+        std::vector<int> count(layout.n_owned(), 0);
+        {
+          auto sum = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
+          for (LocalIndex f = 0; f < mesh_->n_fracture_faces(); ++f)
+            for (int k = 0; k < n && mesh_->fracture_faces[f].fracture == cutting; ++k)
+              if (const LocalIndex ridge = mesh_->facets->ridge[f * n + k]; ridge < layout.n_owned()) {
+                sum(ridge, 0) += 1 / parameters_.faces[f].exchange;
+                ++count[ridge];
+              }
+          for (LocalIndex k = 0; k < layout.n_owned(); ++k) sum(k, 0) /= std::max(1, count[k]);
+        }
+        everywhere.doImport(owned, *layout.import(), Tpetra::REPLACE);
+        const auto values = everywhere.getLocalViewHost(Tpetra::Access::ReadOnly);
+        for (std::size_t k = 0; k < values.extent(0); ++k) filling.push_back(values(k, 0));
+      }
+  }
+
+  Plane plane(LocalIndex f) const {
+    const auto& face = parameters_.faces[f];
+    Plane plane(*mesh_, f, parameters_.widens ? 1 : face.along.transmissivity(), parameters_.scheme);
+    for (const int cutting : parameters_.cut_by[mesh_->fracture_faces[f].fracture])
+      for (int k = 0; k < n; ++k) {
+        const Real filling = fillings_[cutting][mesh_->facets->ridge[f * n + k]];
+        if (filling > 0)
+          add_resistance(plane.T, k, filling / (face.along.hydraulic_aperture() * mesh::ridge_length(*mesh_, f, k)));
+      }
+    return plane;
+  }
+
   void set_faces() {
     const LocalIndex n_faces = mesh_->n_fracture_faces();
     View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
     const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
     for (LocalIndex f = 0; f < n_faces; ++f) {
-      const Real transmissivity = parameters_.widens ? 1 : parameters_.faces[f].transmissivity();
-      const Plane plane(*mesh_, f, transmissivity, parameters_.scheme);
+      const Plane plane = this->plane(f);
       for (int k = 0; k < n; ++k) {
         for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
         lift_host(f, k) = 0;
@@ -238,7 +277,9 @@ class FractureFlow final : public assembly::Module {
     }
     Kokkos::deep_copy(T, T_host);
     Kokkos::deep_copy(lift, lift_host);
-    op_ = {T, lift, parameters_.fluid, assembly::to_device(parameters_.faces, "conduits")};
+    std::vector<laws::Conduit> conduits;
+    for (const auto& face : parameters_.faces) conduits.push_back(face.along);
+    op_ = {T, lift, parameters_.fluid, assembly::to_device(conduits, "conduits")};
   }
 
   /// Calls visit(area, source) at the points of a face.
@@ -261,9 +302,10 @@ class FractureFlow final : public assembly::Module {
     for (const auto& condition : parameters_.conditions)
       for (const auto& rim : mesh_->facets->rims)
         if (holds(condition, rim))
-          visit(condition, mesh_->facets->ridge[rim.face * n + rim.ridge],
-                parameters_.faces[rim.face].hydraulic_aperture() * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
-                mesh::ridge_centre(*mesh_, rim.face, rim.ridge));
+          visit(
+              condition, mesh_->facets->ridge[rim.face * n + rim.ridge],
+              parameters_.faces[rim.face].along.hydraulic_aperture() * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
+              mesh::ridge_centre(*mesh_, rim.face, rim.ridge));
   }
 
   FractureFlowParameters parameters_;
@@ -271,6 +313,7 @@ class FractureFlow final : public assembly::Module {
   int block_ = -1, widening_ = -1;  // face pressure, widening
   Real size_ = 0;                   // largest extent of the domain, m
   bool loaded_ = false;
+  std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
   Op op_;
   std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<WideningAssembler> widening_assembler_;

@@ -11,7 +11,13 @@
 namespace sprekk::physics {
 
 struct FractureFlowParameters {
-  std::vector<laws::Conduit> faces;      ///< [local fracture face]
+  /// Of one fracture face.
+  struct Face {
+    laws::Conduit along;
+    Real exchange;  ///< of each side, 2 k_n/(a mu), m/(Pa s); infinite: nothing resists
+  };
+  std::vector<Face> faces;               ///< [local fracture face]
+  std::vector<std::vector<int>> cut_by;  ///< [fracture] those whose filling lies between its parts; none if it widens
   std::vector<base::Expression> source;  ///< [fracture] volume of fluid per area and time, m/s
   FluxScheme scheme = FluxScheme::rt0;   ///< as in the rock
   laws::Fluid fluid = {};
@@ -24,8 +30,9 @@ struct FractureFlowParameters {
 ///   sum_i q_i - integral_F source   on F itself, where the cells beside add -q,   and   -q_i + what leaves   on ridges
 /// with q_i as in DarcyFlow, T the hybrid form of DarcyFlow on the face, with the transmissivity
 /// for the mobility. All faces that end in a ridge have its pressure, so what flows into an intersection flows out of
-/// it. Outputs: "fracture pressure" p_F, and "fluid flux" sum_i q_i d_i / (A e_F), Darcy velocity times aperture
-/// (faces, m^2/s).
+/// it. Between a face and its ridge in a fracture that cuts it lies half of the width of that, which T gets as a
+/// resistance 1/(exchange of that x aperture x length of the ridge). Outputs: "fracture pressure" p_F, and "fluid flux"
+/// sum_i q_i d_i / (A e_F), Darcy velocity times aperture (faces, m^2/s).
 std::unique_ptr<assembly::Module> make_fracture_flow(mesh::Shape shape, FractureFlowParameters parameters);
 
 }  // namespace sprekk::physics

@@ -92,6 +92,19 @@ struct CellFaces {
   }
 };
 
+/// What resists behind end e in addition, R, Pa s/m^3: T <- (T^-1 + R e e^T)^-1, exact for any R >= 0.
+template <int n>
+KOKKOS_INLINE_FUNCTION void add_resistance(Real (&T)[n][n], int e, Real R) {
+  const Real share = 1 / (1 + R * T[e][e]);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (i != e && j != e) T[i][j] -= T[i][e] * T[e][j] * R * share;
+  for (int i = 0; i < n; ++i) {
+    T[i][e] *= share;
+    if (i != e) T[e][i] *= share;
+  }
+}
+
 /// T of a cell, m^3/(Pa s), symmetric positive definite: A (k/mu) A^T / V, which gives the flow of a constant gradient,
 /// and a part that is zero for those.
 template <Shape shape>
@@ -117,19 +130,7 @@ struct FlowMatrix {
       add_mimetic(faces, mobility);
   }
 
-  /// What resists behind face e in addition, R, Pa s/m^3: T <- (T^-1 + R e e^T)^-1, exact for any R >= 0.
-  KOKKOS_INLINE_FUNCTION void add_resistance(int e, Real R) {
-    const Real share = 1 / (1 + R * T[e][e]);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        if (i != e && j != e) T[i][j] -= T[i][e] * T[e][j] * R * share;
-    for (int i = 0; i < n; ++i) {
-      T[i][e] *= share;
-      if (i != e) T[e][i] *= share;
-    }
-  }
-
-  /// Lets nothing through face e: the limit of that for large R.
+  /// Lets nothing through face e: the limit of add_resistance() for large R.
   KOKKOS_INLINE_FUNCTION void close(int e) {
     const Real own = T[e][e];
     for (int i = 0; i < n; ++i)
@@ -264,7 +265,7 @@ struct HybridCell {
     FlowMatrix<shape> matrix(faces, mobility(number(cell)), scheme);
     if (beside.extent(0) > 0 && beside(cell) >= 0)
       for (int f = 0; f < n; ++f)
-        if (resistance(beside(cell), f) > 0) matrix.add_resistance(f, resistance(beside(cell), f));
+        if (resistance(beside(cell), f) > 0) add_resistance(matrix.T, f, resistance(beside(cell), f));
     HybridFlow<n> result{fluid, {}, {}};
     for (int f = 0; f < n; ++f) {
       for (int g = 0; g < n; ++g) result.T[f][g] = matrix.T[f][g];

@@ -104,6 +104,32 @@ TEST(FractureFlow, WhatFlowsIntoAnIntersectionFlowsOut) {
   }
 }
 
+/// The open fracture "a" is cut by a sealed one: in series lie its halves and the filling, Q = dp/(1/T + a_b mu/(k_n
+/// a)).
+TEST(FractureFlow, ASealedFractureCutsAnOpenOne) {
+  for (const std::string cell : all_cells)
+    for (const Real k : {1e-8, 1e-3, 10.0}) {
+      auto scene = closed_box(cell);
+      auto& open = scene.materials.at("joint");
+      open.normal_permeability = 1e-18;
+      open.tangential_permeability = 10;
+      auto& sealed = scene.materials["seal"] = open;
+      sealed.initial_aperture = 0.01;
+      sealed.tangential_permeability = 1e-18;
+      sealed.normal_permeability = k;
+      scene.materials.at("rock").permeability = {base::Expression(1e-18)};
+      scene.fractures.at("b").material = "seal";
+      scene.fractures.at("b").cuts = {"a"};
+      hold(scene, "west", "1", "a");
+      hold(scene, "east", "0", "a");
+      model::Model model(scene, Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged) << cell;
+      const Real Q = aperture / viscosity / (1 / 10.0 + 0.01 / k);
+      EXPECT_NEAR(inflow(model, "west") / Q, 1, 1e-6) << cell << ' ' << k;
+      EXPECT_NEAR(inflow(model, "east") / Q, -1, 1e-6) << cell << ' ' << k;
+    }
+}
+
 /// A fracture that the rock does not let out: fed at its west end, it loses through a conductance at its east end as
 /// much to the pressure beyond. Of rock likewise.
 TEST(FractureFlow, FluxesAndConductancesAtEnds) {
