@@ -18,6 +18,7 @@ try:
     import flow_exact
     import flow_measure
     import measure
+    import poro_exact
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -103,6 +104,33 @@ class Exact(ProgramTest):
                 spread = (known.flow_in(on + h * along) - known.flow_in(on - h * along))[:, 0] / (2 * h)
                 self.assertTrue(np.allclose(spread, below[0] - above[0], atol=1e-5))
                 self.assertTrue(np.allclose(known.pressure_in(on), above[1], atol=1e-6))
+
+    def test_consolidation_conserves_fluid_and_bears_its_load(self):
+        column, plate = poro_exact.COLUMN, poro_exact.PLATE
+        z, h = np.linspace(0.1, 0.9, 9), 1e-3
+        for T in (0.05, 0.4):
+            t, rock = T / column.rock.c, column.rock
+            rate = (column.pressure(z, t * (1 + h)) - column.pressure(z, t * (1 - h))) / (2 * h * t)
+            curved = (column.pressure(z + h, t) - 2 * column.pressure(z, t) + column.pressure(z - h, t)) / h**2
+            self.assertTrue(np.allclose(rate, rock.c * curved, atol=1e-4 * np.abs(rate).max()))
+            mean = np.mean(column.pressure((np.arange(1000) + 0.5) / 1000, t))
+            self.assertAlmostEqual(column.settlement(t) * rock.M / column.H, column.sigma - rock.alpha * mean, delta=1e-3 * column.sigma)
+        self.assertAlmostEqual(column.pressure(np.array([0.5]), 1e-6)[0], column.undrained, places=6)
+        rock, x = plate.rock, (np.arange(2000) + 0.5) / 2000 * plate.a
+        for t in (50.0, 2000.0):
+            def strains(at, when):  # along x, in which there is no total stress, and y
+                along_y = plate.approach(when) / plate.b
+                return (rock.alpha * plate.pressure(at, when) - rock.lam * along_y) / rock.M, along_y
+            along_x, along_y = strains(x, t)
+            force = np.mean(rock.lam * along_x + rock.M * along_y - rock.alpha * plate.pressure(x, t)) * plate.a
+            self.assertAlmostEqual(force / -plate.F, 1, delta=1e-4)
+            inside, d = np.linspace(10, 90, 9), 0.1
+
+            def content(when):
+                return rock.alpha * sum(strains(inside, when)) + rock.S * plate.pressure(inside, when)
+            rate = (content(t * (1 + h)) - content(t * (1 - h))) / (2 * h * t)
+            curved = (plate.pressure(inside + d, t) - 2 * plate.pressure(inside, t) + plate.pressure(inside - d, t)) / d**2
+            self.assertTrue(np.allclose(rate, rock.mobility * curved, atol=2e-3 * np.abs(rate).max()))
 
 
 class Scenes(ProgramTest):
