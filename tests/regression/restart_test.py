@@ -16,6 +16,7 @@ from program import ProgramTest, main
 N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
 CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
 MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
+INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
 QUIET = "Output.vtu=false"
 EVERY_STEP = "Output.checkpoints.steps=1"
 
@@ -73,6 +74,8 @@ class Restart(ProgramTest):
                 (CROSSING, 2, ("1, 2", ", 3"), []), (CROSSING, 3, ("1, 2", ", 3"), []),
                 (MASONRY, 2, ("1, 2", ", 3, 4"), ["Materials.other.Young's modulus=1e-6"]),
                 (FLOATING, 1, ("1, 2, 3", ", 4, 5"), []),
+                (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),
+                (INJECTION, 2, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}", "Solver.Linear solver.type=iterative"]),
                 (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),
                 (CROSSING, 3, ("2", ", 3"), multigrid)):
             with self.subTest(scene=scene, ranks=ranks, options=options):
