@@ -269,7 +269,8 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
                {"cuts", report.cuts},
                {"converged", report.converged}};
   for (const auto& linear : report.linear_solves)
-    step["linear_solves"].push_back({{"iterations", linear.iterations}, {"residual", linear.residual}});
+    step["linear_solves"].push_back(
+        {{"iterations", linear.iterations}, {"residual", linear.residual}, {"used", linear.used}});
   if (report.converged && !report.loose.empty()) step["loose"] = report.loose;
   if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;

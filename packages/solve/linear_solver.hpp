@@ -40,6 +40,7 @@ struct LinearReport {
   bool converged = false;
   int iterations = 0;
   Real residual = 0;   ///< |b - A x| / |b|, computed from A, b and x
+  bool used = true;    ///< Newton's solve that it is part of converged
   std::string reason;  ///< of a failure
 };
 

@@ -141,6 +141,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   report.linear_solves = model_->linear_history();
+  for (auto& linear : report.linear_solves) linear.used = report.converged;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.iterations > 0) {
     const int here = search.damped;

@@ -52,6 +52,10 @@ class Run:
         return sum(step["cuts"] for step in self.steps)
 
     @property
+    def solves(self):
+        return [solve for step in self.steps for solve in step.get("linear_solves", [])]
+
+    @property
     def krylov(self):
         """Iterations of each linear solve; the mean of a step for each, where the step does not list them."""
         counts = []
@@ -71,8 +75,13 @@ class Run:
 
     @property
     def residual(self):
-        """The largest true relative residual of a linear solve, or None where it is not told."""
-        return max((solve["residual"] for step in self.steps for solve in step.get("linear_solves", [])), default=None)
+        """The largest true relative residual of a linear solve that Newton's method used, or None where it is not told."""
+        return max((solve["residual"] for solve in self.solves if solve["used"]), default=None)
+
+    @property
+    def lost(self):
+        """Linear solves that failed, in attempts of Newton's method that were given up."""
+        return sum(not solve["used"] and solve["residual"] > ROUNDING * RESIDUAL for solve in self.solves)
 
     def fraction(self, state):
         """Of the area of all fractures, at the end."""
