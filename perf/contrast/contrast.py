@@ -18,7 +18,7 @@ TIME_LIMIT = 300  # seconds of a run
 BOUNDS = {"max_krylov": 40, "failures": 0}
 CELLS = {"hexahedra": "hexahedron", "tetrahedra": "tetrahedron"}
 COLUMNS = {"cells, case": "", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d", "mean": ".1f",
-           "max": ".4g", "lost": "d", "residual": ".0e", "seconds": ".1f"}
+           "max": ".4g", "used": ".4g", "lost": "d", "residual": ".0e", "seconds": ".1f"}
 SOFT = linear.joint(stiffness=1) + ("Materials.crack.tangential stiffness=1",)
 STICK = linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.002)
 MIXED = linear.table(xx=-0.006, yy=-0.009, zz=-0.012, shear=0.03) + SOFT
@@ -133,13 +133,14 @@ def main(words):
         rows.append((case, cell, run))
         name = f"{'beyond: ' if case.beyond else ''}{cell}, {case.name}"
         table.add([name, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean, run.most,
-                   run.lost, run.residual, sum(run.seconds(what) for what in linear.TIMERS)], [f"failed: {run.failure}"] if run.failure else ())
+                   run.most_used, run.lost, run.residual, sum(run.seconds(what) for what in linear.TIMERS)], [f"failed: {run.failure}"] if run.failure else ())
     table.write(options.output / "contrast.csv")
     draw(rows, options.output / "contrast.png")
-    total = {"max_krylov": max((run.most for case, _, run in rows if not case.beyond), default=0), "failures": sum(bool(run.failure) for *_, run in rows)}
+    total = {"max_krylov": max((run.most for case, _, run in rows if not case.beyond), default=0), "failures": sum(bool(run.failure) for *_, run in rows),
+             "max_used": max((run.most_used for case, _, run in rows if not case.beyond), default=0), "lost": sum(run.lost for *_, run in rows)}
     wrong = linear.missed(total, BOUNDS)
     print("\n".join(["", *wrong, f"contrast.csv and contrast.png in {options.output}"]))
-    print("max_krylov={max_krylov:.4g} failures={failures}".format(**total))
+    print("max_krylov={max_krylov:.4g} failures={failures} max_used={max_used:.4g} lost={lost}".format(**total))
     return 1 if total["failures"] or (options.quick and wrong) else 0
 
 

@@ -79,6 +79,11 @@ class Run:
         return max((solve["residual"] for solve in self.solves if solve["used"]), default=None)
 
     @property
+    def most_used(self):
+        """The largest count of a linear solve that Newton's method used."""
+        return max((solve["iterations"] for solve in self.solves if solve["used"]), default=0)
+
+    @property
     def lost(self):
         """Linear solves that failed, in attempts of Newton's method that were given up."""
         return sum(not solve["used"] and solve["residual"] > ROUNDING * RESIDUAL for solve in self.solves)

@@ -67,6 +67,7 @@ TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
     ASSERT_TRUE(report.converged) << report.reason;
     EXPECT_EQ(report.iterations, 1);
     EXPECT_EQ(solve::iterations(report.linear_solves), 1);
+    EXPECT_TRUE(report.linear_solves.front().used);
   }
   EXPECT_EQ(newton.linear().n_setups(), 1);
   EXPECT_EQ(problem.n_jacobians, 3);
@@ -95,6 +96,7 @@ TEST(Newton, ReportsWhatHasNoSolution) {
   const auto report = newton.solve(x);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 7);
+  for (const auto& linear : report.linear_solves) EXPECT_FALSE(linear.used);
   EXPECT_NE(report.reason.find("no convergence in 7 iterations: 'r' is"), std::string::npos) << report.reason;
 }
 
