@@ -13,12 +13,15 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "perf/verification"), str(ROOT / "apps/plot")]
 
 import exact  # noqa: E402
+import flow_cases  # noqa: E402
+import flow_measure  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
 import read  # noqa: E402
 from runs import FUNCTIONALS, Run  # noqa: E402
 
 COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # phases that follow each other
+MEAN = "mean pressure"
 REPEATED = 3  # short runs: the median counts
 TILTED = Path(__file__).resolve().parent / "tilted.xml"
 MODES = {"opening": ("sneddon", exact.Crack(1, 1e-3, 1, 0.25)), "sliding": ("sneddon_shear", exact.Crack(2, 1e-3, 1, 0.25))}
@@ -67,6 +70,14 @@ def crack(options, mode, file, name, *sets):
     means, jump = known.jump_mean(corners), faces.cell_data["jump"][:, :2]
     return made(results, seconds, values={f"{mode}{where}": measure.relative(jump - means, means, weights)
                                           for where, weights in (("", size), (", tips left out", size * away))})
+
+
+def flow(options, kind, cell, n):
+    """With the mean pressure in the rock of the regular network, n cells along an edge, all of one size."""
+    sets = (f"Mesh.cell={cell}", f"Mesh.cells={{{n}, {n}}}", *flow_cases.JOINTS[kind])
+    directory, results, seconds = run(options, ROOT / "xml/verification/flow_regular_2d.xml", sets, f"flow_{kind}_{cell}_{n}")
+    rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
+    return made(results, seconds, values={MEAN: float(flow_measure.array(measure.Run(results, rock, None, 2), "pressure").mean())})
 
 
 def tilted_mesh(folder, h, smallest, growth):

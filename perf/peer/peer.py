@@ -24,6 +24,7 @@ TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of 
 FINE = ((0.5, 0.1, 0.5), (0.4, 0.06, 0.5), (0.3, 0.04, 0.5), (0.25, 0.025, 0.5), (0.2, 0.015, 0.4))  # ours alone: meshes of ours.tilted_mesh
 CRACK = (0.1, 0.05, 0.025, 0.0125, 0.00625)      # sizes on the crack, theirs
 GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # as `graded` of perf/verification, order 2
+FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
 QUICK = 2  # meshes of each
 ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_equal_error": 50}  # 4, 11 thousand tetrahedra: how many gmsh makes depends on the machine
 SLIP = "slip mean"
@@ -116,6 +117,25 @@ def compare_errors(options, same, count):
     return table, found, exact
 
 
+def compare_flow(options, count):
+    """As compare_errors(): of the mean pressure of the regular network, each scheme of theirs beside one of ours. The value without
+    error is extrapolated from the last two meshes of Sprekk."""
+    table, found = linear.Table(ERRORS, 46), {}
+    for kind in ("conductive", "blocking"):
+        for scheme, cell in (("mpfa", "triangle"), ("tpfa", "quadrilateral")):
+            their, our = [], [ours.flow(options, kind, cell, n) for n in FLOW["Sprekk"][:count + 1]]
+            for h in FLOW["PorePy"][:count + 1]:
+                told, run = theirs(options, "flow.py", kind, scheme, h, (options.output / "porepy_flow.msh").resolve())
+                their.append(run({ours.MEAN: told["mean"]}))
+            coarse, fine = (run.values[ours.MEAN] for run in our[-2:])
+            exact = fine + (fine - coarse) / 3
+            what = f"{kind}, {scheme} beside {'rt0' if cell == 'triangle' else 'tpfa'}"
+            found[what] = (their, our, lambda run, exact=exact: abs(run.values[ours.MEAN] / exact - 1))
+            for run in their + our:
+                table.add([f"{what}, {run.code}", *cells(run), found[what][2](run)])
+    return found
+
+
 def tell_apart(found):
     """Prints how far the programs are apart; what is further than it may be, in words."""
     apart, wrong = runs.apart(found["Sprekk"], found["PorePy"]), []
@@ -186,7 +206,11 @@ def main(words):
     print(f"\nmean slip without error: {exact:.4e}\n")
     total = {f"ratio_{their.cells}" if options.quick else f"ratio_{their.cells / 1e3:.0f}k": runs.ratio(their, our) for their, our in zip(same["PorePy"], same["Sprekk"])}
     total["ratio_equal_error"] = tell_equal(found)
-    write(options.output / "peer.csv", same, found)
+    print("\nmean pressure of the regular network")
+    flow = compare_flow(options, QUICK if options.quick else len(FLOW["Sprekk"]))
+    print()
+    tell_equal(flow)
+    write(options.output / "peer.csv", same, {**found, **flow})
     draw(same, found, options.output / "peer.png")
     missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()
               if not total.get(name, 0) >= asked]
