@@ -139,6 +139,8 @@ class Comparison {
       fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
     if (!scene_.flow && is_absent(draft_, "Flow") && !zero(fracture.source))
       fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
+    if (!scene_.flow && is_absent(draft_, "Flow") && !fracture.cuts.empty())
+      fail("Fractures > " + name + " > \"cuts\"", "needs the section \"Flow\"");
     if (scene_.flow && zero(joint.initial_aperture) && zero(joint.residual_aperture))
       fail(place + " > \"initial aperture\"",
            "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");

@@ -62,7 +62,7 @@ class Run:
         for step in self.steps:
             solves = step["newton_iterations"]
             counts += [solve["iterations"] for solve in step["linear_solves"]] if "linear_solves" in step \
-                else [step["linear_iterations"] / solves] * solves
+                else [step["linear_iterations"] / max(1, solves)] * solves
         return counts
 
     @property
