@@ -156,8 +156,8 @@ assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh
   return {1, mesh::largest_extent(mesh), largest};
 }
 
-assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  if (!scene.deforms()) return reference_of_flow(scene, mesh);
+/// Young's, Pa. Collective.
+Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
   Real here = 0, modulus = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
@@ -165,7 +165,13 @@ assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
     here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  return {modulus, mesh::largest_extent(mesh), scene.flow ? reference_of_flow(scene, mesh).mobility : 0};
+  return modulus;
+}
+
+assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
+  if (!scene.deforms()) return reference_of_flow(scene, mesh);
+  const Real mobility = scene.flow ? reference_of_flow(scene, mesh).mobility : 0;
+  return {largest_modulus(scene, mesh), mesh::largest_extent(mesh), mobility};
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -222,8 +228,10 @@ std::vector<physics::Well> wells(const Scene& scene, int dim) {
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& owned) {
   const fields::Layout layout({"value", fields::Entity::fracture_face, 1, ""}, mesh);
   fields::Vector from(layout.owned()), to(layout.ghosted());
-  const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
-  for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
+  {
+    const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
+  }
   to.doImport(from, *layout.import(), Tpetra::REPLACE);
   const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
   std::vector<Real> values;
@@ -231,11 +239,34 @@ std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& o
   return values;
 }
 
+/// Of local fracture faces; the apertures at the start are those of the joints and `initial_jumps` along the normal.
+std::vector<physics::FractureFlowParameters::Face> hydraulics(const Scene& scene, const mesh::Mesh& mesh,
+                                                              const std::vector<Real>& initial_jumps) {
+  std::vector<physics::FractureFlowParameters::Face> faces;
+  for (std::size_t f = 0; f < mesh.fracture_faces.size(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
+    at_place(scene, joint, [&] {
+      faces.push_back(joint.hydraulics(scene.flow->viscosity, face.centre));
+      auto& along = faces.back().along;
+      if (!initial_jumps.empty()) along.aperture += initial_jumps[f];
+      SPREKK_CHECK(
+          along.hydraulic_aperture() > 0,
+          "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
+          "0: give a \"residual aperture\", or an \"initial aperture\" above the closure",
+          along.hydraulic_aperture(), face.centre[0], face.centre[1], face.centre[2]);
+      return 0;
+    });
+  }
+  return faces;
+}
+
 /// `initial_jumps` [local fracture face], along the normal; empty: zero.
 std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh,
                                                          const std::vector<Real>& initial_jumps = {}) {
   const auto& flow = *scene.flow;
-  const auto rock = mobility(scene, mesh);
+  Properties<laws::Mobility> rock;
+  base::collectively(*mesh.comm, [&] { rock = mobility(scene, mesh); });
   physics::DarcyFlowParameters darcy{rock.values, rock.number};
   const auto chosen = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
   darcy.scheme = chosen.scheme;
@@ -250,16 +281,12 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   });
   physics::FractureFlowParameters fractures{
       {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), scene.deforms()};
+  if (scene.deforms()) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
+  base::collectively(*mesh.comm, [&] { fractures.faces = hydraulics(scene, mesh, initial_jumps); });
   std::vector<Real> aperture;
-  for (std::size_t f = 0; f < mesh.fracture_faces.size(); ++f) {
-    const auto& face = mesh.fracture_faces[f];
-    const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
-    const auto hydraulics = at_place(scene, joint, [&] { return joint.hydraulics(flow.viscosity, face.centre); });
-    fractures.faces.push_back(hydraulics);
-    auto& along = fractures.faces.back().along;
-    if (!initial_jumps.empty()) along.aperture += initial_jumps[f];
-    darcy.exchange.push_back(hydraulics.exchange);
-    aperture.push_back(along.hydraulic_aperture());
+  for (const auto& face : fractures.faces) {
+    darcy.exchange.push_back(face.exchange);
+    aperture.push_back(face.along.hydraulic_aperture());
   }
   fractures.cut_by.resize(mesh.fracture_names.size());
   for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
@@ -329,8 +356,10 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   auto modules = physics::make_mechanics(mesh, parameters);
   if (!scene.flow) return modules;
   std::vector<Real> widths;
-  for (const auto& jump : physics::initial_jumps(mesh, physics::jump_parameters(mesh, parameters)))
-    widths.push_back(jump[0]);
+  base::collectively(*mesh.comm, [&] {
+    for (const auto& jump : physics::initial_jumps(mesh, physics::jump_parameters(mesh, parameters)))
+      widths.push_back(jump[0]);
+  });
   for (auto& module : make_flow(scene, mesh, with_ghosts(mesh, widths))) modules.push_back(std::move(module));
   modules.push_back(make_coupling(scene, mesh));
   return modules;
@@ -466,7 +495,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
   const auto& scales = content.at("scales");
   system_->resume(x_, {time_,
                        content.at("dt"),
-                       {scales.at("stress"), scales.at("length"), scales.at("pressure")},
+                       {scales.at("stress"), scales.at("length"), scales.value("pressure", Real(0))},
                        content.value("calibration", std::vector<Real>())});
   start_solver();
 }

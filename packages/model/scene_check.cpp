@@ -202,7 +202,7 @@ class Comparison {
     compare_pressure();
     compare_fluid_conditions();
     for (const auto& name : names_.regions.value_or(Names()))
-      if (const auto* rock = rock_of(name)) compare_permeability(*rock);
+      if (const auto* rock = rock_of(name)) compare_rock(*rock);
   }
 
   void compare_wells() {
@@ -260,9 +260,11 @@ class Comparison {
                fmt::format("gives a {} where \"{}\" gives the pressure", other.flux ? "flux" : "conductance", name));
   }
 
-  void compare_permeability(const Material& rock) {
+  void compare_rock(const Material& rock) {
     const auto of = [&](const auto& entry) { return &entry.second == &rock; };
     const std::string name = std::find_if(scene_.materials.begin(), scene_.materials.end(), of)->first;
+    if (scene_.deforms() && !(rock.E || rock.nu || rock.G || rock.lambda || rock.K) && is_sound("Materials > " + name))
+      fail("Materials > " + name, "no elastic constants given, exactly two are needed where the rock deforms");
     const std::string place = fmt::format("Materials > {} > \"permeability\"", name);
     if (rock.permeability.empty() && is_sound("Materials > " + name))
       fail(place, "missing; it is required with \"Flow\"");

@@ -140,6 +140,7 @@ class FractureFlow final : public assembly::Module {
       assembler_->add_jacobian(op_, state, J);
     exchange_.add_jacobian(state, J);
   }
+  /// Widening leaves pressures alone without symmetry, and coupled systems have none in any case.
   bool symmetric(const assembly::State&) const override { return is_linear() || parameters_.widens; }
 
   bool constant_load() const override {
@@ -170,12 +171,11 @@ class FractureFlow final : public assembly::Module {
   /// What sources and prescribed flow make of pressure over the size of the domain.
   Real fluid_load(Real t) const override {
     Real largest = 0;
-    const auto let = [&](Real flow, Real transmissivity) {
-      if (flow != 0) largest = std::max(largest, size_ * std::abs(flow) / transmissivity);
+    const auto let = [&](Real flow, const laws::Conduit& conduit) {
+      if (flow != 0) largest = std::max(largest, pressure_for(size_ * std::abs(flow), conduit));
     };
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      for_each_source(f, t,
-                      [&](Real, Real source) { let(source * size_, parameters_.faces[f].along.transmissivity()); });
+      for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].along); });
     for (const auto& rim : mesh_->facets->rims)
       for (const auto& condition : parameters_.conditions)
         if (holds(condition, rim)) {
@@ -184,7 +184,7 @@ class FractureFlow final : public assembly::Module {
           if (condition.conductance)
             largest = std::max(largest, std::abs(value));
           else
-            let(face.along.hydraulic_aperture() * value, face.along.transmissivity());
+            let(face.along.hydraulic_aperture() * value, face.along);
         }
     return largest;
   }
@@ -222,6 +222,17 @@ class FractureFlow final : public assembly::Module {
  private:
   using Assembler = assembly::Assembler<Op>;
   using WideningAssembler = assembly::Assembler<WideningFace<n>>;
+
+  /// p with p T = flow, T that of the conduit which p has opened, by bisection: without that a tight fracture would
+  /// make the pressure seem far higher than it can be.
+  Real pressure_for(Real flow, const laws::Conduit& conduit) const {
+    Real low = 0, high = flow / conduit.transmissivity();
+    for (int k = 0; k < 100 && parameters_.softness > 0; ++k) {
+      const Real p = (low + high) / 2;
+      (p * conduit.transmissivity(parameters_.softness * p) < flow ? low : high) = p;
+    }
+    return high;
+  }
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
 

@@ -90,7 +90,7 @@ class Pair : public Family {
     if (const auto& schur = family.diagonal[1].schur; !schur.is_null()) D_inverse->update(1, *schur, 1);
     D_inverse->reciprocal(*D_inverse);
     fill_S(family, *D_inverse);
-    solver_->setup({block_, S_, {}, family.diagonal[0].symmetric});
+    solver_->setup({block_, S_, {}, false});  // what was eliminated locally need not leave it symmetric
     inverse_ = rcp(new PairInverse(family, D_inverse, solver_->inverse()));
   }
   RCP<const Operator> inverse() const override { return inverse_; }

@@ -283,7 +283,7 @@ class Scenes(BadInput):
     def test_flow(self):
         def refuse(expected, *sets):
             self.refuse(expected, "check", self.scene("flow/source_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
-        refuse(['Flow > "rigid rock": must be true'], "Flow.rigid rock=false")
+        refuse(["Materials > rock: no elastic constants given, exactly two are needed where the rock deforms"], "Flow.rigid rock=false")
         refuse(['Materials > rock > "permeability": "permeability" = {-1} is not positive definite'], "Materials.rock.permeability={-1}")
         refuse(['"permeability" = {1, 1, 2} is not positive definite'], "Materials.rock.permeability={1, 1, 2}")
         refuse(['"permeability" has 4 values, must have 1, 2 or 3 in 2D'], "Materials.rock.permeability={1, 1, 0, 0}")
@@ -308,6 +308,15 @@ class Scenes(BadInput):
         self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
+
+    def test_poroelasticity(self):
+        def refuse(expected, *sets):
+            self.refuse(expected, "check", self.scene("poro/injection_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
+        refuse(['granite > "Biot coefficient": is 1.2, must be between 0 and 1'], "Materials.granite.Biot coefficient=1.2")
+        refuse(['middle > "fluid pressure": is not given but found, with "Flow"'], "Fractures.middle.fluid pressure=1")
+        refuse(['Output > "error estimate": is of stress and jumps without a fluid'], "Output.error estimate=true")
+        refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
+        refuse(['Materials > rough joint: give either "friction coefficient" or "friction angle"'], "Materials.rough joint.friction angle=30")
 
     def test_flow_in_fractures(self):
         def refuse(expected, *sets, command="check"):
