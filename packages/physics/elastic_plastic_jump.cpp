@@ -303,8 +303,8 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
   });
 }
 
-/// A fluid opens a fracture of size L by about 0.4 L/E times its pressure where the sides do not touch: a disc of radius
-/// L/3 by 16/(3 pi) (1 - nu^2) (L/3)/E at most, and two thirds of that in the mean (Sneddon 1946).
+/// A fluid opens a fracture of size L by about 0.4 L/E times its pressure where the sides do not touch: a disc of
+/// radius L/3 by 16/(3 pi) (1 - nu^2) (L/3)/E at most, and two thirds of that in the mean (Sneddon 1946).
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, const assembly::Rows& diagonals) const {
   const auto rows = Kokkos::create_mirror_view(diagonals[pressure_]);

@@ -31,10 +31,10 @@ class TimeStepper {
   TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
       : problem_(problem), newton_(newton), options_(options) {}
 
-  /// Takes x, the committed state at t, to t_to. Where Newton fails and there is contact the bodies are let go step by step, see relax();
-  /// where that fails too the substep is halved and x restored; after one
-  /// that converged it doubles. Each is committed, and t goes with x: they belong together also where the smallest
-  /// substep fails, or an evaluation throws. Collective.
+  /// Takes x, the committed state at t, to t_to. Where Newton fails and there is contact the bodies are let go step by
+  /// step, see relax(); where that fails too the substep is halved and x restored; after one that converged it doubles.
+  /// Each is committed, and t goes with x: they belong together also where the smallest substep fails, or an evaluation
+  /// throws. Collective.
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
