@@ -6,14 +6,11 @@
 #include "mesh/extents.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
+#include "model/flow_modules.hpp"
+#include "model/properties.hpp"
 #include "model/scene_check.hpp"
 #include "model/uniqueness.hpp"
-#include "physics/darcy_flow.hpp"
-#include "physics/fluid_storage.hpp"
-#include "physics/fracture_flow.hpp"
 #include "physics/mechanics.hpp"
-#include "physics/poroelastic_coupling.hpp"
-#include "physics/wells.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -23,56 +20,6 @@
 namespace sprekk::model {
 
 namespace {
-
-int index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-std::array<Real, 3> centre(const mesh::Mesh& mesh, LocalIndex cell) {
-  std::array<Real, 3> x{};
-  const int n = mesh::n_corners(mesh.shape);
-  for (int k = 0; k < n; ++k)
-    for (int i = 0; i < mesh.dim(); ++i)
-      x[i] += mesh.coordinates[mesh.cells[cell * mesh.nodes_per_cell() + k] * mesh.dim() + i] / n;
-  return x;
-}
-
-/// The different values of a property, and which of them each entity has; no list of numbers where the group of an
-/// entity (region, fracture) tells.
-template <class T>
-struct Properties {
-  std::vector<T> values;
-  std::vector<int> number;
-};
-
-/// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's
-/// place.
-template <class T, class Uniform, class At>
-Properties<T> properties(int n_groups, const std::vector<int>& group_of, const Uniform& uniform, const At& at) {
-  Properties<T> result;
-  bool all_uniform = true;
-  for (int group = 0; group < n_groups; ++group) {
-    all_uniform = all_uniform && uniform(group);
-    result.values.push_back(uniform(group) ? at(group, -1) : T());
-  }
-  if (all_uniform) return result;
-  for (int entity = 0; entity < static_cast<int>(group_of.size()); ++entity) {
-    const int group = group_of[entity];
-    result.number.push_back(uniform(group) ? group : static_cast<int>(result.values.size()));
-    if (!uniform(group)) result.values.push_back(at(group, entity));
-  }
-  return result;
-}
-
-Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<laws::Elasticity>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
-      [&](int region) { return material(region).is_uniform(); },
-      [&](int region, int cell) {
-        return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell));
-      });
-}
 
 /// Mean over a fracture face whose cell on side minus is local.
 Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const Material::Value& value) {
@@ -116,62 +63,9 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   return force;
 }
 
-/// Materials of the mesh's regions, by their numbers.
-template <class Of>
-auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
-  std::vector<decltype(of(scene.material_of("")))> values;
-  for (const auto& name : mesh.region_names) values.push_back(of(scene.material_of(name)));
-  return values;
-}
-
-/// What `find` finds of a material; its errors get the place of the material in the scene.
-template <class Find>
-auto at_place(const Scene& scene, const Material& material, const Find& find) {
-  try {
-    return find();
-  } catch (const Error& error) {
-    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                    [&](const auto& one) { return &one.second == &material; });
-    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
-  }
-}
-
-Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<laws::Mobility>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
-      [&](int region) { return material(region).flows_uniformly(); },
-      [&](int region, int cell) {
-        const auto x = cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell);
-        return at_place(scene, material(region),
-                        [&] { return material(region).mobility(mesh.dim(), scene.flow->viscosity, x); });
-      });
-}
-
-assembly::Reference reference_of_flow(const Scene& scene, const mesh::Mesh& mesh) {
-  Real here = 0, largest = 0;
-  for (const auto& one : mobility(scene, mesh).values)
-    for (int i = 0; i < mesh.dim(); ++i) here = std::max(here, one.value[i][i]);
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
-  return {1, mesh::largest_extent(mesh), largest};
-}
-
-/// Young's, Pa. Collective.
-Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
-  Real here = 0, modulus = 0;
-  for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
-    const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
-    if (cell > 0 && material.is_uniform() && mesh.cell_region[cell] == mesh.cell_region[cell - 1]) continue;
-    here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
-  }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  return modulus;
-}
-
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  if (!scene.deforms()) return reference_of_flow(scene, mesh);
-  const Real mobility = scene.flow ? reference_of_flow(scene, mesh).mobility : 0;
-  return {largest_modulus(scene, mesh), mesh::largest_extent(mesh), mobility};
+  return {scene.deforms() ? largest_modulus(scene, mesh) : 1, mesh::largest_extent(mesh),
+          scene.flow ? largest_mobility(scene, mesh) : 0};
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -197,139 +91,6 @@ View<Real**> entries(fields::Vector& vector, int n_components) {
 
 void redistribute(const fields::Vector& from, fields::Vector& to) {
   to.doImport(from, fields::Import(from.getMap(), to.getMap()), Tpetra::REPLACE);
-}
-
-}  // namespace
-
-namespace {
-
-std::vector<physics::FluidCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
-  std::vector<physics::FluidCondition> conditions;
-  for (const auto& [name, one] : scene.boundary_conditions)
-    if (one.fracture.has_value() == of_fractures && (one.flux || one.conductance))
-      conditions.push_back({index_of(mesh.boundary_names, one.boundary), one.flux ? *one.flux : *one.pressure,
-                            one.conductance, one.region ? index_of(mesh.region_names, *one.region) : -1,
-                            one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
-  return conditions;
-}
-
-std::vector<physics::Well> wells(const Scene& scene, int dim) {
-  std::vector<physics::Well> wells;
-  for (const auto& [name, one] : scene.flow->wells) {
-    wells.push_back({name, {}, one.radius, one.skin, one.rate, one.pressure});
-    for (std::size_t k = 0; k < one.points.size(); k += dim) {
-      std::copy_n(&one.points[k], dim, wells.back().points.emplace_back().begin());
-    }
-  }
-  return wells;
-}
-
-/// The values of owned fracture faces and of ghosts. Collective.
-std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& owned) {
-  const fields::Layout layout({"value", fields::Entity::fracture_face, 1, ""}, mesh);
-  fields::Vector from(layout.owned()), to(layout.ghosted());
-  {
-    const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
-  }
-  to.doImport(from, *layout.import(), Tpetra::REPLACE);
-  const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<Real> values;
-  for (std::size_t f = 0; f < all.extent(0); ++f) values.push_back(all(f, 0));
-  return values;
-}
-
-/// Of local fracture faces; the apertures at the start are those of the joints and `initial_jumps` along the normal.
-std::vector<physics::FractureFlowParameters::Face> hydraulics(const Scene& scene, const mesh::Mesh& mesh,
-                                                              const std::vector<Real>& initial_jumps) {
-  std::vector<physics::FractureFlowParameters::Face> faces;
-  for (std::size_t f = 0; f < mesh.fracture_faces.size(); ++f) {
-    const auto& face = mesh.fracture_faces[f];
-    const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
-    at_place(scene, joint, [&] {
-      faces.push_back(joint.hydraulics(scene.flow->viscosity, face.centre));
-      auto& along = faces.back().along;
-      if (!initial_jumps.empty()) along.aperture += initial_jumps[f];
-      SPREKK_CHECK(
-          along.hydraulic_aperture() > 0,
-          "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
-          "0: give a \"residual aperture\", or an \"initial aperture\" above the closure",
-          along.hydraulic_aperture(), face.centre[0], face.centre[1], face.centre[2]);
-      return 0;
-    });
-  }
-  return faces;
-}
-
-/// `initial_jumps` [local fracture face], along the normal; empty: zero.
-std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, const mesh::Mesh& mesh,
-                                                         const std::vector<Real>& initial_jumps = {}) {
-  const auto& flow = *scene.flow;
-  Properties<laws::Mobility> rock;
-  base::collectively(*mesh.comm, [&] { rock = mobility(scene, mesh); });
-  physics::DarcyFlowParameters darcy{rock.values, rock.number};
-  const auto chosen = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
-  darcy.scheme = chosen.scheme;
-  darcy.reason = chosen.reason;
-  darcy.deforms = scene.deforms();
-  for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
-  darcy.fluid = {flow.compressibility, flow.reference_pressure};
-  if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
-  darcy.conditions = fluid_conditions(scene, mesh, false);
-  const auto pores = by_region(scene, mesh, [](const Material& m) {
-    return physics::Pores{m.porosity, m.compressibility};
-  });
-  physics::FractureFlowParameters fractures{
-      {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), scene.deforms()};
-  if (scene.deforms()) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
-  base::collectively(*mesh.comm, [&] { fractures.faces = hydraulics(scene, mesh, initial_jumps); });
-  std::vector<Real> aperture;
-  for (const auto& face : fractures.faces) {
-    darcy.exchange.push_back(face.exchange);
-    aperture.push_back(face.along.hydraulic_aperture());
-  }
-  fractures.cut_by.resize(mesh.fracture_names.size());
-  for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
-    const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
-    fractures.source.push_back(fracture.source);
-    for (const auto& name : fracture.cuts)
-      fractures.cut_by[index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
-  }
-  std::vector<std::unique_ptr<assembly::Module>> modules;
-  const auto fluid = darcy.fluid;
-  if (!flow.wells.empty()) {
-    physics::WellsParameters all{
-        wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
-    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.along.transmissivity());
-    modules.push_back(physics::make_wells(mesh.shape, std::move(all)));
-  }
-  modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
-  if (std::any_of(pores.begin(), pores.end(),
-                  [&](const auto& of) { return of.growth > 0 || of.porosity * fluid.compressibility > 0; }))
-    modules.push_back(physics::make_fluid_storage({pores, {}, fluid, flow.initial_pressure}));
-  if (mesh.fracture_names.empty()) return modules;
-  modules.push_back(physics::make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (flow.compressibility > 0 || scene.deforms())
-    modules.push_back(physics::make_fracture_storage({aperture, fluid, flow.initial_pressure, scene.deforms()}));
-  return modules;
-}
-
-/// What mechanics and flow are to each other.
-std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto rock = elasticity(scene, mesh);
-  const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
-  physics::PoroelasticCouplingParameters coupling;
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
-    const int region = mesh.cell_region[cell];
-    coupling.rock.push_back({biot[region], rock.values[rock.number.empty() ? region : rock.number[cell]]});
-    coupling.rock_of_cell.push_back(cell);
-  }
-  const auto flow = mobility(scene, mesh);
-  coupling.initial = scene.flow->initial_pressure;
-  coupling.scheme = physics::flux_scheme(scene.flow->scheme, mesh, flow.values, flow.number).scheme;
-  coupling.fractures = !mesh.fracture_names.empty();
-  coupling.tips = mesh.n_global_enriched > 0;
-  return physics::make_poroelastic_coupling(mesh.shape, std::move(coupling));
 }
 
 physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mesh) {
@@ -360,7 +121,7 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
     for (const auto& jump : physics::initial_jumps(mesh, physics::jump_parameters(mesh, parameters)))
       widths.push_back(jump[0]);
   });
-  for (auto& module : make_flow(scene, mesh, with_ghosts(mesh, widths))) modules.push_back(std::move(module));
+  for (auto& module : make_flow(scene, mesh, widths)) modules.push_back(std::move(module));
   modules.push_back(make_coupling(scene, mesh));
   return modules;
 }

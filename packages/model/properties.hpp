@@ -1,0 +1,52 @@
+// What the materials of a scene give the entities of a mesh.
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace sprekk::model {
+
+inline int index_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+std::array<Real, 3> centre(const mesh::Mesh& mesh, LocalIndex cell);
+
+/// The different values of a property, and which of them each entity has; no list of numbers where the group of an
+/// entity (region, fracture) tells.
+template <class T>
+struct Properties {
+  std::vector<T> values;
+  std::vector<int> number;
+};
+
+/// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's
+/// place.
+template <class T, class Uniform, class At>
+Properties<T> properties(int n_groups, const std::vector<int>& group_of, const Uniform& uniform, const At& at) {
+  Properties<T> result;
+  bool all_uniform = true;
+  for (int group = 0; group < n_groups; ++group) {
+    all_uniform = all_uniform && uniform(group);
+    result.values.push_back(uniform(group) ? at(group, -1) : T());
+  }
+  if (all_uniform) return result;
+  for (int entity = 0; entity < static_cast<int>(group_of.size()); ++entity) {
+    const int group = group_of[entity];
+    result.number.push_back(uniform(group) ? group : static_cast<int>(result.values.size()));
+    if (!uniform(group)) result.values.push_back(at(group, entity));
+  }
+  return result;
+}
+
+/// Of local cells.
+Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
+
+/// Young's, Pa. Collective.
+Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
+
+}  // namespace sprekk::model
