@@ -62,6 +62,8 @@ class BlockProblem {
   /// Fills matrix() with df/dx at x, without the constraints (rows and columns of constrained unknowns are there).
   virtual void jacobian(const BlockVector& x) = 0;
   virtual const BlockMatrix& matrix() const = 0;
+  /// What is stored over a time step enters f, so that shorter steps are easier to solve; else only their loads count.
+  virtual bool stores() const { return false; }
   /// The present matrix() is symmetric after elimination of the local groups.
   virtual bool symmetric() const = 0;
   /// Its blocks on the diagonal are.

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace sprekk::solve {
 namespace {
 
 constexpr Real smallest_step = 1.0 / 64, least_damping = 0.1, most_damping = 10;
-constexpr std::size_t memory = 3, patience = 5, trial_period = 10;
+constexpr std::size_t memory = 3, patience = 5, trial_period = 10, short_steps = 4;
+constexpr Real least_way = 0.5;
 constexpr Real swing_damping = 0.3;
 constexpr int most_unbalanced = 3;
 
@@ -54,7 +56,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   }
   step = found->a;
   if (step == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
-  accept(group, found->merit);
+  accept(group, step, found->merit);
   return true;
 }
 
@@ -76,7 +78,7 @@ Real LineSearch::limit() const {
 }
 
 /// Iterates before the first full step leave the linear part out of balance.
-void LineSearch::accept(NOX::Abstract::Group& group, Real merit) {
+void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
   const auto x = solution_of(group);
   if (problem_.calibrate(x, merits_.empty())) {
     group.setX(group.getX());
@@ -88,7 +90,10 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real merit) {
   merits_.push_back(merit);
   compare(problem_.states(x), merit);
   problem_.damp(damping_, swinging_);
-  if (merits_.size() < trial_period) return;
+  steps_.push_back(step);
+  if (problem_.stores() && steps_.size() >= short_steps)
+    report_.stagnant = std::accumulate(steps_.end() - short_steps, steps_.end(), 0.0) < least_way;
+  if (report_.stagnant || merits_.size() < trial_period) return;
   const auto recent = merits_.end() - patience;
   report_.stagnant = *std::min_element(recent, merits_.end()) > 0.5 * *std::min_element(merits_.begin(), recent);
 }

@@ -15,7 +15,9 @@ namespace sprekk::solve {
 struct SearchReport {
   std::string failure;           ///< why there was no step
   std::string loose;             ///< what nothing held in one of the iterates, the last such
-  bool stagnant = false;         ///< none of the last five merits is below half the best before
+  /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
+  /// steps together were below half of one of Newton's.
+  bool stagnant = false;
   bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
   int n_accepted = 0;            ///< iterates but for the start
   std::vector<int> last_change;  ///< [as states()] number of the iterate in which a state was last another one
@@ -43,7 +45,7 @@ class LineSearch : public NOX::LineSearch::Generic {
   std::optional<Trial> search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                               const NOX::Abstract::Vector& dx) const;
   Real limit() const;
-  void accept(NOX::Abstract::Group& group, Real merit);
+  void accept(NOX::Abstract::Group& group, Real step, Real merit);
   void compare(const std::vector<char>& states, Real merit);
 
   BlockProblem& problem_;
@@ -54,6 +56,7 @@ class LineSearch : public NOX::LineSearch::Generic {
   std::vector<char> states_;             // of the last iterate
   std::vector<Real> swinging_;           // [as states()] damping of entities that go to and fro
   std::vector<Real> merits_;             // of all iterates
+  std::vector<Real> steps_;              // to them
   std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
   bool monotone_ = false;
 };

@@ -9,7 +9,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_tether = 10, least_tether = 1e-3, most_tether = 1e4, weaker = 0.3, stronger = 10;
-constexpr int most_tethers = 60;
+constexpr int most_tethers = 60, least_cuts = 3;
 
 struct Release {
   BlockProblem& problem;
@@ -64,6 +64,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   const long long whole = 1LL << options_.max_halvings;
   const Real t_from = t;
   std::string loose;  // in the last substep that failed and in which something was
+  const long long tethered = problem_.stores() ? std::max(1LL, whole >> least_cuts) : whole;
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
   bool relaxed = false;  // since the last commit
@@ -73,7 +74,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
     auto newton = solve(x, report);
-    if (!newton.converged && !relaxed && options_.tethers) {
+    if (!newton.converged && !relaxed && options_.tethers && size <= tethered) {
       relaxed = true;
       fields::copy(committed, x);
       if (auto found = relax(x, report); found.converged) newton = std::move(found);

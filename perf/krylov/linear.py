@@ -84,6 +84,11 @@ class Run:
         return max((solve["iterations"] for solve in self.solves if solve["used"]), default=0)
 
     @property
+    def most_given_up(self):
+        """The largest count of a linear solve in an attempt of Newton's method that failed."""
+        return max((solve["iterations"] for solve in self.solves if not solve["used"]), default=0)
+
+    @property
     def lost(self):
         """Linear solves that failed, in attempts of Newton's method that were given up."""
         return sum(not solve["used"] and solve["residual"] > ROUNDING * RESIDUAL for solve in self.solves)
