@@ -121,8 +121,8 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};
   darcy.conditions = fluid_conditions(scene, mesh, false);
-  const auto pores = by_region(scene, mesh, [](const Material& m) {
-    return physics::Pores{m.porosity, m.compressibility};
+  const auto pores = by_region(scene, mesh, [&](const Material& m) {
+    return physics::Pores{m.porosity, m.growth_of_pores(flow.compressibility)};
   });
   physics::FractureFlowParameters fractures{
       {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), scene.deforms()};

@@ -72,6 +72,9 @@ void Material::describe(base::Section& s) {
         compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
         "growth of the porosity with the fluid's pressure; of rock that deforms: at constant strain, (Biot coefficient "
         "- porosity)/bulk modulus of the grains");
+    s.entry(biot_modulus, "Biot modulus", "Pa", base::positive_or_infinite(),
+            "M, instead of the compressibility of pores: 1/M is that plus the porosity times the compressibility of "
+            "the fluid, the storage at constant strain");
     s.entry(
         biot, "Biot coefficient", "-", base::between(0, 1),
         "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
@@ -79,6 +82,8 @@ void Material::describe(base::Section& s) {
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
     if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
+    if (s.complete() && compressibility && biot_modulus)
+      s.fail("give either \"compressibility of pores\" or \"Biot modulus\"");
   }
   if (type != "elastic") {
     s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
@@ -148,6 +153,10 @@ laws::Elasticity Material::elasticity(const Point& x) const {
 
 bool Material::flows_uniformly() const {
   return std::all_of(permeability.begin(), permeability.end(), [](const Value& k) { return k.is_constant(); });
+}
+
+Real Material::growth_of_pores(Real of_fluid) const {
+  return biot_modulus ? std::max(Real(0), 1 / *biot_modulus - porosity * of_fluid) : compressibility.value_or(0);
 }
 
 laws::Mobility Material::mobility(int dim, Real viscosity, const Point& x) const {

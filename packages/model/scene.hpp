@@ -34,8 +34,9 @@ struct Material {
   std::optional<Value> E, nu, G, lambda, K;  ///< exactly two for rock
   std::optional<Value> density;              ///< needed with gravity
   std::vector<Value> permeability;           ///< one value, or those of a tensor; needed with flow
-  Real porosity = 0, compressibility = 0;    ///< of rock
-  Real biot = 1;                             ///< coefficient of rock
+  Real porosity = 0, biot = 1;               ///< of rock; Biot's coefficient
+  /// Of the pores; Biot's modulus. At most one.
+  std::optional<Real> compressibility, biot_modulus;
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
@@ -54,6 +55,8 @@ struct Material {
   bool flows_uniformly() const;  ///< the permeability of rock does not depend on the place
   /// k/mu of the flow through rock. Throws an Error where k is no positive definite tensor of that dimension.
   laws::Mobility mobility(int dim, Real viscosity, const Point& x) const;
+  /// How the porosity grows with the pressure at constant strain, 1/Pa, where the fluid has this compressibility.
+  Real growth_of_pores(Real of_fluid) const;
   /// Of the flow in and through a joint with sides at rest.
   physics::FractureFlowParameters::Face hydraulics(Real viscosity, const Point& x) const;
 

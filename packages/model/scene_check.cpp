@@ -231,10 +231,11 @@ class Comparison {
                        });
     if (!names_.regions || !names_.fractures) return;
     const bool in_fractures = !names_.fractures->empty() && (scene_.flow->compressibility > 0 || scene_.deforms());
+    const Real fluid = scene_.flow->compressibility;
     const bool stored =
         in_fractures || std::any_of(names_.regions->begin(), names_.regions->end(), [&](const auto& name) {
           const auto* rock = rock_of(name);
-          return !rock || rock->compressibility > 0 || rock->porosity * scene_.flow->compressibility > 0 ||
+          return !rock || rock->growth_of_pores(fluid) + rock->porosity * fluid > 0 ||
                  (scene_.deforms() && rock->biot > 0);
         });
     const bool known =
@@ -242,8 +243,9 @@ class Comparison {
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
       fail("Flow",
            "nothing says how high the pressure is: give a \"pressure\" on a boundary or in a well, or storage "
-           "(\"compressibility of "
-           "pores\" of the rock, or its \"porosity\" and \"compressibility\" of the fluid)");
+           "(\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and \"compressibility\" "
+           "of "
+           "the fluid)");
   }
 
   /// What flows through a part of the boundary cannot be given where the pressure is.
@@ -265,6 +267,13 @@ class Comparison {
     const std::string name = std::find_if(scene_.materials.begin(), scene_.materials.end(), of)->first;
     if (scene_.deforms() && !(rock.E || rock.nu || rock.G || rock.lambda || rock.K) && is_sound("Materials > " + name))
       fail("Materials > " + name, "no elastic constants given, exactly two are needed where the rock deforms");
+    const Real least = rock.porosity * scene_.flow->compressibility;  // storage that pores add to
+    if (rock.biot_modulus && least * *rock.biot_modulus > 1 + 1e-12)
+      fail(fmt::format("Materials > {} > \"Biot modulus\"", name),
+           fmt::format(
+               "is {:.6g} Pa, must not be above {:.6g} Pa, which \"porosity\" and \"compressibility\" of the fluid "
+               "make without any growth of pores",
+               *rock.biot_modulus, 1 / least));
     const std::string place = fmt::format("Materials > {} > \"permeability\"", name);
     if (rock.permeability.empty() && is_sound("Materials > " + name))
       fail(place, "missing; it is required with \"Flow\"");

@@ -289,6 +289,11 @@ class Scenes(BadInput):
         refuse(['"permeability" has 4 values, must have 1, 2 or 3 in 2D'], "Materials.rock.permeability={1, 1, 0, 0}")
         refuse(['Materials > rock: 0 elastic constants given'], "Materials.rock.permeability={}")
         refuse(['"porosity": is -0.1, must be'], "Materials.rock.porosity=-0.1")
+        refuse(['Materials > rock: give either "compressibility of pores" or "Biot modulus"'],
+               "Materials.rock.compressibility of pores=0", "Materials.rock.Biot modulus=1")
+        refuse(['Materials > rock > "Biot modulus": is 0, must be positive or infinite'], "Materials.rock.Biot modulus=0")
+        refuse(['Materials > rock > "Biot modulus": is 11 Pa, must not be above 10 Pa, which "porosity" and "compressibility"'],
+               "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2", "Flow.compressibility=0.5")
         refuse(['"scheme"', '"mpfa"', '"mimetic"'], "Flow.scheme=mpfa")
         refuse(['Boundary conditions > west: give either "pressure" or "flux"'], "Boundary conditions.west.flux=1")
         refuse(['Boundary conditions > west: moves or loads the rock'], "Boundary conditions.west.displacement={0, 0}")
