@@ -49,6 +49,34 @@ def flow(dimension, resists):
     return {name: text(expression) for name, expression in found.items()}
 
 
+ROCK = {"alpha": sp.Rational(1, 2), "porosity": sp.Rational(1, 10), "growth": sp.Rational(3, 25), "compressibility": sp.Rational(1, 50)}
+TIME = sp.symbols("t", real=True)
+
+
+def body_force(u, x, p):
+    """-div of the total stress."""
+    total = stress(u, x) - ROCK["alpha"] * p * sp.eye(len(x))
+    return [-sum(sp.diff(total[i, k], x[k]) for k in range(len(x))) for i in range(len(x))]
+
+
+def fluid_source(u, x, p):
+    """As a text, of mobility 1: pores grow by alpha div u + growth p, of which the first part counts at the reference density."""
+    c, growth, slopes = ROCK["compressibility"], ROCK["growth"], [sp.diff(p, k) for k in x]
+    strained = ROCK["alpha"] * sum(sp.diff(a, k, TIME) for a, k in zip(u, x))
+    stored = (growth + c * (ROCK["porosity"] + growth * p)) * sp.diff(p, TIME)
+    leaves = -sum(sp.diff(q, k) for q, k in zip(slopes, x)) - c * sum(q**2 for q in slopes)
+    return f"{text(strained)}+exp({text(c * p)})*({text(stored + leaves)})"
+
+
+def poro(dimension):
+    """Displacement, body force, pressure and source, as texts, of poro_exact.Manufactured times t."""
+    x = COORDINATES[:dimension]
+    waves, humps = [sp.sin(2 * sp.pi * k) for k in x], [k * (1 - k) for k in x]
+    p = TIME * humps[0] * sp.prod(waves[1:])
+    u = [p, *([TIME * waves[0] * humps[1] * waves[2]] if dimension == 3 else []), TIME * sp.prod(waves)]
+    return [text(a) for a in u], [text(sp.expand(b)) for b in body_force(u, x, p)], text(p), fluid_source(u, x, p)
+
+
 def text(expression):
     return str(sp.N(expression, 17)).replace("**", "^").replace(" ", "")
 

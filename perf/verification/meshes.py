@@ -213,3 +213,18 @@ Mesh.Optimize = 1;
 {QUIET}Field[1].F = "{h:g}*Min(1,0.2+0.05*{ends})";
 """
     return with_gmsh(script, folder / f"single_{h:g}.msh", 3)
+
+
+# Without fractures
+
+def square(folder, h):
+    """Triangles of the unit square with edges of h."""
+    script = f"""SetFactory("OpenCASCADE");
+Rectangle(1) = {{0, 0, 0, 1, 1}};
+Physical Curve("boundary") = {{1 : 4}};
+Physical Surface("rock") = {{1}};
+Mesh.Algorithm = 6;
+Mesh.MeshSizeMin = {h:g};
+Mesh.MeshSizeMax = {h:g};
+"""
+    return with_gmsh(script, folder / f"square_{h:g}.msh", 2)

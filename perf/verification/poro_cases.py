@@ -1,10 +1,14 @@
 """The cases of poroelasticity: scenes, meshes, what is measured on them, and the bounds."""
+import csv
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import flow_measure
+import meshes
 import poro_exact
-from cases import Bound, Case, Order, Series
+import poro_measure
+from cases import REFERENCES, Bound, Case, Order, Series, gmsh
 
 CALLED = ("pressure", "settlement")
 SHAPES = {2: ("triangle", "quadrilateral"), 3: ("tetrahedron", "hexahedron")}
@@ -89,4 +93,48 @@ def mandel():
     return case("mandel", "a plate pressed together", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
 
 
-CASES = (terzaghi, undrained, mandel)
+# Manufactured solutions
+
+EVERY = ("pressure", "flow", "u", "force")
+IRREGULAR = {"triangle gmsh": 1.5, "tetrahedron": 1.25}  # orders of flows, where errors of neighbours do not cancel
+WORSE = {"force": ("triangle gmsh 2",), "flow": ("hexahedron 2",)}  # than the peer, README.md says why
+
+
+def peer():
+    """{(series, mesh): row} of errors of the peer on meshes of as many cells."""
+    with open(REFERENCES / "poro_peer.csv") as file:
+        return {(row["series"], row["mesh"]): row for row in csv.DictReader(file)}
+
+
+def manufactured(d, counts, least, quick):
+    """`counts` and `least` orders of u and force by shape and order of cells; pressures and flows have order 2."""
+    known, scene = poro_exact.Manufactured(d), f"verification/manufactured_poro_{d}d.xml"
+    series = [Series(f"{shape} {order}", [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in ns], scene, (f"Mesh.cell={shape}", f"Mesh.order={order}"), known,
+                     quick.get((shape, order), 0)) for (shape, order), ns in counts.items()]
+    if d == 2:
+        series += [Series(f"triangle gmsh {order}", gmsh(order, *[(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]),
+                          "verification/manufactured_poro_gmsh.xml", (), known) for order in (1, 2)]
+    bounds = [Order(one.name, "pressure", 2) for one in series]
+    bounds += [Order(one.name, name, IRREGULAR.get(one.name[:-2], 2)) for one in series for name in ("flow", "through")]
+    bounds += [Order(f"{shape} {order}", name, value) for (shape, order), both in least.items() for name, value in zip(("u", "force"), both)]
+    bounds += [Bound(f"{shape} 2", mesh, name, float(row[name])) for (shape, mesh), row in peer().items() for name in EVERY if f"{shape} 2" not in WORSE.get(name, ())]
+    others = {shape for shape, _ in peer()} & {one.name[:-2] for one in series}
+    points = [(f"PorePy, {shape}", *zip(*[(int(row["unknowns"]), float(row["u"])) for (of, _), row in peer().items() if of == shape])) for shape in sorted(others)]
+    return Case(f"mms_poro{d}d", f"manufactured solution of poroelasticity in {d}D", "", series, lambda run, exact: poro_measure.centre_errors(run, exact), None,
+                (f"{('quadrilateral', 'hexahedron')[d - 2]} 2", f"n={(32, 12)[d - 2]}", "u"), None, ("pressure", "u"), None, bounds, points, called=("pressure", "u"))
+
+
+def mms_poro2d():
+    """Order 2 of cells: u has order 3 until the error of the pressure, of order 2, is larger."""
+    return manufactured(2, {("quadrilateral", 1): (4, 8, 16, 32), ("quadrilateral", 2): (4, 8, 16, 32), ("triangle", 1): (8, 16, 32), ("triangle", 2): (8, 16, 32)},
+                        {("quadrilateral", 1): (2, 2), ("quadrilateral", 2): (2, 2), ("triangle", 1): (2, 1), ("triangle", 2): (2.5, 2), ("triangle gmsh", 1): (2, 1),
+                         ("triangle gmsh", 2): (2.5, 1.5)}, {("quadrilateral", 1): 2, ("triangle", 2): 2})
+
+
+def mms_poro3d():
+    return manufactured(3, {("hexahedron", 1): (4, 8, 12), ("hexahedron", 2): (4, 8, 12), ("tetrahedron", 1): (4, 8, 12), ("tetrahedron", 2): (4, 8, 12)},
+                        {("hexahedron", 1): (2, 1.9), ("hexahedron", 2): (3, 1.9), ("tetrahedron", 1): (1.6, 1), ("tetrahedron", 2): (2.5, 1.5)},
+                        {("hexahedron", 1): 2, ("tetrahedron", 2): 1})
+
+
+CASES = (terzaghi, undrained, mandel, mms_poro2d, mms_poro3d)

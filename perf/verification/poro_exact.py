@@ -108,6 +108,44 @@ class Mandel:
         return [0.0, *times], [0.0, *(self.approach(t) for t in times)]
 
 
+class Manufactured:
+    """Unit square or cube, fixed and drained on its sides, at t = 1; everything is proportional to t: in 2D p = x (1 - x) sin 2 pi y,
+    u = (p, sin 2 pi x sin 2 pi y) (Nordbotten 2016), in 3D likewise. Both Lame's constants and the mobility are 1."""
+    lam = G = mobility = 1.0
+    alpha = 0.5
+
+    def __init__(self, dimension):
+        self.dimension = dimension
+
+    def fields(self, points):
+        """Pressure and displacement, each with derivatives: values [point, 1 + d, 1 + d]; [:, 0] are those of the pressure."""
+        x = points[:, :self.dimension]
+        waves = np.stack([np.sin(2 * np.pi * x), 2 * np.pi * np.cos(2 * np.pi * x)])  # [derivative, point, k]
+        humps = np.stack([x * (1 - x), 1 - 2 * x])
+        found = []
+        for hump in [0, 0, *range(1, self.dimension - 1), None]:  # the coordinate whose factor is x (1 - x)
+            factors = [(humps if k == hump else waves)[:, :, k] for k in range(self.dimension)]
+            slopes = [[factors[k][int(k == j)] for k in range(self.dimension)] for j in range(-1, self.dimension)]
+            found.append(np.stack([np.prod(each, axis=0) for each in slopes], axis=1))
+        return np.stack(found, axis=1)
+
+    def pressure(self, points):
+        return self.fields(points)[:, 0, 0]
+
+    def velocity(self, points):
+        return -self.mobility * self.fields(points)[:, 0, 1:]
+
+    def displacement(self, points):
+        return self.fields(points)[:, 1:, 0]
+
+    def stress(self, points):
+        """Total, [point, i, j]."""
+        fields, identity = self.fields(points), np.eye(self.dimension)
+        slopes = fields[:, 1:, 1:]
+        mean = self.lam * np.trace(slopes, axis1=1, axis2=2) - self.alpha * fields[:, 0, 0]
+        return self.G * (slopes + slopes.transpose(0, 2, 1)) + mean[:, None, None] * identity
+
+
 def mandel_times(step, end=50.0):
     """Of steps; the first is over before anything drains."""
     return [1e-6, *(step * k for k in range(1, round(end / step) + 1))]

@@ -2,7 +2,10 @@
 """Writes the scenes of poroelasticity of this measurement into xml/verification."""
 import sys
 
+import flow_scenes
 import make_scenes
+import manufactured
+import meshes
 import poro_exact
 
 
@@ -49,7 +52,27 @@ def plate():
           {"schedule": list(poro_exact.mandel_times(25.0))}, {"plate": dict(zip(("arguments", "values"), map(list, known.way(poro_exact.mandel_times(25.0)))))})
 
 
+def manufactured_rock():
+    return {"type": "elastic", "Lame's first parameter": 1.0, "shear modulus": 1.0, "permeability": [1.0], "porosity": float(manufactured.ROCK["porosity"]),
+            "compressibility of pores": float(manufactured.ROCK["growth"]), "Biot coefficient": float(manufactured.ROCK["alpha"])}
+
+
+def manufactured_solutions():
+    for name, mesh, sides in (("2d", flow_scenes.box(2, 4, {}), flow_scenes.sides(2)), ("3d", flow_scenes.box(3, 4, {}), flow_scenes.sides(3)),
+                              ("gmsh", make_scenes.mesh_file("square"), ["boundary"])):
+        d = 3 if name == "3d" else 2
+        _, force, _, source = manufactured.poro(d)
+        still = {side: {"boundary": side, "displacement": [0.0] * d, "pressure": 0.0} for side in sides}
+        content = {**mesh, "Materials": {"rock": manufactured_rock()}, "Bulk": {"material": "rock", "body force": force},
+                   "Flow": {"viscosity": 1.0, "compressibility": float(manufactured.ROCK["compressibility"]), "source": source}, "Boundary conditions": still}
+        make_scenes.write(f"manufactured_poro_{name}", "A manufactured solution of poroelasticity (Nordbotten 2016). See perf/verification/poro_exact.py.", content,
+                          "poro_scenes.py", {"end": 1.0, "steps": 2})
+
+
 if __name__ == "__main__":
-    columns()
-    plate()
+    meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
+    for make in (columns, plate, manufactured_solutions):
+        make()
+    for geo in make_scenes.FOLDER.glob("*.geo"):
+        geo.unlink()
     sys.exit(0)

@@ -133,6 +133,39 @@ class Exact(ProgramTest):
             self.assertTrue(np.allclose(rate, rock.mobility * curved, atol=2e-3 * np.abs(rate).max()))
 
 
+    def test_manufactured_rock_is_in_balance_with_its_fluid(self):
+        try:
+            import manufactured
+        except ImportError as error:
+            self.skipTest(str(error))
+        functions = {name: getattr(np, name) for name in ("sin", "cos", "exp", "pi")}
+        for d in (2, 3):
+            known, x, h = poro_exact.Manufactured(d), np.random.default_rng(5).uniform(0.1, 0.9, (20, d)), 1e-4
+            rock = {name: float(value) for name, value in manufactured.ROCK.items()}
+
+            def slopes(function):
+                """[point, ..., k], at t = 1."""
+                return np.stack([(function(x + h * e) - function(x - h * e)) / (2 * h) for e in np.eye(d)], axis=-1)
+            u, force, p, source = manufactured.poro(d)
+            at = {**functions, "t": 1, **dict(zip("xyz", x.T))}
+
+            def of(text):
+                return eval(text.replace("^", "**"), at)
+            self.assertTrue(np.allclose(of(p), known.pressure(x)) and np.allclose([of(k) for k in u], known.displacement(x).T))
+            self.assertTrue(np.allclose(known.velocity(x), -slopes(known.pressure), atol=1e-6))
+            strain = slopes(known.displacement)
+            stress = strain + strain.transpose(0, 2, 1) + (np.trace(strain, axis1=1, axis2=2) - rock["alpha"] * known.pressure(x))[:, None, None] * np.eye(d)
+            self.assertTrue(np.allclose(stress, known.stress(x), atol=1e-5))
+            self.assertTrue(np.allclose([of(b) for b in force], -np.trace(slopes(known.stress), axis1=2, axis2=3).T, atol=1e-4))
+
+            def mass(factor):
+                """In the pores at t = factor, but for what strain makes."""
+                return (rock["porosity"] + rock["growth"] * factor * known.pressure(x)) * np.exp(rock["compressibility"] * factor * known.pressure(x))
+            leaves = np.trace(slopes(lambda y: np.exp(rock["compressibility"] * known.pressure(y))[:, None] * known.velocity(y)), axis1=1, axis2=2)
+            grows = (mass(1 + h) - mass(1 - h)) / (2 * h) + rock["alpha"] * np.trace(strain, axis1=1, axis2=2)
+            self.assertTrue(np.allclose(of(source), leaves + grows, atol=1e-4))
+
+
 class Scenes(ProgramTest):
     def run_case(self, make, name):
         """The first run of a case on the mesh of its scene, with the exact solution."""
@@ -216,12 +249,14 @@ class Scenes(ProgramTest):
         try:
             import flow_scenes
             import make_scenes
+            import poro_scenes
         except ImportError as error:
             self.skipTest(str(error))
         make_scenes.FOLDER = self.folder
         make_scenes.manufactured_solutions()
         flow_scenes.manufactured_solutions()
         flow_scenes.regular()
+        poro_scenes.manufactured_solutions()
         for file in self.folder.glob("*.xml"):
             self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)
 
