@@ -363,6 +363,7 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
     assembly::gather_host<shape>(*mesh_, c, X);
     const CellFaces<shape> faces(X);
     const auto& [biot, law] = rock(c);
+    if (biot == 0) continue;
     laws::Mobility beta;
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)

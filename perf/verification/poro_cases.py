@@ -1,5 +1,6 @@
 """The cases of poroelasticity: scenes, meshes, what is measured on them, and the bounds."""
 import csv
+from dataclasses import replace
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -93,6 +94,56 @@ def mandel():
     return case("mandel", "a plate pressed together", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
 
 
+# A fracture that a fluid makes slide and open
+
+def mean_state(step):
+    """"stick", "slip", "open" or "mixed", normal and shear traction, normal and tangential jump of the fracture."""
+    of = step["fractures"]["fracture"]
+    name = next((name for name in ("stick", "slip", "open") if of[f"fraction_{name}"] > 1 - 1e-9), "mixed")
+    (N, *T), (opening, *sliding) = (of[f"mean_{what}"]["local"] for what in ("traction", "jump"))
+    return name, -N, np.linalg.norm(T), opening, np.linalg.norm(sliding)
+
+
+def onset_error(path, states, before, after, exact):
+    """How far from the exact pressure the one may be at which `before` becomes `after`; 1 if it never does so."""
+    low, high = ([p for p, state in zip(path, states) if state == name] for name in (before, after))
+    return max(abs(p / exact - 1) for p in (max(low), min(high))) if low and high and max(low) < min(high) else 1.0
+
+
+def joined(name, known, title):
+    """The rock is `dry`, without Biot's coupling; keeps its fluid (`undrained`); or has the pressure of the fracture (`drained`)."""
+    lam = known.lam * 0.4
+    kinds = {"dry": (known, ()), "drained": (replace(known, share=0.5), ("Materials.rock.Biot coefficient=0.5", "Materials.rock.permeability={1.0}")),
+             "undrained": (known, ("Materials.rock.Biot coefficient=1", f"Materials.rock.Lame's first parameter={lam!r}",
+                                   f"Materials.rock.compressibility of pores={1 / (known.lam - lam)!r}"))}
+
+    def errors(run, exact):
+        path = exact.path()[1:]
+        found, states = [mean_state(step) for step in run.results["steps"]], [exact.state(p) for p in path]
+        pairs = zip(exact.onset, (("stick", "slip"), ("slip", "open")))
+        slides, opens = (onset_error(path, [one[0] for one in found], *names, p) for p, names in pairs)
+        off, size = (np.array([one[1:] for one in of]) for of in (found, states))
+        worst = [float(np.max(np.abs(off - size)[:, of]) / np.max(np.abs(size[:, of]))) for of in (slice(0, 2), slice(2, 4))]
+        return {"slides": slides, "opens": opens, "traction": max(worst[0], 1e-17), "jump": max(worst[1], 1e-17)}
+    series = [Series(f"{kind} {cell}", [("n=4", (f"Mesh.cells={numbers([4] * d)}",))], f"verification/fluid_{name}_{d}d.xml",
+                     (f"Mesh.cell={cell}", f"Tables.p.values={numbers(exact.path())}", *sets), exact, int((kind, cell) in QUICK))
+              for kind, (exact, sets) in kinds.items() for d in (2, 3) for cell in SHAPES[d]]
+    bounds = [Bound(one.name, label, what, most) for one in series for label, _ in one.meshes
+              for what, most in (("slides", 1.1e-6), ("opens", 1.1e-6), ("traction", 1e-8), ("jump", 1e-8))]
+    return Case(f"fluid_{name}", title, "", series, errors, None, ("dry triangle", "n=4", "traction"), None, ("", ""), None, bounds, called=("pressure", "traction"))
+
+
+QUICK = (("dry", "triangle"), ("undrained", "quadrilateral"), ("drained", "tetrahedron"))
+
+
+def fluid_block():
+    return joined("block", poro_exact.CONFINED, "a sheared block with closure and dilation, whose fracture slides and opens by fluid")
+
+
+def fluid_onset():
+    return joined("onset", poro_exact.STRESSED, "a fracture under stress that slides and opens by fluid")
+
+
 # Manufactured solutions
 
 EVERY = ("pressure", "flow", "u", "force")
@@ -137,4 +188,4 @@ def mms_poro3d():
                         {("hexahedron", 1): 2, ("tetrahedron", 2): 1})
 
 
-CASES = (terzaghi, undrained, mandel, mms_poro2d, mms_poro3d)
+CASES = (terzaghi, undrained, mandel, fluid_block, fluid_onset, mms_poro2d, mms_poro3d)

@@ -108,6 +108,83 @@ class Mandel:
         return [0.0, *times], [0.0, *(self.approach(t) for t in times)]
 
 
+@dataclass
+class Joined:
+    """A block of height 1 with a fracture through it, fixed at its bottom and displaced by `way` (along the fracture, along the normal) at
+    its top, in which the fluid has the pressure p: N + share p = N0 + k_n ([[u]]_n - d_n), shear traction = T0 + k_s (d_t - [[u]]_t). `share`
+    is 1 where the rock keeps its fluid, or Biot's coefficient is 0, and 1 - Biot's coefficient where the pressure in the rock is that of
+    the fracture. Joint as in docs/theory.md (11)-(14); the jump has what T0 stretches the joint by."""
+    lam: float  # undrained where the rock keeps its fluid
+    G: float
+    way: tuple
+    friction: float
+    shear_stiffness: float
+    N0: float = 0.0
+    T0: float = 0.0
+    dilation: float = 0.0  # tan theta
+    gap: float = 0.0
+    closure: float = 0.0
+    normal_stiffness: float = 1.0
+    share: float = 1.0
+
+    @property
+    def k_n(self):
+        return self.lam + 2 * self.G
+
+    @property
+    def K_s(self):
+        """Of rock and fracture."""
+        return 1 / (1 / self.G + 1 / self.shear_stiffness)
+
+    def closed_by(self, N):
+        return self.closure * N / (self.closure * self.normal_stiffness + N) if self.closure else 0.0
+
+    def load(self, p, slip):
+        return (self.N0 - self.share * p) / self.k_n + self.gap + self.dilation * slip - self.way[1]
+
+    def sheared(self, T):
+        """Tangential jump under the traction T."""
+        return self.way[0] + (self.T0 - T) / self.G + self.T0 / self.shear_stiffness
+
+    def compression(self, softness, load):
+        """N of softness N + closed_by(N) = load > 0."""
+        K = self.closure * self.normal_stiffness
+        b = softness * K + self.closure - load
+        return (2 * load * K / (b + np.sqrt(b * b + 4 * softness * load * K)) if b > 0 else (np.sqrt(b * b + 4 * softness * load * K) - b) / (2 * softness)) \
+            if self.closure else load / softness
+
+    @property
+    def held(self):
+        """The shear traction of a fracture that sticks, and the slip of one without traction."""
+        T = self.T0 + self.K_s * self.way[0]
+        return T, T / self.K_s
+
+    @property
+    def onset(self):
+        """Pressures at which it begins to slide, and to open."""
+        T, slip = self.held
+        N = T / self.friction
+        return (self.k_n * (self.load(0, 0) - self.closed_by(N)) - N) / self.share, self.k_n * self.load(0, slip) / self.share
+
+    def state(self, p):
+        """"stick", "slip" or "open", N, shear traction, normal and tangential jump."""
+        T, free = self.held
+        if self.load(p, free) <= 0:
+            return "open", 0.0, 0.0, self.way[1] - (self.N0 - self.share * p) / self.k_n, self.sheared(0)
+        N = self.compression(1 / self.k_n, self.load(p, 0)) if self.load(p, 0) > 0 else 0.0
+        if T <= self.friction * N:
+            return "stick", N, T, self.gap - self.closed_by(N), self.sheared(T)
+        N = self.compression(1 / self.k_n + self.dilation * self.friction / self.K_s, self.load(p, free))
+        T, slip = self.friction * N, free - self.friction * N / self.K_s
+        return "slip", N, T, self.gap + self.dilation * slip - self.closed_by(N), self.sheared(T)
+
+    def path(self, near=1e-6):
+        """Pressures, first at the start, around both onsets and between them."""
+        slides, opens = self.onset
+        around = [onset * factor for onset in (slides, opens) for factor in (1 - near, 1 + near)]
+        return [0.0, 0.0, slides / 2, *around[:2], *(slides + (opens - slides) * part for part in (0.1, 0.5, 0.9)), *around[2:], opens * 1.1]
+
+
 class Manufactured:
     """Unit square or cube, fixed and drained on its sides, at t = 1; everything is proportional to t: in 2D p = x (1 - x) sin 2 pi y,
     u = (p, sin 2 pi x sin 2 pi y) (Nordbotten 2016), in 3D likewise. Both Lame's constants and the mobility are 1."""
@@ -152,4 +229,6 @@ def mandel_times(step, end=50.0):
 
 
 COLUMN = Terzaghi(Rock(1.65e9, 1.475e9, 0.0, 9.86e-11), 1.0, 1e4)
+CONFINED = Joined(1.0, 1.0, (0.15, -0.1), 0.6, 2.0, dilation=np.tan(np.radians(10.0)), gap=0.01, closure=0.1, normal_stiffness=5.0)
+STRESSED = Joined(10e9, 15e9, (0.0, 0.0), 0.6, 20e9, 60e6, 20e6)
 PLATE = Mandel(Rock(1.65e9, 2.475e9, 6.0606e-11, 9.869e-11), 100.0, 10.0, 6e8)

@@ -69,9 +69,33 @@ def manufactured_solutions():
                           "poro_scenes.py", {"end": 1.0, "steps": 2})
 
 
+def joined_blocks():
+    """Pressures by a well in the fracture; rock that lets nothing through, so little viscous the fluid is that pressures are uniform."""
+    for name, known, comment in (("block", poro_exact.CONFINED, "A block with a fracture through it, sheared and pressed together, in whose fracture a fluid's pressure rises "
+                                  "until it slides and opens."),
+                                 ("onset", poro_exact.STRESSED, "A fracture under 60 MPa of compression and 20 MPa of shear, in which a fluid's pressure rises until it slides and opens.")):
+        for d in (2, 3):
+            along = [known.way[0]] if d == 2 else [0.8 * known.way[0], 0.6 * known.way[0]]
+            joint = {"type": "joint", "friction coefficient": known.friction, "tangential stiffness": known.shear_stiffness, "initial aperture": 0.1, "tangential permeability": 1.0,
+                     **({"dilation angle": 10.0, "initial gap": known.gap, "maximum closure": known.closure, "normal stiffness": known.normal_stiffness} if known.closure else {})}
+            rock = {"type": "elastic", "Lame's first parameter": known.lam, "shear modulus": known.G, "permeability": [1e-45], "Biot coefficient": 0.0,
+                    "compressibility of pores": 0.0}
+            stress = {2: [0.0, -known.N0, 0.0, known.T0], 3: [0.0, 0.0, -known.N0, 0.0, 0.6 * known.T0, 0.8 * known.T0]}[d]
+            down, up = flow_scenes.sides(d)[-2:]
+            path = known.path()
+            mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, periodic=["x", "y"][:d - 1])
+            mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [0.0] * (d - 1) + [1.0]
+            middle = [0.4, 0.5] if d == 2 else [0.4, 0.4, 0.4, 0.4, 0.4, 0.6]
+            content = {"Tables": {"p": {"arguments": list(range(len(path))), "values": path}}, **mesh, "Materials": {"rock": rock, "joint": joint},
+                       "Bulk": {"material": "rock", **({"initial stress": stress} if known.N0 else {})}, "Fractures": {"fracture": {"material": "joint"}},
+                       "Flow": {"viscosity": 1e-12, "Wells": {"well": {"points": middle, "radius": 1e-3, "pressure": "p(t)"}}},
+                       "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d}, "moved": {"boundary": up, "displacement": [*along, known.way[1]]}}}
+            make_scenes.write(f"fluid_{name}_{d}d", comment, content, "poro_scenes.py", {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
+
+
 if __name__ == "__main__":
     meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
-    for make in (columns, plate, manufactured_solutions):
+    for make in (columns, plate, manufactured_solutions, joined_blocks):
         make()
     for geo in make_scenes.FOLDER.glob("*.geo"):
         geo.unlink()
