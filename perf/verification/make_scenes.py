@@ -91,20 +91,23 @@ def cracks():
                         f"{s:.17g}*{u}+{c:.17g}*{v}+{yy:.17g}*y"])))
 
 
-def penny():
+def penny_displacement(p, nu):
+    """Of exact.Penny under the pressure p, shear modulus 1, as expressions."""
     far, near, r = "sqrt((r+1)^2+z^2)", "sqrt((r-1)^2+z^2)", "sqrt(x^2+y^2)"
     l1, l2 = f"(({far}-{near})/2)", f"(({far}+{near})/2)"
     root, out = f"sqrt(max(1-{l1}^2,0))", f"sqrt(max({l2}^2-1,0))"
-    angle, product = f"asin(min(1/{l2},1))", f"({far}*{near})"
-    nu, factor = 0.25, 1e-3 / math.pi
+    angle, product, factor = f"asin(min(1/{l2},1))", f"({far}*{near})", p / math.pi
     radial = f"{factor:.17g}*(-{(1 - 2 * nu) / 2:g}*({angle}-{out}/{l2}^2)+abs(z)*{root}/({l2}^2*{product}))"
     axial = f"{factor:.17g}*(z<0 ? -1 : 1)*({2 * (1 - nu):g}*({root}-abs(z)*{angle})+abs(z)*({angle}-{out}/{product}))"
-    displacement = [text.replace("(r", f"({r}") for text in (f"x*{radial}", f"y*{radial}", axial)]
+    return [text.replace("(r", f"({r}") for text in (f"x*{radial}", f"y*{radial}", axial)]
+
+
+def penny():
     meshes.penny(FOLDER, 1, 0.25, 0.5).rename(FOLDER / "penny.msh")
     write("penny", "A crack in the form of a disc under the pressure 1e-3, open, in a box on whose boundary the "
           "displacement of the infinite body is prescribed (Sneddon 1946).",
-          scene(mesh_file("penny", "crack", normal=[0.0, 0.0, 1.0]), {"shear modulus": 1.0, "Poisson's ratio": nu},
-                {"friction coefficient": 0.5}, ["crack"], around(displacement), fluid={"fluid pressure": 1e-3}))
+          scene(mesh_file("penny", "crack", normal=[0.0, 0.0, 1.0]), {"shear modulus": 1.0, "Poisson's ratio": 0.25},
+                {"friction coefficient": 0.5}, ["crack"], around(penny_displacement(1e-3, 0.25)), fluid={"fluid pressure": 1e-3}))
 
 
 def wavy():

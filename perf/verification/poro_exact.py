@@ -228,6 +228,14 @@ def mandel_times(step, end=50.0):
     return [1e-6, *(step * k for k in range(1, round(end / step) + 1))]
 
 
+FILLED = 1e-3  # pressure of a crack of radius 1, shear modulus 1, at t = 1
+
+
+def filling(d, nu):
+    """What has to flow into it per time, 3D into a disc (Sneddon 1946)."""
+    return float(FILLED * (1 - nu) * (np.pi if d == 2 else 8 / 3))
+
+
 COLUMN = Terzaghi(Rock(1.65e9, 1.475e9, 0.0, 9.86e-11), 1.0, 1e4)
 CONFINED = Joined(1.0, 1.0, (0.15, -0.1), 0.6, 2.0, dilation=np.tan(np.radians(10.0)), gap=0.01, closure=0.1, normal_stiffness=5.0)
 STRESSED = Joined(10e9, 15e9, (0.0, 0.0), 0.6, 20e9, 60e6, 20e6)

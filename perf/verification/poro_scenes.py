@@ -93,9 +93,25 @@ def joined_blocks():
             make_scenes.write(f"fluid_{name}_{d}d", comment, content, "poro_scenes.py", {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
 
 
+def filled_cracks():
+    """The displacement on the box is that of the crack with the volume that has been put in, in the first of two steps. The crack is open by 1e-4 from
+    the start: what is closed and cannot give way would have no room for a fluid that cannot be compressed."""
+    crack, disc, nu = make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25), make_scenes.penny_displacement(poro_exact.FILLED, 0.25), 0.25
+    for d, mesh, name, displacement in ((2, "sneddon", "A crack", crack), (3, "penny", "A crack in the form of a disc", disc)):
+        where = [0.0, 0.0] if d == 2 else [0.0, 0.0, -0.1, 0.0, 0.0, 0.1]
+        rock = {"type": "elastic", "shear modulus": 1.0, "Lame's first parameter": 1.0, "permeability": [1e-22], "Biot coefficient": 0.0, "compressibility of pores": 0.0}
+        content = {**make_scenes.mesh_file(mesh, "crack", normal=[0.0] * (d - 1) + [1.0]),
+                   "Materials": {"rock": rock, "joint": {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}},
+                   "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
+                   "Flow": {"viscosity": 1e-13, "Wells": {"well": {"points": where, "radius": 1e-6, "rate": f"t<0.75 ? {2 * poro_exact.filling(d, nu)!r} : 0"}}},
+                   "Boundary conditions": make_scenes.around([f"min(2*t,1)*({text})" for text in displacement])}
+        make_scenes.write(f"crack_volume_{d}d", f"{name}, into which a well puts a volume of fluid that nothing else takes up (Sneddon 1946).", content, "poro_scenes.py",
+                          {"end": 1.0, "steps": 2})
+
+
 if __name__ == "__main__":
     meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
-    for make in (columns, plate, manufactured_solutions, joined_blocks):
+    for make in (columns, plate, manufactured_solutions, joined_blocks, filled_cracks):
         make()
     for geo in make_scenes.FOLDER.glob("*.geo"):
         geo.unlink()
