@@ -1,18 +1,15 @@
 """The cases of poroelasticity: scenes, meshes, what is measured on them, and the bounds."""
 import csv
-from dataclasses import replace
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import cases
-import exact
 import flow_measure
 import measure
 import meshes
 import poro_exact
 import poro_measure
-from cases import REFERENCES, Bound, Case, Order, Series, gmsh, graded, uniform
+from cases import REFERENCES, Bound, Case, Order, Series, gmsh
 
 CALLED = ("pressure", "settlement")
 SHAPES = {2: ("triangle", "quadrilateral"), 3: ("tetrahedron", "hexahedron")}
@@ -30,10 +27,15 @@ def column(d, n, steps):
     return (f"n={n}", (f"Mesh.cells={numbers([n // 5] * (d - 1) + [n])}", f"Time.steps={steps}"))
 
 
+def mean_pressures(run, function):
+    """Relative L2 error of the mean pressures of cells."""
+    p = flow_measure.array(run, "pressure")[:, None]
+    return flow_measure.mean_error(p, lambda x: function(x)[:, None], *flow_measure.cell_points(run))
+
+
 def pressures(run, exact_at, axis):
-    """Relative L2 error of the mean pressures of cells, against those at their centres' coordinate."""
-    points, weights = flow_measure.cell_points(run)
-    return flow_measure.mean_error(flow_measure.array(run, "pressure")[:, None], lambda x: exact_at(x[:, axis])[:, None], points, weights)
+    """The same, against pressures that depend on one coordinate."""
+    return mean_pressures(run, lambda x: exact_at(x[:, axis]))
 
 
 def terzaghi():
@@ -97,90 +99,6 @@ def mandel():
     return case("mandel", "a plate pressed together", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
 
 
-# A fracture that a fluid makes slide and open
-
-def mean_state(step):
-    """"stick", "slip", "open" or "mixed", normal and shear traction, normal and tangential jump of the fracture."""
-    of = step["fractures"]["fracture"]
-    name = next((name for name in ("stick", "slip", "open") if of[f"fraction_{name}"] > 1 - 1e-9), "mixed")
-    (N, *T), (opening, *sliding) = (of[f"mean_{what}"]["local"] for what in ("traction", "jump"))
-    return name, -N, np.linalg.norm(T), opening, np.linalg.norm(sliding)
-
-
-def onset_error(path, states, before, after, exact):
-    """How far from the exact pressure the one may be at which `before` becomes `after`; 1 if it never does so."""
-    low, high = ([p for p, state in zip(path, states) if state == name] for name in (before, after))
-    return max(abs(p / exact - 1) for p in (max(low), min(high))) if low and high and max(low) < min(high) else 1.0
-
-
-def joined(name, known, title):
-    """The rock is `dry`, without Biot's coupling; keeps its fluid (`undrained`); or has the pressure of the fracture (`drained`)."""
-    lam = known.lam * 0.4
-    kinds = {"dry": (known, ()), "drained": (replace(known, share=0.5), ("Materials.rock.Biot coefficient=0.5", "Materials.rock.permeability={1.0}")),
-             "undrained": (known, ("Materials.rock.Biot coefficient=1", f"Materials.rock.Lame's first parameter={lam!r}",
-                                   f"Materials.rock.compressibility of pores={1 / (known.lam - lam)!r}"))}
-
-    def errors(run, exact):
-        path = exact.path()[1:]
-        found, states = [mean_state(step) for step in run.results["steps"]], [exact.state(p) for p in path]
-        pairs = zip(exact.onset, (("stick", "slip"), ("slip", "open")))
-        slides, opens = (onset_error(path, [one[0] for one in found], *names, p) for p, names in pairs)
-        off, size = (np.array([one[1:] for one in of]) for of in (found, states))
-        worst = [float(np.max(np.abs(off - size)[:, of]) / np.max(np.abs(size[:, of]))) for of in (slice(0, 2), slice(2, 4))]
-        return {"slides": slides, "opens": opens, "traction": max(worst[0], 1e-17), "jump": max(worst[1], 1e-17)}
-    series = [Series(f"{kind} {cell}", [("n=4", (f"Mesh.cells={numbers([4] * d)}",))], f"verification/fluid_{name}_{d}d.xml",
-                     (f"Mesh.cell={cell}", f"Tables.p.values={numbers(exact.path())}", *sets), exact, int((kind, cell) in QUICK))
-              for kind, (exact, sets) in kinds.items() for d in (2, 3) for cell in SHAPES[d]]
-    bounds = [Bound(one.name, label, what, most) for one in series for label, _ in one.meshes
-              for what, most in (("slides", 1.1e-6), ("opens", 1.1e-6), ("traction", 1e-11), ("jump", 1e-11))]
-    return Case(f"fluid_{name}", title, "", series, errors, None, ("dry triangle", "n=4", "traction"), None, ("", ""), None, bounds, called=("pressure", "traction"))
-
-
-QUICK = (("dry", "triangle"), ("undrained", "quadrilateral"), ("drained", "tetrahedron"))
-
-
-def fluid_block():
-    return joined("block", poro_exact.CONFINED, "a sheared block with closure and dilation, whose fracture slides and opens by fluid")
-
-
-def fluid_onset():
-    return joined("onset", poro_exact.STRESSED, "a fracture under stress that slides and opens by fluid")
-
-
-# A crack that a given volume of fluid fills
-
-UNDRAINED = ("Materials.rock.Biot coefficient=1", "Materials.rock.Lame's first parameter=0.4", "Materials.rock.compressibility of pores=1.6666666666666667")
-
-
-def crack_volume():
-    """Nothing but the opening takes up fluid. `pressure` is that in the crack, which is the same everywhere once nothing flows any more; undrained rock has the
-    stiffness that dry rock has without its fluid."""
-    def errors(run, known):
-        means = cases.crack_jumps(run, known) if run.dimension == 2 else measure.face_means(known.jump, run.corners(), 12)
-        size, opening, p = measure.area(run.corners()), run.data("opening"), run.data("fracture pressure")
-        volume = abs((size * opening).sum() / poro_exact.filling(run.dimension, 0.25) - 1)
-        return {"pressure": measure.relative((p - poro_exact.FILLED)[:, None], np.full((len(p), 1), poro_exact.FILLED), size), "jump": measure.jump_error(run, means),
-                "volume": max(volume, 1e-17)}
-
-    def disc(smallest, growth, h):
-        return f"front {smallest:g}", lambda folder: meshes.penny(folder, h, smallest, growth)
-    discs = [disc(0.2, 0.5, 1), disc(0.1, 0.35, 0.8), disc(0.05, 0.25, 0.6)]
-    crack, flat = exact.Crack(1, poro_exact.FILLED, 1, 0.25), "verification/crack_volume_2d.xml"
-    series = [Series("dry order 1", uniform(1, (0.4, 0.2, 0.1)), flat, (), crack, 2), Series("dry order 2", uniform(2, (0.4, 0.2, 0.1)), flat, (), crack),
-              Series("dry graded order 2", graded(2, *cases.GRADED), flat, (), crack), Series("undrained order 1", uniform(1, (0.4, 0.2, 0.1)), flat, UNDRAINED, crack, 2),
-              Series("undrained graded order 2", graded(2, *cases.GRADED), flat, UNDRAINED, crack),
-              Series("dry disc order 1", gmsh(1, *discs), "verification/crack_volume_3d.xml", (), exact.Penny(poro_exact.FILLED, 1, 0.25), 1),
-              Series("dry disc order 2", gmsh(2, *discs[:2]), "verification/crack_volume_3d.xml", (), exact.Penny(poro_exact.FILLED, 1, 0.25))]
-    bounds = [Order(one.name, "pressure", 1) for one in series if one.name != "dry order 2"]
-    bounds += [Bound(one.name, label, "volume", 1e-6) for one in series for label, _ in one.meshes]
-    finest = series[2].meshes[-1][0]
-    bounds += [Bound(name, mesh, what, most) for name, mesh, most_p, most_jump in (
-        ("dry order 1", "h=0.2", 4e-2, 2e-2), ("undrained order 1", "h=0.2", 3e-2, 1.2e-2), ("dry order 2", "h=0.1", 2.5e-3, 2.5e-3), ("dry graded order 2", finest, 1e-4, 1e-4),
-        ("undrained graded order 2", finest, 6e-4, 1.5e-4), ("dry disc order 2", discs[1][0], 2e-2, 2e-2)) for what, most in (("pressure", most_p), ("jump", most_jump))]
-    return Case("crack_volume", "a crack filled with a given volume of fluid", "", series, errors, None, ("dry graded order 2", series[2].meshes[-1][0], "pressure"), None,
-                ("pressure", "jump"), None, bounds, called=("pressure", "jump"))
-
-
 # Manufactured solutions
 
 EVERY = ("pressure", "flow", "u", "force")
@@ -194,35 +112,78 @@ def peer():
         return {(row["series"], row["mesh"]): row for row in csv.DictReader(file)}
 
 
-def manufactured(d, counts, least, quick):
-    """`counts` and `least` orders of u and force by shape and order of cells; pressures and flows have order 2."""
-    known, scene = poro_exact.Manufactured(d), f"verification/manufactured_poro_{d}d.xml"
-    series = [Series(f"{shape} {order}", [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in ns], scene, (f"Mesh.cell={shape}", f"Mesh.order={order}"), known,
-                     quick.get((shape, order), 0)) for (shape, order), ns in counts.items()]
-    if d == 2:
-        series += [Series(f"triangle gmsh {order}", gmsh(order, *[(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]),
-                          "verification/manufactured_poro_gmsh.xml", (), known) for order in (1, 2)]
-    bounds = [Order(one.name, "pressure", 2) for one in series]
+def comparison(series):
+    """Bounds and points of the peer, on meshes of as many cells; its cells are linear."""
+    rows, shapes = peer(), {one.name[:-2] for one in series}
+    bounds = [Bound(f"{shape} 2", mesh, name, float(row[name])) for (shape, mesh), row in rows.items() if shape in shapes
+              for name in EVERY if f"{shape} 2" not in WORSE.get(name, ())]
+    points = []
+    for shape in sorted(shapes & {shape for shape, _ in rows}):
+        of = [row for (name, _), row in rows.items() if name == shape]
+        points.append((f"PorePy, {shape}", [int(row["unknowns"]) for row in of], [float(row["u"]) for row in of]))
+    return bounds, points
+
+
+def manufactured(d, series, least, headline):
+    """`least`: orders of u and force by series; those of pressures are 2."""
+    bounds, points = comparison(series)
+    bounds += [Order(one.name, "pressure", 2) for one in series]
     bounds += [Order(one.name, name, IRREGULAR.get(one.name[:-2], 2)) for one in series for name in ("flow", "through")]
-    bounds += [Order(f"{shape} {order}", name, value) for (shape, order), both in least.items() for name, value in zip(("u", "force"), both)]
-    bounds += [Bound(f"{shape} 2", mesh, name, float(row[name])) for (shape, mesh), row in peer().items() for name in EVERY if f"{shape} 2" not in WORSE.get(name, ())]
-    others = {shape for shape, _ in peer()} & {one.name[:-2] for one in series}
-    points = [(f"PorePy, {shape}", *zip(*[(int(row["unknowns"]), float(row["u"])) for (of, _), row in peer().items() if of == shape])) for shape in sorted(others)]
-    return Case(f"mms_poro{d}d", f"manufactured solution of poroelasticity in {d}D", "", series, lambda run, exact: poro_measure.centre_errors(run, exact), None,
-                (f"{('quadrilateral', 'hexahedron')[d - 2]} 2", f"n={(32, 12)[d - 2]}", "u"), None, ("pressure", "u"), None, bounds, points, called=("pressure", "u"))
+    bounds += [Order(name, *bound) for name, both in least.items() for bound in zip(("u", "force"), both)]
+    return Case(f"mms_poro{d}d", f"manufactured solution of poroelasticity in {d}D", "", series, poro_measure.centre_errors, None,
+                (*headline, "u"), None, ("pressure", "u"), None, bounds, points, called=("pressure", "u"))
+
+
+def made(d, shape, order, counts, quick=0):
+    """A series on boxes with so many cells along each edge."""
+    grids = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in counts]
+    sets = (f"Mesh.cell={shape}", f"Mesh.order={order}")
+    return Series(f"{shape} {order}", grids, f"verification/manufactured_poro_{d}d.xml", sets, poro_exact.Manufactured(d), quick)
 
 
 def mms_poro2d():
-    """Order 2 of cells: u has order 3 until the error of the pressure, of order 2, is larger."""
-    return manufactured(2, {("quadrilateral", 1): (4, 8, 16, 32), ("quadrilateral", 2): (4, 8, 16, 32), ("triangle", 1): (8, 16, 32), ("triangle", 2): (8, 16, 32)},
-                        {("quadrilateral", 1): (2, 2), ("quadrilateral", 2): (2, 2), ("triangle", 1): (2, 1), ("triangle", 2): (2.5, 2), ("triangle gmsh", 1): (2, 1),
-                         ("triangle gmsh", 2): (2.5, 1.5)}, {("quadrilateral", 1): 2, ("triangle", 2): 2})
+    """Of cells of order 2, u has order 3 until the error of the pressure, of order 2, is larger."""
+    series = [made(2, shape, order, counts, 2 * (shape[0] == "q" or order == 2))
+              for shape, counts in (("quadrilateral", (4, 8, 16, 32)), ("triangle", (8, 16, 32))) for order in (1, 2)]
+    makers = [(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]
+    scene, known = "verification/manufactured_poro_gmsh.xml", poro_exact.Manufactured(2)
+    series += [Series(f"triangle gmsh {order}", gmsh(order, *makers), scene, (), known) for order in (1, 2)]
+    least = {"quadrilateral 1": (2, 2), "quadrilateral 2": (2, 2), "triangle 1": (2, 1), "triangle 2": (2.5, 2), "triangle gmsh 1": (2, 1),
+             "triangle gmsh 2": (2.5, 1.5)}
+    return manufactured(2, series, least, ("quadrilateral 2", "n=32"))
 
 
 def mms_poro3d():
-    return manufactured(3, {("hexahedron", 1): (4, 8, 12), ("hexahedron", 2): (4, 8, 12), ("tetrahedron", 1): (4, 8, 12), ("tetrahedron", 2): (4, 8, 12)},
-                        {("hexahedron", 1): (2, 1.9), ("hexahedron", 2): (3, 1.9), ("tetrahedron", 1): (1.6, 1), ("tetrahedron", 2): (2.5, 1.5)},
-                        {("hexahedron", 1): 2, ("tetrahedron", 2): 1})
+    quick = {("hexahedron", 1): 2, ("tetrahedron", 2): 1}
+    series = [made(3, shape, order, (4, 8, 12), quick.get((shape, order), 0)) for shape in SHAPES[3] for order in (1, 2)]
+    least = {"hexahedron 1": (2, 1.9), "hexahedron 2": (3, 1.9), "tetrahedron 1": (1.6, 1), "tetrahedron 2": (2.5, 1.5)}
+    return manufactured(3, series, least, ("hexahedron 2", "n=12"))
 
 
-CASES = (terzaghi, undrained, mandel, fluid_block, fluid_onset, crack_volume, mms_poro2d, mms_poro3d)
+# Steps
+
+SCHEMES = {"Euler": (1, ())}  # order and entries of the scene
+
+
+def time_errors(run, known):
+    """Of a fracture `pressure` is the worst one, in it or in the rock, and `u` its opening."""
+    if run.faces is None:
+        return {"pressure": mean_pressures(run, known.pressure), "u": measure.displacement_error(run, known)}
+    p = np.concatenate([flow_measure.array(run, "pressure"), run.data("fracture pressure")])
+    return {"pressure": np.abs(p / known.pressure - 1).max(), "u": np.abs(run.data("opening") / known.opening - 1).max()}
+
+
+def poro_time():
+    """Solutions that cells represent exactly: the errors are those of steps."""
+    steps = [(f"{n} steps", (f"Time.steps={n}",)) for n in (10, 20, 40, 80, 160)]
+    series, bounds = [], []
+    for scheme, (order, entries) in SCHEMES.items():
+        for what, known in (("rock quadrilateral", poro_exact.InTime()), ("fracture tetrahedron", poro_exact.OpenInTime())):
+            scene = f"verification/poro_time_{what.split()[0]}.xml"
+            series.append(Series(f"{what} {scheme}", steps, scene, (f"Mesh.cell={what.split()[1]}", *entries), known, 2))
+        bounds += [Order(scheme, name, order) for name in ("pressure", "u")]
+    return Case("poro_time", "error and length of time steps", "", series, time_errors, None,
+                ("rock quadrilateral Euler", "160 steps", "pressure"), None, ("pressure", "u"), None, bounds, called=("pressure", "u"))
+
+
+CASES = (terzaghi, undrained, mandel, mms_poro2d, mms_poro3d, poro_time)

@@ -111,9 +111,9 @@ class Mandel:
 @dataclass
 class Joined:
     """A block of height 1 with a fracture through it, fixed at its bottom and displaced by `way` (along the fracture, along the normal) at
-    its top, in which the fluid has the pressure p: N + share p = N0 + k_n ([[u]]_n - d_n), shear traction = T0 + k_s (d_t - [[u]]_t). `share`
-    is 1 where the rock keeps its fluid, or Biot's coefficient is 0, and 1 - Biot's coefficient where the pressure in the rock is that of
-    the fracture. Joint as in docs/theory.md (11)-(14); the jump has what T0 stretches the joint by."""
+    its top, in which the fluid has the pressure p: N + share p = N0 + k_n ([[u]]_n - d_n), shear traction = T0 + k_s (d_t - [[u]]_t).
+    `share` is 1 where the rock keeps its fluid, or Biot's coefficient is 0, and 1 - Biot's coefficient where the pressure in the rock is
+    that of the fracture. Joint as in docs/theory.md (11)-(14); the jump has what T0 stretches the joint by."""
     lam: float  # undrained where the rock keeps its fluid
     G: float
     way: tuple
@@ -150,8 +150,8 @@ class Joined:
         """N of softness N + closed_by(N) = load > 0."""
         K = self.closure * self.normal_stiffness
         b = softness * K + self.closure - load
-        return (2 * load * K / (b + np.sqrt(b * b + 4 * softness * load * K)) if b > 0 else (np.sqrt(b * b + 4 * softness * load * K) - b) / (2 * softness)) \
-            if self.closure else load / softness
+        root = np.sqrt(b * b + 4 * softness * load * K)
+        return 2 * load * K / (b + root) if b > 0 else (root - b) / (2 * softness)
 
     @property
     def held(self):
@@ -182,7 +182,8 @@ class Joined:
         """Pressures, first at the start, around both onsets and between them."""
         slides, opens = self.onset
         around = [onset * factor for onset in (slides, opens) for factor in (1 - near, 1 + near)]
-        return [0.0, 0.0, slides / 2, *around[:2], *(slides + (opens - slides) * part for part in (0.1, 0.5, 0.9)), *around[2:], opens * 1.1]
+        between = [slides + (opens - slides) * part for part in (0.1, 0.5, 0.9)]
+        return [0.0, 0.0, slides / 2, *around[:2], *between, *around[2:], opens * 1.1]
 
 
 class Manufactured:
@@ -221,6 +222,23 @@ class Manufactured:
         slopes = fields[:, 1:, 1:]
         mean = self.lam * np.trace(slopes, axis1=1, axis2=2) - self.alpha * fields[:, 0, 0]
         return self.G * (slopes + slopes.transpose(0, 2, 1)) + mean[:, None, None] * identity
+
+
+class InTime:
+    """At t = 1/2, of rock of Lame's constants 1 on a square of edge 1: p = sin 3t (1 + x - y/2), u = sin 2t (x, y/2), which rectangular
+    cells represent exactly."""
+
+    def pressure(self, points):
+        return np.sin(1.5) * (1 + points[:, 0] - points[:, 1] / 2)
+
+    def displacement(self, points):
+        return np.sin(1) * points[:, :2] * (1, 0.5)
+
+
+class OpenInTime:
+    """At t = 1/2, of a closed cube of such rock with an open fracture across z: the pressure sin 3t and the opening (1 - cos 2t)/10,
+    everywhere the same."""
+    pressure, opening = np.sin(1.5), (1 - np.cos(1)) / 10
 
 
 def mandel_times(step, end=50.0):

@@ -11,7 +11,8 @@ from measure import CELLS, SIMPLICES, face_means, relative
 
 FACES = {3: [(0, 1), (1, 2), (2, 0)], (2, 4): [(0, 1), (1, 2), (2, 3), (3, 0)], (3, 4): [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)],
          8: [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]}
-LOCAL = {9: [(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)], 12: [(0.5, 0.5, 0), (0.5, 0.5, 1), (0.5, 0, 0.5), (1, 0.5, 0.5), (0.5, 1, 0.5), (0, 0.5, 0.5)]}
+LOCAL = {9: [(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)],
+         12: [(0.5, 0.5, 0), (0.5, 0.5, 1), (0.5, 0, 0.5), (1, 0.5, 0.5), (0.5, 1, 0.5), (0, 0.5, 0.5)]}
 
 
 @dataclass
@@ -110,26 +111,24 @@ def local_centre(kind, d, k):
 
 
 def centre_errors(run, known):
-    """Relative errors of pressure and displacement at the centres of cells, of flow and of force at those of faces; the force is the mean
-    of what the cells on both sides say."""
+    """Relative errors of pressure and displacement at the centres of cells, of flow and of force at those of faces, and of flow through
+    faces; the force is the mean of what the cells on both sides say."""
     sides, d = sides_of(run), run.dimension
     _, volumes = flow_measure.cell_points(run)
     volume, middle = volumes.sum(axis=1), flow_measure.corners(run)[:, :n_corners(run)].mean(axis=1)
     p, exact_p = flow_measure.array(run, "pressure"), known.pressure(middle)
-    u = np.stack([centre_value(run, k) for k in range(d)], axis=1)
+    u, exact_u = np.stack([centre_value(run, k) for k in range(d)], axis=1), known.displacement(middle)
     weights = np.linalg.norm(sides.area, axis=1) * sides.away / d  # both sides of a face count, with one value
     flow, trace = outflows(run, known, sides)
     flow = flow[:, None]
-    exact_flow, mean_flow = (flow_of(velocity, sides) for velocity in (known.velocity(sides.centre), face_means(known.velocity, sides.corners)))
+    velocities = known.velocity(sides.centre), face_means(known.velocity, sides.corners)
+    exact_flow, mean_flow = ((velocity * sides.area).sum(axis=1)[:, None] for velocity in velocities)
     total = sides.mean(stress_at(run, known, sides) - known.alpha * trace[:, None, None] * np.eye(d))
     force, exact_force = (np.einsum("sij,sj->si", of, sides.area) for of in (total, known.stress(sides.centre)))
-    return {"pressure": relative((p - exact_p)[:, None], exact_p[:, None], volume), "flow": relative(flow - exact_flow, exact_flow, weights),
-            "u": relative(u - known.displacement(middle), known.displacement(middle), volume), "force": relative(force - exact_force, exact_force, weights),
+    return {"pressure": relative((p - exact_p)[:, None], exact_p[:, None], volume),
+            "flow": relative(flow - exact_flow, exact_flow, weights),
+            "u": relative(u - exact_u, exact_u, volume), "force": relative(force - exact_force, exact_force, weights),
             "through": relative(flow - mean_flow, mean_flow, weights)}
-
-
-def flow_of(velocity, sides):
-    return (velocity * sides.area).sum(axis=1)[:, None]
 
 
 def centre_value(run, component):

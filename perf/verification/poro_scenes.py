@@ -52,66 +52,120 @@ def plate():
           {"schedule": list(poro_exact.mandel_times(25.0))}, {"plate": dict(zip(("arguments", "values"), map(list, known.way(poro_exact.mandel_times(25.0)))))})
 
 
-def manufactured_rock():
-    return {"type": "elastic", "Lame's first parameter": 1.0, "shear modulus": 1.0, "permeability": [1.0], "porosity": float(manufactured.ROCK["porosity"]),
-            "compressibility of pores": float(manufactured.ROCK["growth"]), "Biot coefficient": float(manufactured.ROCK["alpha"])}
+def store(name, comment, content, time):
+    make_scenes.write(name, comment, content, "poro_scenes.py", time)
+
+
+def unit_rock(permeability, **more):
+    """Both Lame's constants are 1; names with underscores."""
+    return {"type": "elastic", "Lame's first parameter": 1.0, "shear modulus": 1.0, "permeability": [permeability],
+            **{name.replace("_", " "): value for name, value in more.items()}}
 
 
 def manufactured_solutions():
-    for name, mesh, sides in (("2d", flow_scenes.box(2, 4, {}), flow_scenes.sides(2)), ("3d", flow_scenes.box(3, 4, {}), flow_scenes.sides(3)),
-                              ("gmsh", make_scenes.mesh_file("square"), ["boundary"])):
+    made = {name: float(value) for name, value in manufactured.ROCK.items()}
+    rock = unit_rock(1.0, porosity=made["porosity"], compressibility_of_pores=made["growth"], Biot_coefficient=made["alpha"])
+    meshes_of = {"2d": (flow_scenes.box(2, 4, {}), flow_scenes.sides(2)), "3d": (flow_scenes.box(3, 4, {}), flow_scenes.sides(3)),
+                 "gmsh": (make_scenes.mesh_file("square"), ["boundary"])}
+    for name, (mesh, sides) in meshes_of.items():
         d = 3 if name == "3d" else 2
         _, force, _, source = manufactured.poro(d)
         still = {side: {"boundary": side, "displacement": [0.0] * d, "pressure": 0.0} for side in sides}
-        content = {**mesh, "Materials": {"rock": manufactured_rock()}, "Bulk": {"material": "rock", "body force": force},
-                   "Flow": {"viscosity": 1.0, "compressibility": float(manufactured.ROCK["compressibility"]), "source": source}, "Boundary conditions": still}
-        make_scenes.write(f"manufactured_poro_{name}", "A manufactured solution of poroelasticity (Nordbotten 2016). See perf/verification/poro_exact.py.", content,
-                          "poro_scenes.py", {"end": 1.0, "steps": 2})
+        comment = "A manufactured solution of poroelasticity (Nordbotten 2016). See perf/verification/poro_exact.py."
+        store(f"manufactured_poro_{name}", comment,
+              {**mesh, "Materials": {"rock": rock}, "Bulk": {"material": "rock", "body force": force},
+               "Flow": {"viscosity": 1.0, "compressibility": made["compressibility"], "source": source}, "Boundary conditions": still},
+              {"end": 1.0, "steps": 2})
+
+
+def joint_of(known):
+    """Of poro_exact.Joined, in which fluid flows so easily that pressures are uniform."""
+    closing = {"dilation angle": 10.0, "initial gap": known.gap, "maximum closure": known.closure,
+               "normal stiffness": known.normal_stiffness}
+    return {"type": "joint", "friction coefficient": known.friction, "tangential stiffness": known.shear_stiffness,
+            **(closing if known.closure else {}), "initial aperture": 0.1, "tangential permeability": 1.0}
+
+
+def joined_block(name, known, d, comment):
+    """The pressure is that of a well in the fracture; the rock lets nothing through."""
+    down, up = flow_scenes.sides(d)[-2:]
+    path, (along, across) = known.path(), known.way
+    stress = {2: [0.0, -known.N0, 0.0, known.T0], 3: [0.0, 0.0, -known.N0, 0.0, 0.6 * known.T0, 0.8 * known.T0]}[d]
+    mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, periodic=["x", "y"][:d - 1])
+    mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [0.0] * (d - 1) + [1.0]
+    rock = {"type": "elastic", "Lame's first parameter": known.lam, "shear modulus": known.G, "permeability": [1e-45],
+            "Biot coefficient": 0.0, "compressibility of pores": 0.0}
+    well = {"points": [0.4, 0.5] if d == 2 else [0.4, 0.4, 0.4, 0.4, 0.4, 0.6], "radius": 1e-3, "pressure": "p(t)"}
+    moved = [along, across] if d == 2 else [0.8 * along, 0.6 * along, across]
+    store(f"fluid_{name}_{d}d", comment,
+          {"Tables": {"p": {"arguments": list(range(len(path))), "values": path}}, **mesh,
+           "Materials": {"rock": rock, "joint": joint_of(known)},
+           "Bulk": {"material": "rock", **({"initial stress": stress} if known.N0 else {})},
+           "Fractures": {"fracture": {"material": "joint"}}, "Flow": {"viscosity": 1e-12, "Wells": {"well": well}},
+           "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d},
+                                   "moved": {"boundary": up, "displacement": moved}}},
+          {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
 
 
 def joined_blocks():
-    """Pressures by a well in the fracture; rock that lets nothing through, so little viscous the fluid is that pressures are uniform."""
-    for name, known, comment in (("block", poro_exact.CONFINED, "A block with a fracture through it, sheared and pressed together, in whose fracture a fluid's pressure rises "
-                                  "until it slides and opens."),
-                                 ("onset", poro_exact.STRESSED, "A fracture under 60 MPa of compression and 20 MPa of shear, in which a fluid's pressure rises until it slides and opens.")):
-        for d in (2, 3):
-            along = [known.way[0]] if d == 2 else [0.8 * known.way[0], 0.6 * known.way[0]]
-            joint = {"type": "joint", "friction coefficient": known.friction, "tangential stiffness": known.shear_stiffness, "initial aperture": 0.1, "tangential permeability": 1.0,
-                     **({"dilation angle": 10.0, "initial gap": known.gap, "maximum closure": known.closure, "normal stiffness": known.normal_stiffness} if known.closure else {})}
-            rock = {"type": "elastic", "Lame's first parameter": known.lam, "shear modulus": known.G, "permeability": [1e-45], "Biot coefficient": 0.0,
-                    "compressibility of pores": 0.0}
-            stress = {2: [0.0, -known.N0, 0.0, known.T0], 3: [0.0, 0.0, -known.N0, 0.0, 0.6 * known.T0, 0.8 * known.T0]}[d]
-            down, up = flow_scenes.sides(d)[-2:]
-            path = known.path()
-            mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, periodic=["x", "y"][:d - 1])
-            mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [0.0] * (d - 1) + [1.0]
-            middle = [0.4, 0.5] if d == 2 else [0.4, 0.4, 0.4, 0.4, 0.4, 0.6]
-            content = {"Tables": {"p": {"arguments": list(range(len(path))), "values": path}}, **mesh, "Materials": {"rock": rock, "joint": joint},
-                       "Bulk": {"material": "rock", **({"initial stress": stress} if known.N0 else {})}, "Fractures": {"fracture": {"material": "joint"}},
-                       "Flow": {"viscosity": 1e-12, "Wells": {"well": {"points": middle, "radius": 1e-3, "pressure": "p(t)"}}},
-                       "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d}, "moved": {"boundary": up, "displacement": [*along, known.way[1]]}}}
-            make_scenes.write(f"fluid_{name}_{d}d", comment, content, "poro_scenes.py", {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
+    for d in (2, 3):
+        joined_block("block", poro_exact.CONFINED, d,
+                     "A block that is sheared and pressed together, in whose fracture the pressure rises until it slides and opens.")
+        joined_block("onset", poro_exact.STRESSED, d,
+                     "A fracture under 60 MPa of compression and 20 MPa of shear, in which the pressure rises until it slides and opens.")
 
 
 def filled_cracks():
-    """The displacement on the box is that of the crack with the volume that has been put in, in the first of two steps. The crack is open by 1e-4 from
-    the start: what is closed and cannot give way would have no room for a fluid that cannot be compressed."""
-    crack, disc, nu = make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25), make_scenes.penny_displacement(poro_exact.FILLED, 0.25), 0.25
-    for d, mesh, name, displacement in ((2, "sneddon", "A crack", crack), (3, "penny", "A crack in the form of a disc", disc)):
-        where = [0.0, 0.0] if d == 2 else [0.0, 0.0, -0.1, 0.0, 0.0, 0.1]
-        rock = {"type": "elastic", "shear modulus": 1.0, "Lame's first parameter": 1.0, "permeability": [1e-22], "Biot coefficient": 0.0, "compressibility of pores": 0.0}
-        content = {**make_scenes.mesh_file(mesh, "crack", normal=[0.0] * (d - 1) + [1.0]),
-                   "Materials": {"rock": rock, "joint": {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}},
-                   "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
-                   "Flow": {"viscosity": 1e-13, "Wells": {"well": {"points": where, "radius": 1e-6, "rate": f"t<0.75 ? {2 * poro_exact.filling(d, nu)!r} : 0"}}},
-                   "Boundary conditions": make_scenes.around([f"min(2*t,1)*({text})" for text in displacement])}
-        make_scenes.write(f"crack_volume_{d}d", f"{name}, into which a well puts a volume of fluid that nothing else takes up (Sneddon 1946).", content, "poro_scenes.py",
-                          {"end": 1.0, "steps": 2})
+    """The displacement on the box is that of the crack with the volume that has been put in, in the first of two steps. The crack is open
+    by 1e-4 from the start: what is closed and cannot give way would have no room for a fluid that cannot be compressed."""
+    displacements = {2: make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25),
+                     3: make_scenes.penny_displacement(poro_exact.FILLED, 0.25)}
+    joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}
+    for d, mesh, name in ((2, "sneddon", "A crack"), (3, "penny", "A crack in the form of a disc")):
+        well = {"points": [0.0, 0.0] if d == 2 else [0.0, 0.0, -0.1, 0.0, 0.0, 0.1], "radius": 1e-6,
+                "rate": f"t<0.75 ? {2 * poro_exact.filling(d, 0.25)!r} : 0"}
+        store(f"crack_volume_{d}d", f"{name}, into which a well puts a volume of fluid that nothing else takes up (Sneddon 1946).",
+              {**make_scenes.mesh_file(mesh, "crack", normal=[0.0] * (d - 1) + [1.0]),
+               "Materials": {"rock": unit_rock(1e-22, Biot_coefficient=0.0, compressibility_of_pores=0.0), "joint": joint},
+               "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
+               "Flow": {"viscosity": 1e-13, "Wells": {"well": well}},
+               "Boundary conditions": make_scenes.around([f"min(2*t,1)*({text})" for text in displacements[d]])}, {"end": 1.0, "steps": 2})
+
+
+ALPHA, STORED = 0.8, 0.5
+
+
+def rock_in_time():
+    """Of poro_exact.InTime: nothing but steps causes errors."""
+    exact = {"displacement": ["sin(2*t)*x", "sin(2*t)*y/2"], "pressure": "sin(3*t)*(1+x-y/2)"}
+    store("poro_time_rock", "Pressure and strain of rock, linear in space, that change with time. See perf/verification/poro_exact.py.",
+          {**flow_scenes.box(2, 4, {}, cell="quadrilateral"),
+           "Materials": {"rock": unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED)},
+           "Bulk": {"material": "rock", "body force": [f"{ALPHA}*sin(3*t)", f"-{ALPHA / 2}*sin(3*t)"]},
+           "Flow": {"viscosity": 1.0, "source": f"{3 * ALPHA}*cos(2*t)+{3 * STORED}*cos(3*t)*(1+x-y/2)"},
+           "Boundary conditions": {side: {"boundary": side, **exact} for side in flow_scenes.sides(2)}}, {"end": 0.5, "steps": 10})
+
+
+def fracture_in_time():
+    """Of poro_exact.OpenInTime. Strain along z over pressure is (alpha - 1)/3; sources are what pores and the fracture take up."""
+    c, shrinks = 0.3, (1 - ALPHA) / 3
+    source = f"exp({c}*sin(3*t))*3*cos(3*t)*({STORED}+{c}*(0.1+{STORED}*sin(3*t)))-{3 * ALPHA * shrinks!r}*cos(3*t)"
+    inside = f"exp({c}*sin(3*t))*(sin(2*t)/5+{3 * c!r}*cos(3*t)*(0.05+(1-cos(2*t))/10))"
+    top = {"boundary": "top", "displacement": ["free", "free", f"(1-cos(2*t))/10-{shrinks!r}*sin(3*t)"]}
+    mesh = flow_scenes.box(3, 4, {"fracture": flow_scenes.across(3, 2, 0.5)})
+    mesh["Mesh"]["cells"] = [2, 2, 4]
+    rock = unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED, porosity=0.1)
+    joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -0.01, "initial aperture": 0.05}
+    store("poro_time_fracture", "A fracture that opens in time, in a closed block that sources fill. See perf/verification/poro_exact.py.",
+          {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock"},
+           "Fractures": {"fracture": {"material": "joint", "source": inside}},
+           "Flow": {"viscosity": 1.0, "compressibility": c, "source": source},
+           "Boundary conditions": {**rollers(3, *flow_scenes.sides(3)[:5]), "top": top}}, {"end": 0.5, "steps": 10})
 
 
 if __name__ == "__main__":
     meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
-    for make in (columns, plate, manufactured_solutions, joined_blocks, filled_cracks):
+    for make in (columns, plate, manufactured_solutions, joined_blocks, filled_cracks, rock_in_time, fracture_in_time):
         make()
     for geo in make_scenes.FOLDER.glob("*.geo"):
         geo.unlink()

@@ -18,9 +18,10 @@ import flow_cases  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
 import poro_cases  # noqa: E402
+import poro_fractures  # noqa: E402
 import style  # noqa: E402
 
-CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES
+CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES
 ESTIMATES = ("jump", "stress")
 ESTIMATE = ("Output.error estimate=true",)
 WITHIN = 2  # a factor by which an estimate may be off
@@ -39,7 +40,8 @@ class Row:
     newton: int
     krylov: int
     seconds: float
-    orders: dict = field(default_factory=dict)  # from the mesh before, with h ~ cells^(-1/d)
+    orders: dict = field(default_factory=dict)  # from the mesh before, with h ~ cells^(-1/d); of equal meshes from the steps before
+    steps: int = 1
 
 
 def run(options, case, series, label, source):
@@ -50,12 +52,13 @@ def run(options, case, series, label, source):
     steps = done.results["steps"]
     exact = series.exact or case.exact
     errors, effectivity = case.errors(done, exact), measure.effectivity(done, case.jumps(done, exact), exact) if case.jumps else {}
+    newton, krylov = (sum(step[f"{name}_iterations"] for step in steps) for name in ("newton", "linear"))
     return Row(series.name, label, done.results["mesh"]["cells"], done.unknowns(series.prescribed or case.prescribed), errors, effectivity,
-               sum(step["newton_iterations"] for step in steps), sum(step["linear_iterations"] for step in steps), done.seconds), done.dimension
+               newton, krylov, done.seconds, steps=len(steps)), done.dimension
 
 
 def add_orders(row, before, dimension):
-    finer = math.log(row.cells / before.cells) / dimension
+    finer = math.log(row.cells / before.cells) / dimension if row.cells != before.cells else math.log(row.steps / before.steps)
     if finer == 0:
         return
     row.orders = {name: math.log(before.errors[name] / error) / finer for name, error in row.errors.items() if error > 0 and before.errors[name] > 0}
