@@ -144,18 +144,19 @@ def made(d, shape, order, counts, quick=0):
 def mms_poro2d():
     """Of cells of order 2, u has order 3 until the error of the pressure, of order 2, is larger."""
     series = [made(2, shape, order, counts, 2 * (shape[0] == "q" or order == 2))
-              for shape, counts in (("quadrilateral", (4, 8, 16, 32)), ("triangle", (8, 16, 32))) for order in (1, 2)]
+              for shape, counts in (("quadrilateral", (4, 8, 16, 32, 64)), ("triangle", (8, 16, 32))) for order in (1, 2)]
     makers = [(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]
     scene, known = "verification/manufactured_poro_gmsh.xml", poro_exact.Manufactured(2)
     series += [Series(f"triangle gmsh {order}", gmsh(order, *makers), scene, (), known) for order in (1, 2)]
     least = {"quadrilateral 1": (2, 2), "quadrilateral 2": (2, 2), "triangle 1": (2, 1), "triangle 2": (2.5, 2), "triangle gmsh 1": (2, 1),
              "triangle gmsh 2": (2.5, 1.5)}
-    return manufactured(2, series, least, ("quadrilateral 2", "n=32"))
+    return manufactured(2, series, least, ("quadrilateral 2", "n=64"))
 
 
 def mms_poro3d():
     quick = {("hexahedron", 1): 2, ("tetrahedron", 2): 1}
-    series = [made(3, shape, order, (4, 8, 12), quick.get((shape, order), 0)) for shape in SHAPES[3] for order in (1, 2)]
+    counts = {("hexahedron", 1): (4, 8, 12, 24)}
+    series = [made(3, *of, counts.get(of, (4, 8, 12)), quick.get(of, 0)) for of in ((shape, order) for shape in SHAPES[3] for order in (1, 2))]
     least = {"hexahedron 1": (2, 1.9), "hexahedron 2": (3, 1.9), "tetrahedron 1": (1.6, 1), "tetrahedron 2": (2.5, 1.5)}
     return manufactured(3, series, least, ("hexahedron 2", "n=12"))
 
