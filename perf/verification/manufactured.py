@@ -13,40 +13,80 @@ def stress(u, x):
     return G * (gradient + gradient.T) + LAM * gradient.trace() * sp.eye(len(x))
 
 
-def sides(dimension, ratio, slip, uniform=False):
-    """[(displacement, body force) of side -, of side +] for lambda_t = mu N ratio m, u^p = slip m; N and m may be uniform."""
-    x, half, varies = COORDINATES[:dimension], sp.Rational(1, 2), 0 if uniform else 1
+def displacements(dimension, N, shear, tangential, normal):
+    """Of side - and of side +, for a traction N, shear and a jump on the fracture."""
+    x, half = COORDINATES[:dimension], sp.Rational(1, 2)
     s, last, y = x[:-1], x[-1], x[1] if dimension == 3 else 0
-    h, angle = last - half, half + (x[0] - y / sp.Integer(2)) * varies
-    direction = [sp.cos(angle), sp.sin(angle)] if dimension == 3 else [1]
-    N = (3 + sp.sin(2 * x[0] + y) * varies) / sp.Integer(5)
-    shear = [FRICTION * N * ratio * m for m in direction]
-    tangential = [slip * m + t / STIFFNESS for m, t in zip(direction, shear)]
-    normal = GAP + DILATION * slip - CLOSURE * N / (CLOSURE * NORMAL + N)
+    h = last - half
     smooth = [w / 10 for w in (sp.sin(2 * x[0] + last + y), sp.cos(x[0] - 2 * last + y), sp.sin(x[0] + y - last))][:dimension]
     on = stress(smooth, x)[:, -1].subs(last, half)
     c = [(t - on[i]) / G for i, t in enumerate(shear)] + [(-N - on[dimension - 1]) / (LAM + 2 * G)]
     minus = [w + h * k for w, k in zip(smooth, c)]
     slope = [-sp.diff(normal, k) for k in s] + [-LAM / (LAM + 2 * G) * sum(sp.diff(t, k) for t, k in zip(tangential, s))]
-    plus = [u + j + h * k for u, j, k in zip(minus, tangential + [normal], slope)]
+    return minus, [u + j + h * k for u, j, k in zip(minus, tangential + [normal], slope)]
+
+
+def sides(dimension, ratio, slip, uniform=False):
+    """[(displacement, body force) of side -, of side +] for lambda_t = mu N ratio m, u^p = slip m; N and m may be uniform."""
+    x, half, varies = COORDINATES[:dimension], sp.Rational(1, 2), 0 if uniform else 1
+    y = x[1] if dimension == 3 else 0
+    angle = half + (x[0] - y / sp.Integer(2)) * varies
+    direction = [sp.cos(angle), sp.sin(angle)] if dimension == 3 else [1]
+    N = (3 + sp.sin(2 * x[0] + y) * varies) / sp.Integer(5)
+    shear = [FRICTION * N * ratio * m for m in direction]
+    tangential = [slip * m + t / STIFFNESS for m, t in zip(direction, shear)]
+    normal = GAP + DILATION * slip - CLOSURE * N / (CLOSURE * NORMAL + N)
     found = []
-    for u in (minus, plus):
+    for u in displacements(dimension, N, shear, tangential, normal):
         sigma = stress(u, x)
         found.append((u, [-sum(sp.diff(sigma[i, k], x[k]) for k in range(dimension)) for i in range(dimension)]))
     return found
 
 
+def pressures(dimension, resists):
+    """Of flow_exact.Manufactured: in the fracture, on both sides by name, and what enters the fracture from them."""
+    x, quarter = COORDINATES[:dimension], sp.Integer(1) / 4
+    h, first, y = x[-1] - sp.Rational(1, 2), x[0], x[1] if dimension == 3 else 0
+    f, C = 1 + sp.sin(2 * first + y), 4 + 2 * first
+    entering = {"below": sp.Rational(1, 2) + sp.cos(first + 2 * y), "above": sp.sin(3 * first - y) - sp.Rational(3, 10)}
+    sides = {side: (f + g / C * resists) * sp.cos(2 * h) + (1 if side == "above" else -1) * g * quarter * sp.sin(2 * h)
+             for side, g in entering.items()}
+    return f, sides, sum(entering.values())
+
+
+def leaving(p, mobility, x):
+    """-div(mobility grad p)"""
+    return -sum(sp.diff(mobility * sp.diff(p, k), k) for k in x)
+
+
 def flow(dimension, resists):
     """Texts by name, of what flow_exact.Manufactured states: pressures and sources below and above, and of the fracture."""
-    x, quarter = COORDINATES[:dimension], sp.Integer(1) / 4
-    s, h, first, y = x[:-1], x[-1] - sp.Rational(1, 2), x[0], x[1] if dimension == 3 else 0
-    f, T, C, kappa = 1 + sp.sin(2 * first + y), 2 + first, 4 + 2 * first, 2
-    entering = {"below": sp.Rational(1, 2) + sp.cos(first + 2 * y), "above": sp.sin(3 * first - y) - sp.Rational(3, 10)}
-    found = {"fracture": f, "fracture source": -sum(sp.diff(T * sp.diff(f, k), k) for k in s) - sum(entering.values())}
-    for side, g in entering.items():
-        p = (f + g / C * resists) * sp.cos(2 * h) + (1 if side == "above" else -1) * g * quarter * sp.sin(2 * h)
-        found[side], found[f"{side} source"] = p, -kappa * sum(sp.diff(p, k, 2) for k in x)
+    x = COORDINATES[:dimension]
+    f, sides, entering = pressures(dimension, resists)
+    found = {"fracture": f, "fracture source": leaving(f, 2 + x[0], x[:-1]) - entering}
+    for side, p in sides.items():
+        found[side], found[f"{side} source"] = p, -2 * sum(sp.diff(p, k, 2) for k in x)
     return {name: text(expression) for name, expression in found.items()}
+
+
+def opening(dimension):
+    """The jump of poro_exact.Opened at t = 1, tangential and normal."""
+    first, y = COORDINATES[0], COORDINATES[1] if dimension == 3 else 0
+    return [sp.cos(first + y) / 5, sp.sin(first - y) / 5][:dimension - 1], sp.Rational(1, 2) + sp.sin(2 * first + y) / 5
+
+
+def opened(dimension):
+    """Texts by name, of poro_exact.Opened: displacement, body force, pressure and source of both sides; the latter of the fracture."""
+    x, alpha = COORDINATES[:dimension], ROCK["alpha"]
+    f, sides, entering = pressures(dimension, 0)
+    tangential, normal = opening(dimension)
+    source = normal + TIME * leaving(f, (1 + TIME * normal)**3 / 6, x[:-1]) - TIME * entering
+    found = {"fracture": text(TIME * f), "fracture source": text(source)}
+    for (side, p), u in zip(sides.items(), displacements(dimension, (1 - alpha) * f, [0] * (dimension - 1), tangential, normal)):
+        stored = alpha * sum(sp.diff(a, k) for a, k in zip(u, x)) + ROCK["growth"] * p
+        found[side], found[f"{side} source"] = text(TIME * p), text(stored + TIME * leaving(p, 2, x))
+        found[f"{side} displacement"], found[f"{side} force"] = ([text(TIME * a) for a in of] for of in (u, body_force(u, x, p)))
+    return found
 
 
 ROCK = {"alpha": sp.Rational(1, 2), "porosity": sp.Rational(1, 10), "growth": sp.Rational(3, 25), "compressibility": sp.Rational(1, 50)}

@@ -155,8 +155,8 @@ def mms_poro2d():
 
 def mms_poro3d():
     quick = {("hexahedron", 1): 2, ("tetrahedron", 2): 1}
-    counts = {("hexahedron", 1): (4, 8, 12, 24)}
-    series = [made(3, *of, counts.get(of, (4, 8, 12)), quick.get(of, 0)) for of in ((shape, order) for shape in SHAPES[3] for order in (1, 2))]
+    every = [(shape, order) for shape in SHAPES[3] for order in (1, 2)]
+    series = [made(3, *of, (4, 8, 12, 24) if of == ("hexahedron", 1) else (4, 8, 12), quick.get(of, 0)) for of in every]
     least = {"hexahedron 1": (2, 1.9), "hexahedron 2": (3, 1.9), "tetrahedron 1": (1.6, 1), "tetrahedron 2": (2.5, 1.5)}
     return manufactured(3, series, least, ("hexahedron 2", "n=12"))
 

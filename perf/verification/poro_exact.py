@@ -6,6 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
+import exact
+import flow_exact
+
 
 @dataclass
 class Rock:
@@ -222,6 +225,26 @@ class Manufactured:
         slopes = fields[:, 1:, 1:]
         mean = self.lam * np.trace(slopes, axis1=1, axis2=2) - self.alpha * fields[:, 0, 0]
         return self.G * (slopes + slopes.transpose(0, 2, 1)) + mean[:, None, None] * identity
+
+
+class Opened(flow_exact.Manufactured, exact.Manufactured):
+    """At t = 1; everything is proportional to t. The pressures of flow_exact.Manufactured without resistance, and the displacements of
+    exact.Manufactured for a fracture that is open: in it the fluid pushes, sigma n = -f n. Its aperture is 1 plus the normal jump, and its
+    transmissivity follows the cubic law."""
+    alpha = 0.5
+
+    def __init__(self, dimension):
+        super().__init__(dimension, False)
+
+    def on(self, s):
+        f, below, above, _, C = super().on(s)
+        return f, below, above, (1 + self.law(s)[3][-1])**3 / 6, C
+
+    def law(self, s):
+        x, y = s[0], s[1] if len(s) > 1 else 0
+        tangential = [np.cos(x + y) / 5, np.sin(x - y) / 5][:len(s)]
+        f, zero = super().on(s)[0], np.zeros((len(s), np.size(x)))
+        return (1 - self.alpha) * f, zero, zero, np.stack([*tangential, 0.5 + np.sin(2 * x + y) / 5])
 
 
 class InTime:

@@ -5,11 +5,13 @@ import numpy as np
 
 import cases
 import exact
+import flow_measure
 import measure
 import meshes
 import poro_exact
 from cases import Bound, Case, Order, Series, gmsh, graded, uniform
-from poro_cases import SHAPES, numbers
+from measure import face_points
+from poro_cases import SHAPES, mean_pressures, numbers
 
 
 def rock(entries):
@@ -19,6 +21,39 @@ def rock(entries):
 def undrained(lam):
     """Rock whose fluid is shut in, and makes Lame's first parameter lam."""
     return rock({"Biot coefficient": 1, "Lame's first parameter": repr(0.4 * lam), "compressibility of pores": repr(1 / (0.6 * lam))})
+
+
+# A manufactured solution
+
+def opened_errors(run, known):
+    points, weights = face_points(run.corners())
+    flow, right = run.data("fluid flux")[:, None, :run.dimension], flow_measure.known_at(known.flow_in, points)
+    inside = flow_measure.mean_error(run.data("fracture pressure")[:, None], known.pressure_in, points, weights)
+    return {"pressure": mean_pressures(run, known.pressure), "u": measure.displacement_error(run, known), "in fracture": inside,
+            "flow": measure.relative(flow - right, right, weights),
+            "jump": measure.jump_error(run, measure.face_means(known.jump, run.corners()))}
+
+
+def opened(d, counts):
+    """`counts` by order of cells."""
+    series = []
+    for cell, (order, ns) in ((cell, of) for cell in SHAPES[d] for of in counts.items()):
+        grids = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in ns]
+        sets, quick = (f"Mesh.cell={cell}", f"Mesh.order={order}"), (cell, order) in (("triangle", 1), ("hexahedron", 1))
+        series.append(Series(f"{cell} {order}", grids, f"verification/manufactured_opening_{d}d.xml", sets, poro_exact.Opened(d), 2 * quick))
+    fine = 2 if d == 2 else 1.9  # what is seen on meshes this fine
+    least = {"pressure": 2, "u": 2, "in fracture": fine, "flow": 1, "jump": fine}
+    bounds = [Order(one.name, *bound) for one in series for bound in least.items()]
+    return Case(f"mms_opening{d}d", f"manufactured solution of a fracture that a fluid opens in {d}D", "", series, opened_errors, None,
+                (f"{SHAPES[d][0]} 1", f"n={counts[1][-1]}", "pressure"), None, ("pressure", "u"), None, bounds, called=("pressure", "u"))
+
+
+def mms_opening2d():
+    return opened(2, {1: (8, 16, 32), 2: (8, 16, 32)})
+
+
+def mms_opening3d():
+    return opened(3, {1: (4, 8, 12), 2: (4, 8)})
 
 
 # A fracture that a fluid makes slide and open
@@ -113,4 +148,4 @@ def crack_volume():
                 ("dry graded order 2", finest, "pressure"), None, ("pressure", "jump"), None, bounds, called=("pressure", "jump"))
 
 
-CASES = (fluid_block, fluid_onset, crack_volume)
+CASES = (mms_opening2d, mms_opening3d, fluid_block, fluid_onset, crack_volume)

@@ -78,6 +78,31 @@ def manufactured_solutions():
               {"end": 1.0, "steps": 2})
 
 
+def opened_fractures():
+    for d in (2, 3):
+        known, sides = manufactured.opened(d), flow_scenes.sides(d)
+        low, high = [0.0] * (d - 1), [1.0] * (d - 1)
+        halves = {"below": ([0.0] * d, [*high, 0.5]), "above": ([*low, 0.5], [1.0] * d)}
+        mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, halves)
+        mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [*low, 1.0]
+        exact = {half: {"region": half, "displacement": known[f"{half} displacement"], "pressure": known[half]} for half in halves}
+        conditions = {f"{half} {side}": {"boundary": side, **exact[half]}
+                      for half, end in zip(halves, sides[-2:]) for side in [*sides[:-2], end]}
+        conditions.update({f"fracture {side}": {"boundary": side, "fracture": "fracture", "pressure": known["fracture"]}
+                           for side in sides[:-2]})
+        force = [f"{'xyz'[d - 1]}>0.5 ? ({a}) : ({b})" for a, b in zip(known["above force"], known["below force"])]
+        source = f"{'xyz'[d - 1]}>0.5 ? ({known['above source']}) : ({known['below source']})"
+        growth, alpha = (float(manufactured.ROCK[name]) for name in ("growth", "alpha"))
+        rock = unit_rock(1.0, compressibility_of_pores=growth, Biot_coefficient=alpha)
+        joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -0.1, "initial aperture": 1.0}
+        comment = "A manufactured solution of rock and of a fracture that a fluid opens. See perf/verification/poro_exact.py."
+        store(f"manufactured_opening_{d}d", comment,
+              {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock", "body force": force},
+               "Regions": {half: {"material": "rock"} for half in halves},
+               "Fractures": {"fracture": {"material": "joint", "source": known["fracture source"]}},
+               "Flow": {"viscosity": 0.5, "source": source}, "Boundary conditions": conditions}, {"end": 1.0, "steps": 2})
+
+
 def joint_of(known):
     """Of poro_exact.Joined, in which fluid flows so easily that pressures are uniform."""
     closing = {"dilation angle": 10.0, "initial gap": known.gap, "maximum closure": known.closure,
@@ -165,7 +190,7 @@ def fracture_in_time():
 
 if __name__ == "__main__":
     meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
-    for make in (columns, plate, manufactured_solutions, joined_blocks, filled_cracks, rock_in_time, fracture_in_time):
+    for make in (columns, plate, manufactured_solutions, opened_fractures, joined_blocks, filled_cracks, rock_in_time, fracture_in_time):
         make()
     for geo in make_scenes.FOLDER.glob("*.geo"):
         geo.unlink()

@@ -260,8 +260,8 @@ class Scenes(ProgramTest):
         make_scenes.manufactured_solutions()
         flow_scenes.manufactured_solutions()
         flow_scenes.regular()
-        for write in (poro_scenes.manufactured_solutions, poro_scenes.joined_blocks, poro_scenes.filled_cracks,
-                      poro_scenes.rock_in_time, poro_scenes.fracture_in_time):
+        for write in (poro_scenes.manufactured_solutions, poro_scenes.opened_fractures, poro_scenes.joined_blocks,
+                      poro_scenes.filled_cracks, poro_scenes.rock_in_time, poro_scenes.fracture_in_time):
             write()
         for file in self.folder.glob("*.xml"):
             self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)
