@@ -45,7 +45,9 @@ def n_corners(run):
 
 
 def sides_of(run):
-    nodes, points, d = corner_numbers(run), vtk_to_numpy(run.rock.GetPoints().GetData())[:, :run.dimension], run.dimension
+    """A node that pieces of the mesh share is in each of them, and counts once."""
+    points, place = np.unique(vtk_to_numpy(run.rock.GetPoints().GetData())[:, :run.dimension], axis=0, return_inverse=True)
+    nodes, d = place.ravel()[corner_numbers(run)], run.dimension
     n = nodes.shape[1]
     lists = FACES.get(n) or FACES[d, n]
     faces = np.stack([nodes[:, list(local)] for local in lists], axis=1)  # [cell, face, corner]
