@@ -77,6 +77,7 @@ struct Declaration {
   std::vector<History> history;
   std::vector<OutputField> outputs;  ///< without values
   std::vector<std::string> schur;    ///< the fields that add_schur() adds to
+  bool stores = false;               ///< its rows contain rates of what it stores
   bool linear =
       false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
 };
@@ -101,7 +102,8 @@ class Context {
 /// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity,
 /// component).
 struct State {
-  Real t = 0, dt = 0;
+  Real t = 0;
+  Real rate = 0;  ///< what rates are times what a module stores more than at the start of the step, 1/s: see Rates
   ConstView<Real*> damping = {};       ///< [owned fracture face], see BlockProblem::damp(); empty: zero
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
   Real tether = 0;                     ///< see BlockProblem::tether()

@@ -27,14 +27,21 @@ int Context::field(const std::string& name) const {
 }
 
 System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
-               const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers)
-    : mesh_(mesh), geometry_(*mesh), modules_(std::move(modules)), reference_(reference), timers_(timers) {
+               const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers,
+               Rates::Scheme scheme)
+    : mesh_(mesh),
+      geometry_(*mesh),
+      modules_(std::move(modules)),
+      reference_(reference),
+      timers_(timers),
+      scheme_(scheme) {
   const auto scope = timers_->scope("set-up");
   declare_fields();
   declare_groups();
   for (std::size_t b = 0; b < layouts_.size(); ++b)
     constraints_.emplace_back(*mesh_, layouts_[b], conditions_on(b, conditions));
   bind_modules();
+  declare_gains();
   find_exchanges();
   create_matrices();
   assemble_linear();
@@ -233,6 +240,15 @@ void System::bind_modules() {
   }
 }
 
+/// Of rows whose quantity is stored: flows, of which rates are. Rows of other quantities have none.
+void System::declare_gains() {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto& field = layouts_[b].field();
+    const bool stored = keeps_gains() && unknowns_[b].row == Quantity::flow;
+    gains_.emplace_back("gain", stored ? fields::n_entities(*mesh_, field.entity, false) : 0, field.n_components);
+  }
+}
+
 void System::find_exchanges() {
   const Context context(mesh_, geometry_, layouts_);
   std::vector<int> here(blocks_.size(), 0), anywhere(blocks_.size(), 0);
@@ -281,7 +297,7 @@ void System::assemble_flow() {
     });
     if (declarations_[m].linear || !flows) continue;
     auto at_rest = state(static_cast<int>(m));
-    at_rest.dt = std::numeric_limits<Real>::infinity();
+    at_rest.rate = 0;
     modules_[m]->jacobian(at_rest, matrix_);
   }
 }
@@ -345,6 +361,11 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::histories() const {
       const auto& declared = declarations_[m].history[h];
       all.push_back({{history_name(m, declared), declared.entity, declared.n_components, ""}, history_[m][h]});
     }
+  for (std::size_t b = 0; b < gains_.size(); ++b) {
+    const auto& field = layouts_[b].field();
+    if (gains_[b].extent(0) > 0)
+      all.push_back({{"gain of " + field.name, field.entity, field.n_components, ""}, gains_[b]});
+  }
   return all;
 }
 
@@ -354,6 +375,7 @@ std::string System::history_name(std::size_t module, const History& history) con
 
 void System::resume(const BlockVector& x, const Memory& memory) {
   scales_ = memory.scales;
+  committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
   remember(x);
   calibration_ = memory.calibration;

@@ -4,6 +4,7 @@
 #include "assembly/constraints.hpp"
 #include "assembly/loose_pieces.hpp"
 #include "assembly/module.hpp"
+#include "assembly/rates.hpp"
 #include "base/timer.hpp"
 #include "fields/block_problem.hpp"
 
@@ -32,7 +33,8 @@ class System : public fields::BlockProblem {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
-         const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers);
+         const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers,
+         Rates::Scheme scheme = Rates::Scheme::implicit_euler);
 
   RCP<const Comm> comm() const override { return mesh_->comm; }
   const std::vector<fields::Block>& blocks() const override { return blocks_; }
@@ -71,7 +73,8 @@ class System : public fields::BlockProblem {
   /// Those of all modules, summed over the ranks. Collective.
   std::vector<Total> totals(const fields::BlockVector& x);
 
-  /// What the modules keep, as "MODULE: HISTORY"; the values, [owned entity, component], may be written.
+  /// What the modules keep, as "MODULE: HISTORY", and what was stored in the last step, as "gain of FIELD"; the values,
+  /// [owned entity, component], may be written.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
   /// What a system has learnt on its way to the last committed state, besides histories.
   struct Memory {
@@ -110,6 +113,9 @@ class System : public fields::BlockProblem {
   void find_exchanges();
   void watch_pieces();
   State state(int module) const;
+  bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
+  void declare_gains();
+  void find_gains();
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
@@ -140,9 +146,11 @@ class System : public fields::BlockProblem {
   std::vector<fields::LocalGroup> groups_;
   std::vector<Constraints> constraints_;            // [block]
   std::vector<std::vector<View<Real**>>> history_;  // [module][number](owned entity, component)
-  std::vector<char> needs_ghosts_;                  // [block]
-  fields::BlockVector ghosted_;                     // [block] unknowns with ghosts
-  fields::BlockVector weights_;                     // [block] of merit()
+  std::vector<View<Real**>>
+      gains_;  // [block](owned entity, component) rates of the last step times its length, or empty
+  std::vector<char> needs_ghosts_;      // [block]
+  fields::BlockVector ghosted_;         // [block] unknowns with ghosts
+  fields::BlockVector weights_;         // [block] of merit()
   fields::BlockVector diagonals_;       // [block] of linear_; where rock and fluid couple, of flow: of matrix_
   fields::BlockVector schur_;           // [block] of the last jacobian(); null: none
   fields::BlockVector load_;            // [block] residual of the linear modules at x = 0, time t_
@@ -162,6 +170,9 @@ class System : public fields::BlockProblem {
   ConstView<Real**> anchor_;  // [owned fracture face, dim] of tether()
   Real tether_ = 0;
   RCP<base::Timers> timers_;
+  Rates::Scheme scheme_;
+  Rates rates_;
+  Real committed_dt_ = 0;  // length of the last committed step; 0 before the first
   Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;
   bool coupled_ = false;  // fluid and rock move each other

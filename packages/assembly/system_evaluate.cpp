@@ -50,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, dt_, damping_, augmentation_, tether_, anchor_, {}, history_[module]};
+  State s{t_, rates_.now, damping_, augmentation_, tether_, anchor_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -133,6 +133,7 @@ void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
   t_ = t;
   dt_ = dt;
+  rates_ = Rates::of(scheme_, dt, committed_dt_);
   sized_ = false;
   update_scales(t);
   bool changes = !loaded_;
@@ -175,6 +176,43 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
     if (declarations_[m].linear) continue;
     const auto scope_of_module = timers_->scope(modules_[m]->name());
     modules_[m]->residual(state(static_cast<int>(m)), views);
+  }
+  for (int b = 0; b < n && rates_.before > 0; ++b) {
+    if (gains_[b].extent(0) == 0) continue;
+    const auto row = views[b];
+    const auto gain = gains_[b];
+    const Real before = rates_.before;
+    const int width = static_cast<int>(gain.extent(1));
+    Kokkos::parallel_for(
+        "gains", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
+        KOKKOS_LAMBDA(int i) { row(i) -= before * gain(i / width, i % width); });
+  }
+}
+
+/// Of the state whose ghosts are there, before the histories move on.
+void System::find_gains() {
+  BlockVector gained, rest;
+  for (const auto& block : blocks_) {
+    gained.push_back(rcp(new fields::Vector(block.map)));
+    rest.push_back(rcp(new fields::Vector(block.map)));
+  }
+  const auto with = rows(gained), without = rows(rest);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    if (!declarations_[m].stores) continue;
+    auto s = state(static_cast<int>(m));
+    s.rate = 1;
+    modules_[m]->residual(s, with);
+    s.rate = 0;
+    modules_[m]->residual(s, without);
+  }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto gain = gains_[b];
+    const auto a = with[b], c = without[b];
+    const int width = static_cast<int>(gain.extent(1));
+    Kokkos::parallel_for(
+        "gains", Kokkos::RangePolicy<Execution>(0, gain.extent(0)), KOKKOS_LAMBDA(int e) {
+          for (int k = 0; k < width; ++k) gain(e, k) = a(e * width + k) - c(e * width + k);
+        });
   }
 }
 
@@ -236,6 +274,8 @@ void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
   find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
   remember(x);
+  if (keeps_gains()) find_gains();
+  committed_dt_ = dt_;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);
@@ -399,7 +439,10 @@ std::vector<Total> System::totals(const BlockVector& x) {
 
 std::vector<Reaction> System::reactions(const BlockVector& x) {
   auto r = fields::create_like(x);
+  const Rates rates = rates_;
+  rates_.before = 0;  // histories have moved on: nothing is stored
   raw_residual(x, r);
+  rates_ = rates;
   std::vector<Reaction> result;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (!unknowns_[b].enriches.empty()) continue;  // the functions of the other field add up to 1: it has all the force

@@ -80,6 +80,7 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"unknowns", unknowns(system)},
                  {"Time > start", scene.time.start},
                  {"Tables", json::object()}};
+  if (scene.flow) result["Time > scheme"] = scene.time.scheme;
   for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
     result[name] = base::to_xml(sections.sublist(name));
   if (scene.flow) result["Flow"] = base::to_xml(sections.sublist("Flow"));
@@ -100,7 +101,8 @@ void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
     if (what == "Tables" ? !same_tables(before, now) : before != now) different.push_back(what);
   }
   SPREKK_CHECK(different.empty(),
-               "the checkpoint is of another scene, they differ in: {}; only Time, Solver and Output may change, and "
+               "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver and Output may "
+               "change, and "
                "tables get more points at their end",
                fmt::join(different, ", "));
 }

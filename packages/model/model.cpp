@@ -181,7 +181,9 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   for (const char* field : {"displacement", "face pressure"})
     for (auto& condition : dirichlet_conditions(scene_.boundary_conditions, group_names(*mesh), field))
       conditions.push_back(std::move(condition));
-  system_ = std::make_unique<assembly::System>(mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_);
+  system_ = std::make_unique<assembly::System>(
+      mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_,
+      scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
   x_ = system_->initial();
   start_solver();
 }

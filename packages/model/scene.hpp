@@ -146,6 +146,7 @@ struct Time {
   Real start = 0, end = 1;
   int steps = 1;
   std::optional<std::vector<Real>> schedule;
+  std::string scheme = "implicit Euler";  ///< or BDF2, of rates of what is stored
   solve::TimeSteppingOptions stepping;
   void describe(base::Section& section);
   std::vector<Real> times() const;  ///< the ends of all steps

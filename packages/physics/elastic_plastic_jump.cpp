@@ -313,7 +313,7 @@ void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, co
     if (point.state != ContactState::open) return;
     const auto& face = mesh_->fracture_faces[f];
     const Real softness = 0.4 * size_[face.fracture] / modulus_[f];
-    rows(mesh_->facets->fracture_face[f]) += face.area * softness / state.dt;
+    rows(mesh_->facets->fracture_face[f]) += face.area * softness * state.rate;
   });
   Kokkos::deep_copy(diagonals[pressure_], rows);
 }

@@ -14,13 +14,13 @@ namespace {
 
 /// | symbol   | shape    | unit     |                                                            |
 /// | x        | 1        | Pa       | pressure p                                                 |
-/// | r        | 1        | m^3/s    | V (phi e - phi_old e_old)/dt                               |
+/// | r        | 1        | m^3/s    | rate V (phi e - phi_old e_old)                             |
 /// | volume   | [entity] | m^3      | V, of fractures the area                                   |
 /// | porosity | [entity] | -        | phi_0, of fractures the aperture, m                        |
 /// | growth   | [entity] | 1/Pa     | c_phi                                                      |
 /// | initial  | [entity] | Pa       | pressure at the start of the run                           |
 /// | gained   | [owned entity, 1] | Pa | p_old less that                                         |
-/// | rate     |          | 1/s      | 1/dt                                                       |
+/// | rate     |          | 1/s      | of assembly::State                                         |
 struct StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>>;
   using Rows = Columns;
@@ -45,7 +45,7 @@ struct StorageCell {
 };
 
 /// The same of a fracture face whose aperture is a_0 and a widening b, the second of x, m:
-/// r = |f| (a e - a_old e_old)/dt.
+/// r = rate |f| (a e - a_old e_old).
 /// | gained   | [owned face, 2] | Pa, m | p_old less that at the start, b_old                        |
 struct StorageFace : StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
@@ -89,6 +89,7 @@ class FluidStorage final : public assembly::Module {
     assembly::Declaration d;
     d.couplings = {{loop_, field_, {field_}}};
     if (n == 2) d.couplings[0].columns.push_back("widening");
+    d.stores = true;
     d.history = {{n == 1 ? "gained pressure" : "gained pressure, widening", entity_, n}};
     return d;
   }
@@ -138,7 +139,7 @@ class FluidStorage final : public assembly::Module {
   Op at(const assembly::State& state) const {
     Op op = op_;
     op.gained = state.history[0];
-    op.rate = 1 / state.dt;
+    op.rate = state.rate;
     return op;
   }
 

@@ -20,7 +20,7 @@ namespace {
 /// | r         | forces [m], dV/dt    | N, m^3/s (2D: m^2/s) | -(p - p_0) dV/du, rate V          |
 /// | volume    | [entity, m]    | m^2   | dV/du                                                  |
 /// | reference | [entity]       | Pa    | p_0; empty: zero                                       |
-/// | rate      |                | 1/s   | 1/dt                                                   |
+/// | rate      |                | 1/s   | of assembly::State                                     |
 template <class... Displacements>
 struct Work {
   using Columns = assembly::Slots<Displacements..., Slot<1, 1>>;
@@ -85,7 +85,7 @@ struct Opening {
 /// | r       | 1 + faces    | m^3/s   | sum q, -q (2D: m^2/s)                                                |
 /// | T       | [cell, faces * faces] | m^3/Pa | of beta, zero in rows of fractures (2D: m^2/Pa)             |
 /// | drop    | [cell, faces] | Pa     | p_0 - p_0j; empty: zero                                              |
-/// | rate    |              | 1/s     | 1/dt                                                                 |
+/// | rate    |              | 1/s     | of assembly::State                                                   |
 template <Shape shape>
 struct StabilisedCell {
   static constexpr int n = mesh::n_faces(shape);
@@ -154,18 +154,19 @@ class PoroelasticCoupling final : public assembly::Module {
     for (const char* row : {"pressure", "face pressure"})
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
     d.schur = {"pressure"};
+    d.stores = true;
     d.history = {{"volume", fields::Entity::cell, 1}, {"exchange", fields::Entity::facet, 1}};
     return d;
   }
 
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    add_rates(state, r, 1 / state.dt);
+    add_rates(state, r, state.rate);
     for_each_opening(*this, [&](const auto& part) { part.assembler->add_residual(part.op, state, r); });
     for (int k = 0; k < 2; ++k) {
       const auto rows = r[pressures_[k]];
       const auto old = state.history[k];
-      const Real rate = 1 / state.dt;
+      const Real rate = state.rate;
       Kokkos::parallel_for(
           "old", Kokkos::RangePolicy<Execution>(0, rows.extent(0)),
           KOKKOS_LAMBDA(int i) { rows(i) -= rate * old(i, 0); });
@@ -175,7 +176,7 @@ class PoroelasticCoupling final : public assembly::Module {
   void add_schur(const assembly::State& state, const assembly::Rows& diagonal) const override {
     const auto rows = diagonal[pressures_[0]];
     const auto schur = schur_;
-    const Real rate = 1 / state.dt;
+    const Real rate = state.rate;
     Kokkos::parallel_for(
         "schur", Kokkos::RangePolicy<Execution>(0, rows.extent(0)),
         KOKKOS_LAMBDA(int i) { rows(i) += rate * schur(i); });
@@ -283,7 +284,7 @@ void PoroelasticCoupling<shape>::bind(const assembly::Context& context) {
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
-  for_each_rate(*this, [&](const auto& part) { part.assembler->add_jacobian(part.at(1 / state.dt), state, J); });
+  for_each_rate(*this, [&](const auto& part) { part.assembler->add_jacobian(part.at(state.rate), state, J); });
   for_each_opening(*this, [&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
 }
 

@@ -46,11 +46,12 @@ class Enriched : public Family {
   std::shared_ptr<SolverCost> cost_;
 };
 
-/// The inverse of a pair of blocks, F then K, see Family.
+/// The inverse of a pair of blocks, F then K, see Family. Multigrid of S makes two cycles: where fractures let through
+/// so much more than rock one is not exact enough, and iterations of the whole system cost more than a second cycle.
 class PairInverse : public Operator {
  public:
-  PairInverse(const LinearSystem& pair, RCP<const Vector> D_inverse, RCP<const Operator> S_inverse)
-      : joined_(pair.joined), FK_(pair.blocks[1]), KF_(pair.blocks[2]), D_inverse_(D_inverse), S_inverse_(S_inverse) {}
+  PairInverse(const LinearSystem& pair, RCP<const Vector> D_inverse, RCP<const Operator> S, RCP<const Operator> cycle)
+      : joined_(pair.joined), FK_(pair.blocks[1]), KF_(pair.blocks[2]), D_inverse_(D_inverse), S_(S), cycle_(cycle) {}
   RCP<const Map> getDomainMap() const override { return joined_->map(); }
   RCP<const Map> getRangeMap() const override { return joined_->map(); }
 
@@ -60,7 +61,9 @@ class PairInverse : public Operator {
     const Real scale_F = joined_->scale(0), scale_K = joined_->scale(1);
     rest_K.elementWiseMultiply(1 / scale_K, *D_inverse_, *part(x, 1), 0);
     FK_->apply(rest_K, rest_F, Teuchos::NO_TRANS, -1, 1 / scale_F);
-    S_inverse_->apply(rest_F, y_F);
+    cycle_->apply(rest_F, y_F);
+    S_->apply(y_F, rest_F, Teuchos::NO_TRANS, -1, 1);
+    cycle_->apply(rest_F, y_F, Teuchos::NO_TRANS, 1, 1);
     MultiVector of_K(*part(x, 1), Teuchos::Copy);
     KF_->apply(y_F, of_K, Teuchos::NO_TRANS, -1, 1 / scale_K);
     y.offsetViewNonConst(joined_->map(0), joined_->first(0))->update(alpha / scale_F, y_F, beta);
@@ -76,7 +79,7 @@ class PairInverse : public Operator {
   std::shared_ptr<const Joined> joined_;
   RCP<const CrsMatrix> FK_, KF_;
   RCP<const Vector> D_inverse_;
-  RCP<const Operator> S_inverse_;
+  RCP<const Operator> S_, cycle_;
 };
 
 class Pair : public Family {
@@ -91,7 +94,7 @@ class Pair : public Family {
     D_inverse->reciprocal(*D_inverse);
     fill_S(family, *D_inverse);
     solver_->setup({block_, S_, {}, false});  // what was eliminated locally need not leave it symmetric
-    inverse_ = rcp(new PairInverse(family, D_inverse, solver_->inverse()));
+    inverse_ = rcp(new PairInverse(family, D_inverse, S_, solver_->inverse()));
   }
   RCP<const Operator> inverse() const override { return inverse_; }
   std::vector<SolverCost> costs() const override { return solver_->costs(); }

@@ -13,8 +13,8 @@
 namespace sprekk::solve {
 
 struct SearchReport {
-  std::string failure;           ///< why there was no step
-  std::string loose;             ///< what nothing held in one of the iterates, the last such
+  std::string failure;  ///< why there was no step
+  std::string loose;    ///< what nothing held in one of the iterates, the last such
   /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
   /// steps together were below half of one of Newton's.
   bool stagnant = false;
