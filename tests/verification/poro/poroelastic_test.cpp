@@ -121,11 +121,11 @@ TEST(Poroelasticity, BiotModulusIsStorageAtConstantStrain) {
             rock.compressibility = grows;
           model::Model model(scene, Tpetra::getDefaultComm());
           for (const Real t : {0.01, 0.03}) ASSERT_TRUE(model.step_to(t).converged);
+          const auto steady = [](const auto&, const auto&) { return Vector3{1}; };
+          EXPECT_GT(error(model, "pressure", steady), 1e-3);
           found.push_back(model.output("pressure").values);
         }
         for (std::size_t cell = 0; cell < found[0].size(); ++cell) EXPECT_NEAR(found[1][cell], found[0][cell], 1e-9);
-        const auto& [least, most] = std::minmax_element(found[0].begin(), found[0].end());
-        if (!found[0].empty()) EXPECT_GT(*most - *least, 1e-3);  // it is not steady
       }
 }
 
