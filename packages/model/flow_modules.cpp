@@ -6,6 +6,7 @@
 #include "physics/darcy_flow.hpp"
 #include "physics/fluid_storage.hpp"
 #include "physics/fracture_flow.hpp"
+#include "physics/given_pressure.hpp"
 #include "physics/poroelastic_coupling.hpp"
 #include "physics/wells.hpp"
 
@@ -68,21 +69,6 @@ std::vector<physics::Well> wells(const Scene& scene, int dim) {
   return wells;
 }
 
-/// The values of owned fracture faces and of ghosts. Collective.
-std::vector<Real> with_ghosts(const mesh::Mesh& mesh, const std::vector<Real>& owned) {
-  const fields::Layout layout({"value", fields::Entity::fracture_face, 1, ""}, mesh);
-  fields::Vector from(layout.owned()), to(layout.ghosted());
-  {
-    const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
-  }
-  to.doImport(from, *layout.import(), Tpetra::REPLACE);
-  const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<Real> values;
-  for (std::size_t f = 0; f < all.extent(0); ++f) values.push_back(all(f, 0));
-  return values;
-}
-
 /// Of local fracture faces; the apertures at the start are those of the joints and `initial_jumps` along the normal.
 std::vector<physics::FractureFlowParameters::Face> hydraulics(const Scene& scene, const mesh::Mesh& mesh,
                                                               const std::vector<Real>& initial_jumps) {
@@ -127,7 +113,8 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   physics::FractureFlowParameters fractures{
       {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), scene.deforms()};
   if (scene.deforms()) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
-  const auto jumps = scene.deforms() ? with_ghosts(mesh, initial_jumps) : std::vector<Real>();
+  const auto jumps =
+      scene.deforms() ? with_ghosts(mesh, fields::Entity::fracture_face, initial_jumps) : std::vector<Real>();
   base::collectively(*mesh.comm, [&] { fractures.faces = hydraulics(scene, mesh, jumps); });
   std::vector<Real> aperture;
   for (const auto& face : fractures.faces) {
@@ -169,12 +156,22 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
     coupling.rock.push_back({biot[region], rock.values[rock.number.empty() ? region : rock.number[cell]]});
     coupling.rock_of_cell.push_back(cell);
   }
-  const auto flow = mobility(scene, mesh);
-  coupling.initial = scene.flow->initial_pressure;
-  coupling.scheme = physics::flux_scheme(scene.flow->scheme, mesh, flow.values, flow.number).scheme;
+  const Properties<laws::Mobility> any{
+      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1)), {}};
+  const auto flow = scene.flow ? mobility(scene, mesh) : any;
+  coupling.initial = scene.initial_pressure();
+  coupling.scheme =
+      physics::flux_scheme(scene.flow ? scene.flow->scheme : "auto", mesh, flow.values, flow.number).scheme;
   coupling.fractures = !mesh.fracture_names.empty();
   coupling.tips = mesh.n_global_enriched > 0;
   return physics::make_poroelastic_coupling(mesh.shape, std::move(coupling));
+}
+
+std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
+  physics::GivenPressureParameters given{{}, !mesh.fracture_names.empty(), mesh.n_global_enriched > 0};
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) given.biot.push_back(biot[mesh.cell_region[cell]]);
+  return physics::make_given_pressure(mesh.shape, std::move(given));
 }
 
 Real largest_mobility(const Scene& scene, const mesh::Mesh& mesh) {

@@ -16,6 +16,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
 /// What mechanics and flow are to each other.
 std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh);
 
+/// The pressure that a host gives.
+std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh);
+
 /// Permeability over viscosity, m^2/(Pa s). Collective.
 Real largest_mobility(const Scene& scene, const mesh::Mesh& mesh);
 

@@ -10,6 +10,7 @@
 #include "model/properties.hpp"
 #include "model/scene_check.hpp"
 #include "model/uniqueness.hpp"
+#include "physics/given_pressure.hpp"
 #include "physics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -103,9 +104,15 @@ physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mes
   if (mesh.fracture_names.empty()) return {bulk};
   const auto joint = joints(scene, mesh);
   physics::FluidPressure initial;
-  if (scene.flow) initial.value.assign(mesh.fracture_names.size(), scene.flow->initial_pressure);
-  return {bulk,    joint.values,           joint.number,     scene.fluid_pressure(mesh.fracture_names),
-          initial, scene.flow.has_value(), scene.time.start, scene.augmentation};
+  if (scene.has_unknown_pressure()) initial.value.assign(mesh.fracture_names.size(), scene.initial_pressure());
+  return {bulk,
+          joint.values,
+          joint.number,
+          scene.fluid_pressure(mesh.fracture_names),
+          initial,
+          scene.has_unknown_pressure(),
+          scene.time.start,
+          scene.augmentation};
 }
 
 }  // namespace
@@ -115,6 +122,10 @@ std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, 
   physics::MechanicsParameters parameters;
   base::collectively(*mesh.comm, [&] { parameters = mechanics(scene, mesh); });
   auto modules = physics::make_mechanics(mesh, parameters);
+  if (scene.host_fluid) {
+    modules.push_back(scene.host_fluid->unknown ? make_coupling(scene, mesh) : make_given(scene, mesh));
+    return modules;
+  }
   if (!scene.flow) return modules;
   std::vector<Real> widths;
   base::collectively(*mesh.comm, [&] {
@@ -165,7 +176,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     const auto scope = timers_->scope("mesh");
     mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
     mesh = draft.value.refined(mesh);
-    if (draft.value.flow) mesh = mesh::with_facets(mesh);
+    if (draft.value.has_unknown_pressure()) mesh = mesh::with_facets(mesh);
   }
   scene_ = std::move(draft.value);
   check_ends(scene_, *mesh);
@@ -199,11 +210,51 @@ void Model::start_solver() {
 solve::StepReport Model::step_to(Real t) {
   SPREKK_CHECK(t > time_, "a step to t = {} is no step forward: the model is at t = {}", t, time_);
   const auto scope = timers_->scope("time steps");
+  beginning_ = beginning();
   auto report = stepper_->advance(x_, time_, t);
   if (report.converged) return report;
   for (const auto& doubt : {friction_doubt(scene_), dilation_doubt(scene_, mesh())})
     if (!doubt.empty()) report.reason += "; " + doubt;
   return report;
+}
+
+Model::Beginning Model::beginning() {
+  Beginning now{fields::create_like(x_), {}, system_->memory(), time_};
+  fields::copy(x_, now.x);
+  for (const auto& [field, values] : system_->histories()) {
+    now.histories.emplace_back(field.name, values.extent(0), values.extent(1));
+    Kokkos::deep_copy(now.histories.back(), values);
+  }
+  return now;
+}
+
+void Model::take_back() {
+  SPREKK_CHECK(beginning_.has_value(), "there is no step to take back, at t = {}", time_);
+  fields::copy(beginning_->x, x_);
+  std::size_t k = 0;
+  for (const auto& [field, values] : system_->histories()) Kokkos::deep_copy(values, beginning_->histories[k++]);
+  time_ = beginning_->time;
+  system_->resume(x_, beginning_->memory);
+  beginning_.reset();
+}
+
+void Model::set_fluid_pressure(const std::vector<Real>& rock, const std::vector<Real>& fractures) {
+  physics::GivenPressure* given = nullptr;
+  for (const auto& module : system_->modules())
+    if (auto* found = dynamic_cast<physics::GivenPressure*>(module.get())) given = found;
+  SPREKK_CHECK(given, "{}: the pressure of a fluid is set, but the scene has no host_fluid whose pressure is given",
+               scene_.origin);
+  base::collectively(*mesh().comm, [&] {
+    const std::size_t n_cells = mesh().n_owned_cells, n_faces = mesh().n_owned_fracture_faces;
+    SPREKK_CHECK(rock.size() == n_cells && fractures.size() == n_faces,
+                 "pressures of {} cells and {} fracture faces are given, a rank has {} and {}", rock.size(),
+                 fractures.size(), n_cells, n_faces);
+  });
+  const auto above = [&](std::vector<Real> values, fields::Entity entity) {
+    for (Real& p : values) p -= scene_.host_fluid->initial_pressure;
+    return with_ghosts(mesh(), entity, values);
+  };
+  given->set(above(rock, fields::Entity::cell), above(fractures, fields::Entity::fracture_face));
 }
 
 FieldView Model::field(const std::string& name) {
@@ -245,6 +296,7 @@ io::Checkpoint Model::save() {
 }
 
 void Model::restore(const io::Checkpoint& checkpoint) {
+  beginning_.reset();
   const auto& content = checkpoint.content;
   check_fingerprint(content.at("scene"), fingerprint(scene_, *system_));
   for (std::size_t b = 0; b < x_.size(); ++b)

@@ -14,6 +14,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,15 @@ class Model {
   /// Error is thrown, the state is the last that did, at time().
   solve::StepReport step_to(Real t);
 
+  /// Goes back to where the last step began, to take it again under other loads: so a host that solves for a part of
+  /// the problem itself iterates within a step. The solver keeps what it has. Error: there was no step since the model,
+  /// or the last state that was taken back or restored.
+  void take_back();
+
+  /// Of a scene whose `host_fluid` is given: the pressures of the fluid in owned cells and fracture faces, Pa, in the
+  /// order of FieldView, from the next step on. The outputs "gained pore volume" and "widening" say what room it makes.
+  void set_fluid_pressure(const std::vector<Real>& rock, const std::vector<Real>& fractures);
+
   /// The unknowns of a field, by its name, which are the start of the next step's iteration; or a history, by "MODULE:
   /// HISTORY", which the next step depends on. Valid until the model's next member call. Error: there is no such field.
   /// Stored data.
@@ -66,7 +76,15 @@ class Model {
   base::Timers& timers() { return *timers_; }
 
  private:
+  /// What a step begins with.
+  struct Beginning {
+    fields::BlockVector x;
+    std::vector<View<Real**>> histories;
+    assembly::System::Memory memory;
+    Real time;
+  };
   void start_solver();
+  Beginning beginning();
 
   Scene scene_;
   RCP<base::Timers> timers_;
@@ -75,6 +93,7 @@ class Model {
   std::unique_ptr<solve::TimeStepper> stepper_;
   fields::BlockVector x_;
   Real time_ = 0;
+  std::optional<Beginning> beginning_;  // of the last step
 };
 
 /// The equation system of a scene is a list of modules.

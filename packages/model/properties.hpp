@@ -1,6 +1,7 @@
 // What the materials of a scene give the entities of a mesh.
 #pragma once
 
+#include "fields/layout.hpp"
 #include "model/scene.hpp"
 
 #include <algorithm>
@@ -48,5 +49,8 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
 
 /// Young's, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
+
+/// The values of local entities from those of owned ones. Collective.
+std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned);
 
 }  // namespace sprekk::model

@@ -414,8 +414,17 @@ physics::InitialStress Scene::initial_stress() const {
   return {stress};
 }
 
+base::Expression Scene::initial_pressure() const {
+  return flow ? flow->initial_pressure : base::Expression(host_fluid ? host_fluid->initial_pressure : 0);
+}
+
 physics::FluidPressure Scene::fluid_pressure(const std::vector<std::string>& fracture_names) const {
   physics::FluidPressure fluid;
+  if (host_fluid) {
+    if (!host_fluid->unknown && host_fluid->initial_pressure != 0)
+      fluid.value.assign(fracture_names.size(), initial_pressure());
+    return fluid;
+  }
   bool any = false;
   for (const auto& name : fracture_names) {
     const auto& p = fluid.value.emplace_back(fractures.at(name).fluid_pressure);
@@ -459,6 +468,7 @@ base::Draft<Scene> prepared(const Scene& scene) {
     add_stray_entries(list.sublist("Materials").sublist(name), material);
   auto draft = from_list(list, scene.origin);
   draft.value.augmentation = scene.augmentation;
+  draft.value.host_fluid = scene.host_fluid;
   return draft;
 }
 

@@ -119,6 +119,16 @@ struct Flow {
   void describe(base::Section& section);
 };
 
+/// A fluid of a host's in the pores and fractures of rock that deforms, instead of Flow. Of materials, "Biot
+/// coefficient" counts, of joints the aperture.
+struct HostFluid {
+  /// The host's modules declare the unknowns "pressure" (cells) and "face pressure" (facets, see mesh::Facets) and
+  /// write their rows, the balance of volume per time; what displacements add to them, and they to momentum, is
+  /// Sprekk's, see physics::make_poroelastic_coupling(). If not, the host gives pressures: Model::set_fluid_pressure().
+  bool unknown = false;
+  Real initial_pressure = 0;  ///< under which the initial state is one of rest, Pa
+};
+
 struct Region {
   std::string material;
   void describe(base::Section& section);
@@ -174,6 +184,7 @@ struct Scene {
   std::map<std::string, Material> materials;
   Bulk bulk;
   std::optional<Flow> flow;
+  std::optional<HostFluid> host_fluid;  ///< not an entry
   std::map<std::string, Region> regions;
   std::map<std::string, Fracture> fractures;
   std::map<std::string, BoundaryCondition> boundary_conditions;
@@ -193,6 +204,8 @@ struct Scene {
   int refinements() const;             ///< of the mesh that is used
   const std::string& tips() const;     ///< the same
   const Material& material_of(const std::string& region) const;
+  bool has_unknown_pressure() const { return flow || (host_fluid && host_fluid->unknown); }
+  base::Expression initial_pressure() const;  ///< of the fluid in rock and fractures; 0 without
   bool deforms() const { return !flow || !flow->rigid_rock; }
   physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;

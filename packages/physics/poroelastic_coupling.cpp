@@ -1,8 +1,8 @@
 #include "physics/poroelastic_coupling.hpp"
 
 #include "assembly/assembler.hpp"
-#include "assembly/tip_cell.hpp"
 #include "mesh/facets.hpp"
+#include "physics/coupling_volumes.hpp"
 
 #include <algorithm>
 
@@ -318,28 +318,17 @@ Real PoroelasticCoupling<shape>::mean_initial(LocalIndex cell) const {
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::build_cells() {
-  using Cell = assembly::ReferenceCell<shape>;
-  cells_.op.volume = View<Real**>("volume", mesh_->n_cells(), n * dim);
-  const auto volume = Kokkos::create_mirror_view(cells_.op.volume);
+  const auto biot = [&](LocalIndex cell) { return rock(cell).biot; };
+  cells_.op.volume = cell_volumes<shape>(*mesh_, biot);
   std::vector<Real> reference, schur;
-  Real X[n][dim], dN[n][dim], g[dim];
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    assembly::gather_host<shape>(*mesh_, c, X);
-    Real size = 0;
-    assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real part, const auto&) {
-      Cell::gradients(xi, dN);
-      const assembly::CellPoint<shape> point(X, dN);
-      size += part;
-      for (int a = 0; a < n; ++a) {
-        point.gradient(dN[a], g);
-        for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * rock(c).biot * g[i];
-      }
-    });
-    const auto& [biot, law] = rock(c);
     reference.push_back(mean_initial(c));
-    if (c < mesh_->n_owned_cells) schur.push_back(biot * biot * size / (law.lambda + 2 * law.G));
+    if (c >= mesh_->n_owned_cells) continue;
+    Real size = 0;
+    assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real part, const auto&) { size += part; });
+    const auto& [biot, law] = rock(c);
+    schur.push_back(biot * biot * size / (law.lambda + 2 * law.G));
   }
-  Kokkos::deep_copy(cells_.op.volume, volume);
   cells_.op.reference = assembly::to_device(reference, "initial pressure");
   schur_ = assembly::to_device(schur, "schur");
 }
@@ -392,78 +381,25 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::build_sides() {
-  using Cell = assembly::ReferenceCell<shape>;
-  const auto all = assembly::fracture_sides(*mesh_);
-  bubbles_.op.volume = View<Real**>("volume", all.size(), dim);
-  sides_.op.volume = View<Real**>("volume", all.size(), n * dim + dim);
-  const auto bubble = Kokkos::create_mirror_view(bubbles_.op.volume),
-             side_volume = Kokkos::create_mirror_view(sides_.op.volume);
+  bubbles_.op.volume = bubble_volumes<shape>(*mesh_, [&](LocalIndex cell) { return rock(cell).biot; });
+  sides_.op.volume = side_volumes<shape>(*mesh_);
   std::vector<Real> reference, halves;
-  Real X[n][dim], dN[n][dim], db[dim], gb[dim];
-  for (std::size_t s = 0; s < all.size(); ++s) {
-    const auto [f, side] = all[s];
-    const auto& face = mesh_->fracture_faces[f];
-    const LocalIndex cell = face.cell[side];
-    const int local_face = face.local_face[side];
-    assembly::gather_host<shape>(*mesh_, cell, X);
-    assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
-      Cell::gradients(xi, dN);
-      Cell::bubble(local_face, xi, db);
-      assembly::CellPoint<shape>(X, dN).gradient(db, gb);
-      for (int i = 0; i < dim; ++i) bubble(s, i) += part * rock(cell).biot * gb[i];
-    });
-    reference.push_back(mean_initial(cell));
-    halves.push_back(face.area / 2);
-    const Real area = side == mesh::plus ? face.area : -face.area;
-    const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
-    const Real mean = assembly::bubble_mean<shape>(*mesh_, cell, local_face);
-    for (int i = 0; i < dim; ++i) {
-      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-        side_volume(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
-      side_volume(s, n * dim + i) = area * mean * face.frame[0][i];
-    }
+  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
+    reference.push_back(mean_initial(mesh_->fracture_faces[f].cell[side]));
+    halves.push_back(mesh_->fracture_faces[f].area / 2);
   }
-  Kokkos::deep_copy(bubbles_.op.volume, bubble);
-  Kokkos::deep_copy(sides_.op.volume, side_volume);
   bubbles_.op.reference = assembly::to_device(reference, "initial pressure");
   sides_.op.part = assembly::to_device(halves, "half of the area");
 }
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::build_tips() {
-  if constexpr (mesh::order(shape) == 1) {
-    using Tip = assembly::TipCell<shape>;
-    const auto rules = std::make_shared<assembly::TipRules>();
-    const auto cells = assembly::tip_cells(*mesh_);
-    tip_cells_.op.volume = View<Real**>("volume", cells.size(), n * dim);
-    const auto volume = Kokkos::create_mirror_view(tip_cells_.op.volume);
-    std::vector<Real> reference;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      Tip(*mesh_, cells[c], rules).for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
-        for (int a = 0; a < n; ++a)
-          for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * rock(cells[c]).biot * v.grad_psi[a][i];
-      });
-      reference.push_back(mean_initial(cells[c]));
-    }
-    Kokkos::deep_copy(tip_cells_.op.volume, volume);
-    tip_cells_.op.reference = assembly::to_device(reference, "initial pressure");
-
-    const auto all = assembly::fracture_sides(*mesh_);
-    const auto selected = assembly::tip_sides(*mesh_);
-    tip_sides_.op.volume = View<Real**>("volume", selected.size(), n * dim);
-    const auto side_volume = Kokkos::create_mirror_view(tip_sides_.op.volume);
-    for (std::size_t s = 0; s < selected.size(); ++s) {
-      const auto [f, side] = all[selected[s]];
-      const auto& face = mesh_->fracture_faces[f];
-      const auto means = Tip(*mesh_, face.cell[side], rules).face_means(face.local_face[side]);
-      for (int k = 0; k < Tip::n_face; ++k)
-        for (int i = 0; i < dim; ++i)
-          side_volume(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
-              (side == mesh::plus ? face.area : -face.area) * means[k] * face.frame[0][i];
-    }
-    Kokkos::deep_copy(tip_sides_.op.volume, side_volume);
-    tip_sides_.op.part = assembly::to_device(std::vector<Real>(selected.size(), 0), "none of the area");
-  }
+  tip_cells_.op.volume = tip_cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return rock(cell).biot; });
+  tip_sides_.op.volume = tip_side_volumes<shape>(*mesh_);
+  std::vector<Real> reference;
+  for (const LocalIndex cell : assembly::tip_cells(*mesh_)) reference.push_back(mean_initial(cell));
+  tip_cells_.op.reference = assembly::to_device(reference, "initial pressure");
+  tip_sides_.op.part = assembly::to_device(std::vector<Real>(tip_sides_.op.volume.extent(0), 0), "none of the area");
 }
 
 }  // namespace

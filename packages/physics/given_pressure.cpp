@@ -1,0 +1,167 @@
+#include "physics/given_pressure.hpp"
+
+#include "assembly/assembler.hpp"
+#include "physics/coupling_volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using assembly::Slot;
+using mesh::Shape;
+
+namespace {
+
+/// A known pressure p of what has the volume V.
+///
+/// | symbol   | shape             | unit |                              |
+/// | x        | displacements [m] | m    | unknowns                     |
+/// | r        | forces [m]        | N    | -p dV/du                     |
+/// | volume   | [entity, m]       | m^2  | dV/du                        |
+/// | of       | [entity]          | -    | which pressure               |
+/// | pressure | [number]          | Pa   |                              |
+template <class... Displacements>
+struct Push {
+  using Columns = assembly::Slots<Displacements...>;
+  using Rows = Columns;
+  static constexpr int m = Columns::size;
+  View<Real**> volume;
+  ConstView<LocalIndex*> of;
+  ConstView<Real*> pressure;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&)[m], Real (&r)[m]) const {
+    for (int k = 0; k < m; ++k) r[k] = -volume(e, k) * pressure(of(e));
+  }
+};
+
+template <Shape shape>
+class Given final : public GivenPressure {
+ public:
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+
+  explicit Given(GivenPressureParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "given pressure"; }
+
+  assembly::Declaration declare() const override {
+    assembly::Declaration d;
+    d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
+    if (parameters_.fractures) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
+    if (parameters_.tips) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
+    d.outputs = {{"gained pore volume", dim == 2 ? "m^2" : "m^3", fields::Entity::cell, 1}};
+    if (parameters_.fractures) d.outputs.push_back({"widening", "m", fields::Entity::fracture_face, 1});
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    const auto biot = [&](LocalIndex cell) { return parameters_.biot[cell]; };
+    const auto sides = assembly::fracture_sides(*mesh_);
+    std::vector<LocalIndex> cells, faces, cells_of_sides, faces_of_tips;
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) cells.push_back(c);
+    for (const auto& [f, side] : sides) {
+      faces.push_back(f);
+      cells_of_sides.push_back(mesh_->fracture_faces[f].cell[side]);
+    }
+    for (const LocalIndex s : assembly::tip_sides(*mesh_)) faces_of_tips.push_back(faces[s]);
+    const int u = context.field("displacement");
+    cells_.bind(context, Loop::cells, {u}, cell_volumes<shape>(*mesh_, biot), cells);
+    if (parameters_.fractures) {
+      const int beta = context.field("side bubble");
+      bubbles_.bind(context, Loop::fracture_sides, {beta}, bubble_volumes<shape>(*mesh_, biot), cells_of_sides);
+      sides_.bind(context, Loop::fracture_sides, {u, beta}, side_volumes<shape>(*mesh_), faces);
+    }
+    if (parameters_.tips) {
+      const int q = context.field("tip displacement");
+      tip_cells_.bind(context, Loop::tip_cells, {q}, tip_cell_volumes<shape>(*mesh_, biot),
+                      assembly::tip_cells(*mesh_));
+      tip_sides_.bind(context, Loop::tip_sides, {q}, tip_side_volumes<shape>(*mesh_), faces_of_tips);
+    }
+    set(std::vector<Real>(mesh_->n_cells(), 0), std::vector<Real>(mesh_->n_fracture_faces(), 0));
+  }
+
+  void set(const std::vector<Real>& rock, const std::vector<Real>& fractures) override {
+    largest_ = 0;
+    for (const auto* all : {&rock, &fractures})
+      for (const Real p : *all) largest_ = std::max(largest_, std::abs(p));
+    const auto in_rock = assembly::to_device(rock, "pressure"),
+               in_fractures = assembly::to_device(fractures, "pressure");
+    for_each(*this, [&](auto& part, bool of_rock) { part.op.pressure = of_rock ? in_rock : in_fractures; });
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    for_each(*this, [&](const auto& part, bool) { part.assembler->add_residual(part.op, state, r); });
+  }
+  void jacobian(const assembly::State&, fields::BlockMatrix&) const override {}
+  bool constant_load() const override { return false; }
+  Real load(Real) const override { return largest_; }
+
+  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+    const View<Real*> volumes("volumes", mesh_->n_cells()), openings("openings", mesh_->n_fracture_faces());
+    for_each(*this, [&](const auto& part, bool of_rock) { part.add_volumes(state, of_rock ? volumes : openings); });
+    const auto V = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), volumes);
+    const auto W = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), openings);
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) fields[0].values.push_back(V(c));
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces && parameters_.fractures; ++f)
+      fields[1].values.push_back(W(f) / mesh_->fracture_faces[f].area);
+  }
+
+ private:
+  using Nodes = Slot<n, dim>;
+  using Bubble = Slot<1, dim>;
+  template <class Op>
+  struct Part {
+    Op op;
+    std::unique_ptr<assembly::Assembler<Op>> assembler;
+
+    void bind(const assembly::Context& context, Loop loop, const std::vector<int>& fields, const View<Real**>& volume,
+              const std::vector<LocalIndex>& of) {
+      op.volume = volume;
+      op.of = assembly::to_device(of, "number of the pressure");
+      assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, fields, fields,
+                                                            assembly::Assembler<Op>::Positions::once);
+    }
+    void add_volumes(const assembly::State& state, const View<Real*>& volumes) const {
+      const auto volume = op.volume;
+      const auto of = op.of;
+      assembler->for_each(
+          op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::m]) {
+            for (int k = 0; k < Op::m; ++k) Kokkos::atomic_add(&volumes(of(e)), volume(e, k) * x[k]);
+          });
+    }
+  };
+
+  /// Calls visit(part, it is of the rock) for all parts that there are.
+  template <class Self, class Visit>
+  static void for_each(Self& self, const Visit& visit) {
+    visit(self.cells_, true);
+    if (self.parameters_.fractures) {
+      visit(self.bubbles_, true);
+      visit(self.sides_, false);
+    }
+    if (self.parameters_.tips) {
+      visit(self.tip_cells_, true);
+      visit(self.tip_sides_, false);
+    }
+  }
+
+  GivenPressureParameters parameters_;
+  RCP<const mesh::Mesh> mesh_;
+  Real largest_ = 0;  // on this rank, Pa
+  Part<Push<Nodes>> cells_, tip_cells_, tip_sides_;
+  Part<Push<Bubble>> bubbles_;
+  Part<Push<Nodes, Bubble>> sides_;
+};
+
+}  // namespace
+
+std::unique_ptr<GivenPressure> make_given_pressure(Shape shape, GivenPressureParameters parameters) {
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<GivenPressure> {
+    return std::make_unique<Given<s()>>(std::move(parameters));
+  });
+}
+
+}  // namespace sprekk::physics
