@@ -111,6 +111,7 @@ class OwnFlow final : public assembly::Module {
     for (const char* row : {"pressure", "face pressure"})
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
     d.couplings.push_back({Loop::fracture_cells, "face pressure", {"face pressure", "widening"}});
+    d.stores = true;
     d.history = {{"old pressure", fields::Entity::cell, 1}, {"old widening", fields::Entity::fracture_face, 1}};
     return d;
   }
@@ -150,7 +151,7 @@ class OwnFlow final : public assembly::Module {
 
   template <class Op>
   static Op at(Op op, const assembly::State& state, int history) {
-    op.rate = 1 / state.dt;
+    op.rate = state.rate;
     op.old = state.history[history];
     return op;
   }
