@@ -97,9 +97,13 @@ class Manufactured:
         N = 0.6 + 0.2 * np.sin(2 * x + y) * varies
         angle = 0.5 + (x - y / 2) * varies
         direction = np.array([np.cos(angle), np.sin(angle)]) if len(s) > 1 else np.array([1 + 0 * x])
-        behind, beyond = (np.where(e.real > 0, e, 0)**4 for e in (0.5 - x, x - 0.5))
-        ratio = {"stick": 0.5 + np.cos(3 * x) / 4, "slip": 1 + 0 * x, "uniform": 1 + 0 * x, "mixed": 1 - 8 * behind}[self.regime]
-        slip = {"stick": 0 * x, "mixed": 6 * beyond}.get(self.regime, 0.3 + np.cos(2 * x + y) / 10)
+        if self.regime == "mixed":
+            behind, beyond = ((np.where(e.real > 0, e, 0)**2)**2 for e in (0.5 - x, x - 0.5))
+            ratio, slip = 1 - 8 * behind, 6 * beyond
+        elif self.regime == "stick":
+            ratio, slip = 0.5 + np.cos(3 * x) / 4, 0 * x
+        else:
+            ratio, slip = 1 + 0 * x, 0.3 + np.cos(2 * x + y) / 10
         shear, plastic = self.friction * N * ratio * direction, slip * direction
         closing = self.closure * N / (self.closure * self.normal_stiffness + N)
         normal = self.gap + self.dilation * slip - closing
