@@ -133,7 +133,7 @@ void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
   t_ = t;
   dt_ = dt;
-  rates_ = Rates::of(scheme_, dt, committed_dt_);
+  rates_ = dt > 0 ? Rates::of(scheme_, dt, committed_dt_) : Rates{};  // 0: before the first step
   sized_ = false;
   update_scales(t);
   bool changes = !loaded_;
