@@ -13,7 +13,7 @@ using namespace sprekk;
 
 namespace {
 
-/// Steps to `t` by `step`, and appends a line to the table.
+/// Steps by `step`, and what they cost.
 struct Way {
   std::string name;
   model::Model& model;
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   const auto number = [&](int k, int otherwise) { return argc > k ? std::stoi(argv[k]) : otherwise; };
   try {
     return run(number(1, 2), number(2, 8), number(3, 4), argc > 4 ? argv[4] : "auto", Tpetra::getDefaultComm());
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;
   }

@@ -198,14 +198,15 @@ inline std::array<int, 3> count_states(model::Model& model) {
   return all;
 }
 
-/// max |a - b| / max |b|, over all ranks.
+/// max |a - b| / max |b|, over all ranks; infinite where one is no number, or their sizes differ.
 inline Real distance(const Values& a, const Values& b, const Comm& comm) {
-  Real here[2] = {0, 0}, all[2];
-  for (std::size_t k = 0; k < b.size(); ++k) {
-    here[0] = std::max(here[0], std::abs(a[k] - b[k]));
+  const Real infinite = std::numeric_limits<Real>::infinity();
+  Real here[2] = {a.size() == b.size() ? 0 : infinite, 0}, all[2];
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    const Real apart = std::abs(a[k] - b[k]);
+    here[0] = std::isfinite(apart) ? std::max(here[0], apart) : infinite;
     here[1] = std::max(here[1], std::abs(b[k]));
   }
-  if (a.size() != b.size()) here[0] = std::numeric_limits<Real>::infinity();
   Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 2, here, all);
   return all[0] == 0 ? 0 : all[0] / all[1];
 }

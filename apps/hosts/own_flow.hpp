@@ -16,7 +16,9 @@ using mesh::operator+, mesh::operator-, mesh::operator*;
 /// | x      | 1 + faces    | Pa         | pressure of the cell, of its faces    |
 /// | r      | 1 + faces    | m^3/s      | stored + sum q, -q                    |
 /// | T      | [cell, face] | m^3/(Pa s) | half-transmissibilities               |
-/// | stored | [cell]       | m^3/(Pa s) | V/(M dt)                              |
+/// | volume | [cell]       | m^3        | V                                     |
+/// | storage |             | 1/Pa       | 1/M                                   |
+/// | rate   |              | 1/s        | of assembly::State                    |
 /// | old    | [owned cell] | Pa         | pressure at the start of the step     |
 template <mesh::Shape shape>
 struct CellFlow {

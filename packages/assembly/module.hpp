@@ -77,7 +77,7 @@ struct Declaration {
   std::vector<History> history;
   std::vector<OutputField> outputs;  ///< without values
   std::vector<std::string> schur;    ///< the fields that add_schur() adds to
-  bool stores = false;               ///< its rows contain rates of what it stores
+  bool stores = false;               ///< its rows of flow contain State::rate times what it stores
   bool linear =
       false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
 };

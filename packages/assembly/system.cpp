@@ -375,8 +375,10 @@ std::string System::history_name(std::size_t module, const History& history) con
 
 void System::resume(const BlockVector& x, const Memory& memory) {
   scales_ = memory.scales;
+  committed_t_ = memory.t;
   committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
+  scales_ = memory.scales;  // without loads of a step that is taken back
   remember(x);
   calibration_ = memory.calibration;
   augmentation_ = {};

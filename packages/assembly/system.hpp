@@ -82,7 +82,7 @@ class System : public fields::BlockProblem {
     Scales scales;                  ///< of the loads so far
     std::vector<Real> calibration;  ///< see calibrate()
   };
-  Memory memory() const { return {t_, dt_, scales_, calibration_}; }  ///< stored data
+  Memory memory() const { return {committed_t_, committed_dt_, scales_, calibration_}; }  ///< stored data
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
@@ -146,14 +146,13 @@ class System : public fields::BlockProblem {
   std::vector<fields::LocalGroup> groups_;
   std::vector<Constraints> constraints_;            // [block]
   std::vector<std::vector<View<Real**>>> history_;  // [module][number](owned entity, component)
-  std::vector<View<Real**>>
-      gains_;  // [block](owned entity, component) rates of the last step times its length, or empty
-  std::vector<char> needs_ghosts_;      // [block]
-  fields::BlockVector ghosted_;         // [block] unknowns with ghosts
-  fields::BlockVector weights_;         // [block] of merit()
-  fields::BlockVector diagonals_;       // [block] of linear_; where rock and fluid couple, of flow: of matrix_
-  fields::BlockVector schur_;           // [block] of the last jacobian(); null: none
-  fields::BlockVector load_;            // [block] residual of the linear modules at x = 0, time t_
+  std::vector<View<Real**>> gains_;  // [block](owned entity, component) what was stored more in the last step, or empty
+  std::vector<char> needs_ghosts_;   // [block]
+  fields::BlockVector ghosted_;      // [block] unknowns with ghosts
+  fields::BlockVector weights_;      // [block] of merit()
+  fields::BlockVector diagonals_;    // [block] of linear_; where rock and fluid couple, of flow: of matrix_
+  fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
+  fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
   std::unique_ptr<LoosePieces> loose_;  // null without displacement, or where modules hold bodies
   std::vector<Grip> grips_;             // of the last calibrate()
   ConstView<Real*> augmentation_;       // [owned fracture face] factor of the face law's constant
@@ -172,7 +171,7 @@ class System : public fields::BlockProblem {
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;
   Rates rates_;
-  Real committed_dt_ = 0;  // length of the last committed step; 0 before the first
+  Real committed_t_ = 0, committed_dt_ = 0;  // of the last committed step; 0 before the first
   Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
   bool symmetric_ = true, loaded_ = false;
   bool coupled_ = false;  // fluid and rock move each other

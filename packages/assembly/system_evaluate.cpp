@@ -200,18 +200,18 @@ void System::find_gains() {
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     if (!declarations_[m].stores) continue;
     auto s = state(static_cast<int>(m));
-    s.rate = 1;
     modules_[m]->residual(s, with);
     s.rate = 0;
     modules_[m]->residual(s, without);
   }
+  const Real rate = rates_.now;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto gain = gains_[b];
     const auto a = with[b], c = without[b];
     const int width = static_cast<int>(gain.extent(1));
     Kokkos::parallel_for(
         "gains", Kokkos::RangePolicy<Execution>(0, gain.extent(0)), KOKKOS_LAMBDA(int e) {
-          for (int k = 0; k < width; ++k) gain(e, k) = a(e * width + k) - c(e * width + k);
+          for (int k = 0; k < width; ++k) gain(e, k) = (a(e * width + k) - c(e * width + k)) / rate;
         });
   }
 }
@@ -275,6 +275,7 @@ void System::commit(const BlockVector& x) {
   find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
   remember(x);
   if (keeps_gains()) find_gains();
+  committed_t_ = t_;
   committed_dt_ = dt_;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));

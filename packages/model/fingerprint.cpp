@@ -80,7 +80,8 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"unknowns", unknowns(system)},
                  {"Time > start", scene.time.start},
                  {"Tables", json::object()}};
-  if (scene.flow) result["Time > scheme"] = scene.time.scheme;
+  if (scene.has_unknown_pressure()) result["Time > scheme"] = scene.time.scheme;
+  if (const auto& host = scene.host_fluid) result["host_fluid"] = {host->unknown, host->initial_pressure};
   for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
     result[name] = base::to_xml(sections.sublist(name));
   if (scene.flow) result["Flow"] = base::to_xml(sections.sublist("Flow"));
@@ -102,8 +103,7 @@ void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
   }
   SPREKK_CHECK(different.empty(),
                "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver and Output may "
-               "change, and "
-               "tables get more points at their end",
+               "change, and tables get more points at their end",
                fmt::join(different, ", "));
 }
 

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace sprekk::model {
 
@@ -249,6 +250,8 @@ void Model::set_fluid_pressure(const std::vector<Real>& rock, const std::vector<
     SPREKK_CHECK(rock.size() == n_cells && fractures.size() == n_faces,
                  "pressures of {} cells and {} fracture faces are given, a rank has {} and {}", rock.size(),
                  fractures.size(), n_cells, n_faces);
+    for (const auto* values : {&rock, &fractures})
+      for (const Real p : *values) SPREKK_CHECK(std::isfinite(p), "a given pressure is {}", p);
   });
   const auto above = [&](std::vector<Real> values, fields::Entity entity) {
     for (Real& p : values) p -= scene_.host_fluid->initial_pressure;

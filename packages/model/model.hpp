@@ -43,12 +43,14 @@ class Model {
   solve::StepReport step_to(Real t);
 
   /// Goes back to where the last step began, to take it again under other loads: so a host that solves for a part of
-  /// the problem itself iterates within a step. The solver keeps what it has. Error: there was no step since the model,
+  /// the problem itself iterates within a step. The solver keeps what it has, and modules what they keep outside of
+  /// their histories. Error: there was no step since the model,
   /// or the last state that was taken back or restored.
   void take_back();
 
   /// Of a scene whose `host_fluid` is given: the pressures of the fluid in owned cells and fracture faces, Pa, in the
   /// order of FieldView, from the next step on. The outputs "gained pore volume" and "widening" say what room it makes.
+  /// No part of what save() keeps: to be given again after restore().
   void set_fluid_pressure(const std::vector<Real>& rock, const std::vector<Real>& fractures);
 
   /// The unknowns of a field, by its name, which are the start of the next step's iteration; or a history, by "MODULE:

@@ -135,7 +135,7 @@ class Comparison {
     if (scene_.deforms() && !joint.friction_coefficient && !joint.friction_angle)
       fail(place, "give either \"friction coefficient\" or \"friction angle\"");
     const auto zero = [](const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; };
-    if (scene_.flow && !zero(fracture.fluid_pressure))
+    if ((scene_.flow || scene_.host_fluid) && !zero(fracture.fluid_pressure))
       fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
     if (!scene_.flow && is_absent(draft_, "Flow") && !zero(fracture.source))
       fail("Fractures > " + name + " > \"source\"", "needs the section \"Flow\"");
@@ -185,6 +185,9 @@ class Comparison {
   }
 
   void compare_flow() {
+    if (scene_.flow && scene_.host_fluid) fail("Flow", "goes without a host_fluid, which brings its own flow");
+    if (!scene_.flow && !scene_.host_fluid && is_absent(draft_, "Flow") && scene_.time.scheme != "implicit Euler")
+      fail("Time > \"scheme\"", fmt::format("is \"{}\": needs the section \"Flow\"", scene_.time.scheme));
     for (const auto& [name, condition] : scene_.boundary_conditions) {
       const std::string place = "Boundary conditions > " + name;
       if (!scene_.flow && is_absent(draft_, "Flow") && (condition.pressure || condition.flux))
@@ -243,9 +246,8 @@ class Comparison {
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
       fail("Flow",
            "nothing says how high the pressure is: give a \"pressure\" on a boundary or in a well, or storage "
-           "(\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and \"compressibility\" "
-           "of "
-           "the fluid)");
+           "(\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
+           "\"compressibility\" of the fluid)");
   }
 
   /// What flows through a part of the boundary cannot be given where the pressure is.

@@ -28,7 +28,8 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "how often a step that fails is halved before the run ends");
   section.entry(
       tethers, "tethers", "-",
-      "where Newton fails, first tether the sides of fractures to each other, and let them go little by little");
+      "where Newton fails, first tether the sides of fractures to each other, and let them go little by little; "
+      "after three halvings where a fluid and rock move each other");
 }
 
 NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {

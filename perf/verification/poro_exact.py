@@ -1,4 +1,4 @@
-"""Exact solutions of poroelasticity: consolidation of a column, and a plate squeezed between two others.
+"""Exact solutions of poroelasticity: consolidation, undrained states, fractures that a fluid opens, manufactured ones.
 
 SI units; the rock's constants are Lame's, alpha is Biot's coefficient, S the storage at constant strain."""
 from dataclasses import dataclass

@@ -318,6 +318,7 @@ class Scenes(BadInput):
         (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
         self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
+        self.refuse_set(['Time > "scheme": is "BDF2": needs the section "Flow"'], "Time.scheme=BDF2")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
 
     def test_poroelasticity(self):

@@ -290,7 +290,8 @@ class ScalarProblem : public BlockProblem {
     const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
     if (damps.empty() || damps.back() != damping) damps.push_back(damping);
   }
-  bool has_contact = true;
+  bool has_contact = true, storing = false;
+  bool stores() const override { return storing; }
   bool tether(Real stiffness, const BlockVector& x) override {
     tethers.push_back(stiffness);
     anchor_.assign(x[0]->getData().begin(), x[0]->getData().end());

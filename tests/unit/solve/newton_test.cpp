@@ -235,6 +235,37 @@ TEST(TimeStepper, CreepsWhereNewtonFails) {
   EXPECT_EQ(problem.tethers.back(), 0);
 }
 
+TEST(TimeStepper, HalvesThreeTimesBeforeItTethersWhereShorterStepsAreEasier) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
+      [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+  problem.tether_stiffness = 1;
+  problem.storing = true;
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(0);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(report.cuts, 3);
+  EXPECT_EQ(problem.committed_times.front(), 0.125);
+  EXPECT_FALSE(problem.tethers.empty());
+}
+
+/// Directions that are twenty times too long: after the first, steps of 1/16 each make the error a quarter.
+TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
+  for (const bool storing : {false, true}) {
+    ScalarProblem problem(
+        Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; }, [](Real, Real, Real) { return 0.05; });
+    problem.storing = storing;
+    Newton newton(problem, {});
+    auto x = problem.constant(0);
+    const auto report = newton.solve(x);
+    EXPECT_EQ(report.converged, !storing);
+    EXPECT_EQ(report.iterations < 7, storing) << report.iterations;
+  }
+}
+
 /// The same without contact: no iteration is spent on a problem that tethers leave as it is.
 TEST(TimeStepper, DoesNotTetherWhereThereIsNoContact) {
   const auto iterations = [](bool tethers) {
