@@ -63,7 +63,9 @@ class PairInverse : public Operator {
     FK_->apply(rest_K, rest_F, Teuchos::NO_TRANS, -1, 1 / scale_F);
     cycle_->apply(rest_F, y_F);
     S_->apply(y_F, rest_F, Teuchos::NO_TRANS, -1, 1);
-    cycle_->apply(rest_F, y_F, Teuchos::NO_TRANS, 1, 1);
+    MultiVector correction(y_F.getMap(), y_F.getNumVectors());
+    cycle_->apply(rest_F, correction);  // MueLu would not add
+    y_F.update(1, correction, 1);
     MultiVector of_K(*part(x, 1), Teuchos::Copy);
     KF_->apply(y_F, of_K, Teuchos::NO_TRANS, -1, 1 / scale_K);
     y.offsetViewNonConst(joined_->map(0), joined_->first(0))->update(alpha / scale_F, y_F, beta);
