@@ -32,7 +32,8 @@ class TimeStepper {
       : problem_(problem), newton_(newton), options_(options) {}
 
   /// Takes x, the committed state at t, to t_to. Where Newton fails and there is contact the bodies are let go step by
-  /// step, see relax(); where that fails too the substep is halved and x restored; after one that converged it doubles.
+  /// step, see relax(), of a problem that stores from the third halving on; where that fails too the substep is halved
+  /// and x restored; after one that converged it doubles.
   /// Each is committed, and t goes with x: they belong together also where the smallest substep fails, or an evaluation
   /// throws. Collective.
   StepReport advance(BlockVector& x, Real& t, Real t_to);

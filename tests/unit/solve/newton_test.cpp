@@ -215,10 +215,14 @@ TEST(TimeStepper, CutsAndGrowsBack) {
 }
 
 /// A derivative of the wrong sign far from the solution 3, but for the tether's.
-TEST(TimeStepper, CreepsWhereNewtonFails) {
-  ScalarProblem problem(
+ScalarProblem misled() {
+  return ScalarProblem(
       Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
       [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+}
+
+TEST(TimeStepper, CreepsWhereNewtonFails) {
+  auto problem = misled();
   problem.tether_stiffness = 1;
   Newton newton(problem, {});
   TimeStepper stepper(problem, newton, {});
@@ -236,9 +240,7 @@ TEST(TimeStepper, CreepsWhereNewtonFails) {
 }
 
 TEST(TimeStepper, HalvesThreeTimesBeforeItTethersWhereShorterStepsAreEasier) {
-  ScalarProblem problem(
-      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
-      [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+  auto problem = misled();
   problem.tether_stiffness = 1;
   problem.storing = true;
   Newton newton(problem, {});
@@ -269,9 +271,7 @@ TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
 /// The same without contact: no iteration is spent on a problem that tethers leave as it is.
 TEST(TimeStepper, DoesNotTetherWhereThereIsNoContact) {
   const auto iterations = [](bool tethers) {
-    ScalarProblem problem(
-        Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
-        [](Real x, Real, Real) { return std::abs(x - 3) > 1 ? -0.05 : 1; });
+    auto problem = misled();
     problem.has_contact = false;
     Newton newton(problem, {});
     solve::TimeSteppingOptions options;
