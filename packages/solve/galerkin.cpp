@@ -109,14 +109,18 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   return far;
 }
 
-/// to[q] += sum over c < b of a[c] from[c * stride + q], q < m.
-template <int b, int m>
-KOKKOS_INLINE_FUNCTION void add_row(const Real* a, const Real* from, std::size_t stride, Real* to) {
-  Real sum[m];
-  for (int q = 0; q < m; ++q) sum[q] = to[q];
-  for (int c = 0; c < b; ++c)
-    for (int q = 0; q < m; ++q) sum[q] += a[c] * from[c * stride + q];
-  for (int q = 0; q < m; ++q) to[q] = sum[q];
+/// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
+template <int h, int b, int m>
+KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, const Real* Y, std::size_t apart_Y,
+                                           Real* Z, std::size_t apart_Z) {
+  Numbers<m> y[b];
+  for (int c = 0; c < b; ++c) y[c].load(Y + c * apart_Y);
+  for (int r = 0; r < h; ++r) {
+    Numbers<m> z;
+    z.load(Z + r * apart_Z);
+    for (int c = 0; c < b; ++c) z.add(X[r * apart_X + c], y[c]);
+    z.store(Z + r * apart_Z);
+  }
 }
 
 }  // namespace
@@ -367,8 +371,7 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP) const 
             const Real* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
             for (std::size_t s = 0; s < n_p; ++s, ++at)
-              for (int r = 0; r < b; ++r)
-                add_row<b, m>(block + r * n_a * b, from + s * m, n_p * m, row + (r * n + slots(at)) * m);
+              add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + slots(at) * m, n * m);
           }
         });
   });
@@ -395,8 +398,7 @@ void Galerkin::multiply_left(const View<Real*>& AP) const {
             const Real* const from = &AP(b * m * first);
             const Real* const block = &r(b * m * begin + k * b);
             for (std::size_t s = 0; s < n_ap; ++s, ++at)
-              for (int q = 0; q < m; ++q)
-                add_row<b, m>(block + q * n_r * b, from + s * m, n_ap * m, row + (q * n + slots(at)) * m);
+              add_block<m, b, m>(block, n_r * b, from + s * m, n_ap * m, row + slots(at) * m, n * m);
           }
           for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)

@@ -4,8 +4,52 @@
 #include <type_traits>
 
 #include "base/check.hpp"
+#include "base/types.hpp"
 
 namespace sprekk::solve {
+
+/// n numbers that lie together, in vectors of 4, 2 and 1 of them.
+template <int n>
+struct Numbers {
+  static constexpr int here = n >= 4 ? 4 : n >= 2 ? 2 : 1;
+  typedef Real Vector __attribute__((vector_size(here * sizeof(Real)), aligned(alignof(Real)), may_alias));
+
+  Vector head = {};
+  Numbers<n - here> rest;
+
+  KOKKOS_FORCEINLINE_FUNCTION void load(const Real* from) {
+    head = *reinterpret_cast<const Vector*>(from);
+    rest.load(from + here);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void store(Real* to) const {
+    *reinterpret_cast<Vector*>(to) = head;
+    rest.store(to + here);
+  }
+  /// += a x
+  KOKKOS_FORCEINLINE_FUNCTION void add(Real a, const Numbers& x) {
+    head += a * x.head;
+    rest.add(a, x.rest);
+  }
+  /// += x y, number by number.
+  KOKKOS_FORCEINLINE_FUNCTION void add(const Numbers& x, const Numbers& y) {
+    head += x.head * y.head;
+    rest.add(x.rest, y.rest);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION Real sum() const {
+    Real numbers[n], result = 0;
+    store(numbers);
+    for (int k = 0; k < n; ++k) result += numbers[k];
+    return result;
+  }
+};
+
+template <>
+struct Numbers<0> {
+  KOKKOS_FORCEINLINE_FUNCTION void load(const Real*) {}
+  KOKKOS_FORCEINLINE_FUNCTION void store(Real*) const {}
+  KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
+  KOKKOS_FORCEINLINE_FUNCTION void add(const Numbers&, const Numbers&) {}
+};
 
 /// work(height, width) with the sizes of a block as constants of compile time; false if there is no code for them.
 template <class Work>
@@ -23,10 +67,32 @@ bool try_sizes(int height, int width, const Work& work) {
          is(three, six) || is(six, three);
 }
 
-/// The same where there must be code for them.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+/// work() with all that it calls, in instructions on four numbers at a time.
+template <class Work>
+__attribute__((target("avx2,fma"), flatten)) void in_wide_instructions(const Work& work) {
+  work();
+}
+inline bool has_wide_instructions() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+#else
+template <class Work>
+void in_wide_instructions(const Work& work) {
+  work();
+}
+inline bool has_wide_instructions() { return false; }
+#endif
+
+/// The same where there must be code for them; compiled a second time for processors with wider instructions than every
+/// x86-64 has, and run in these where the present one has them.
 template <class Work>
 void with_sizes(int height, int width, const Work& work) {
-  SPREKK_CHECK(try_sizes(height, width, work), "multigrid: no code for blocks of {} x {} numbers", height, width);
+  bool found = false;
+  const auto run = [&] { found = try_sizes(height, width, work); };
+  if (has_wide_instructions())
+    in_wide_instructions(run);
+  else
+    run();
+  SPREKK_CHECK(found, "multigrid: no code for blocks of {} x {} numbers", height, width);
 }
 
 }  // namespace sprekk::solve

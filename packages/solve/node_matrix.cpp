@@ -116,7 +116,6 @@ void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
   graph.columns->exchange(x, A.width);
   with_sizes(A.height, A.width, [&](auto height, auto width) {
     constexpr int h = height(), w = width();
-    constexpr int n_sums = h < 6 && w >= 3 ? 3 : 1;  // of a row, so that an addition need not wait for the one before
     const auto start = graph.start;
     const auto column = graph.column;
     const auto value = A.value;
@@ -125,15 +124,17 @@ void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
           const std::size_t begin = start(i), n = start(i + 1) - begin;
           const Real* row[h];
           for (int r = 0; r < h; ++r) row[r] = &value(w * (h * begin + r * n));
-          Real sums[n_sums][h] = {};
+          Numbers<w> terms[h], from, a;
           for (std::size_t k = 0; k < n; ++k) {
-            const Real* const from = &x(static_cast<std::size_t>(column(begin + k)) * w);
-            for (int r = 0; r < h; ++r)
-              for (int c = 0; c < w; ++c) sums[c % n_sums][r] += row[r][k * w + c] * from[c];
+            from.load(&x(static_cast<std::size_t>(column(begin + k)) * w));
+            for (int r = 0; r < h; ++r) {
+              a.load(row[r] + k * w);
+              terms[r].add(a, from);
+            }
           }
-          for (int k = 1; k < n_sums; ++k)
-            for (int r = 0; r < h; ++r) sums[0][r] += sums[k][r];
-          out(i, sums[0], height);
+          Real sums[h];
+          for (int r = 0; r < h; ++r) sums[r] = terms[r].sum();
+          out(i, sums, height);
         });
   });
 }
