@@ -87,11 +87,11 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
 
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, const JoinedMatrix& smoothed, RCP<const Operator> smoother, bool exact,
+  Cycle(const LinearSystem& system, const JoinedMatrix& rows, RCP<const Operator> smoother, bool exact,
         RCP<const Operator> order_one)
       : A_(system.joined_operator()),
-        rows_(smoothed.rows()),
-        smoothed_map_(smoothed.matrix()->getRowMap()),
+        rows_of_A_(rows.matrix()),
+        rows_(rows.rows()),
         smoother_(smoother),
         exact_(exact),
         order_one_(order_one),
@@ -102,14 +102,16 @@ class Cycle : public Operator {
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
-    MultiVector x(b.getMap(), b.getNumVectors()), r(b.getMap(), b.getNumVectors());
-    if (!exact_) {
+    MultiVector x(b.getMap(), b.getNumVectors());
+    if (exact_) {
+      correct(b, x);
+    } else {
+      MultiVector r(b, Teuchos::Copy);
       smooth(b, x);
-      residual(b, x, r);
+      A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+      correct(r, x);
     }
-    correct(exact_ ? b : r, x);
-    residual(b, x, r);
-    smooth(r, x);
+    smooth(b, x, true);
     y.update(alpha, x, beta);
   }
 
@@ -119,26 +121,22 @@ class Cycle : public Operator {
   }
 
  private:
-  void residual(const MultiVector& b, const MultiVector& x, MultiVector& r) const {
-    A_->apply(x, r);
-    r.update(1, b, -1);
-  }
-
-  /// x += S r.
-  void smooth(const MultiVector& r, MultiVector& x) const {
+  /// x += S (b - A x), of which S reads its rows only; `moved`: x is not zero.
+  void smooth(const MultiVector& b, MultiVector& x, bool moved = false) const {
     using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
-    const auto n = static_cast<LocalIndex>(rows_.extent(0)), n_vectors = static_cast<LocalIndex>(r.getNumVectors());
-    MultiVector from(smoothed_map_, n_vectors), to(smoothed_map_, n_vectors);
+    const auto n = static_cast<LocalIndex>(rows_.extent(0)), n_vectors = static_cast<LocalIndex>(b.getNumVectors());
+    MultiVector r(rows_of_A_->getRangeMap(), n_vectors), z(rows_of_A_->getRangeMap(), n_vectors);
     const auto rows = rows_;
     {
-      const auto all = r.getLocalViewDevice(Tpetra::Access::ReadOnly);
-      const auto some = from.getLocalViewDevice(Tpetra::Access::OverwriteAll);
+      const auto all = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
+      const auto some = r.getLocalViewDevice(Tpetra::Access::OverwriteAll);
       Kokkos::parallel_for(
           "restrict", Policy({0, 0}, {n, n_vectors}),
           KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { some(i, v) = all(rows(i), v); });
     }
-    smoother_->apply(from, to);
-    const auto some = to.getLocalViewDevice(Tpetra::Access::ReadOnly);
+    if (moved) rows_of_A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    smoother_->apply(r, z);
+    const auto some = z.getLocalViewDevice(Tpetra::Access::ReadOnly);
     const auto all = x.getLocalViewDevice(Tpetra::Access::ReadWrite);
     Kokkos::parallel_for(
         "add", Policy({0, 0}, {n, n_vectors}),
@@ -163,8 +161,8 @@ class Cycle : public Operator {
   }
 
   RCP<const Operator> A_;
+  RCP<const CrsMatrix> rows_of_A_;  // those of S
   View<LocalIndex*> rows_;
-  RCP<const Map> smoothed_map_;
   RCP<const Operator> smoother_;
   bool exact_;  // the smoother leaves no residual in its rows
   RCP<const Operator> order_one_;
@@ -199,8 +197,14 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
 
 void FineLevel::setup(const LinearSystem& system, bool keeps) {
   if (!keeps) set_up_order_one(system);
-  if (!smoothed_) smoothed_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks, smoothed_unknowns(system));
+  if (!smoothed_) {
+    const auto chosen = smoothed_unknowns(system);
+    smoothed_ = rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
+    if (!chosen.empty())
+      rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen, JoinedMatrix::Columns::all);
+  }
   smoothed_->update();
+  if (rows_ != smoothed_) rows_->update();
   const auto& P = system.diagonal.front().block.interpolation;
   RCP<const Operator> smoother;
   if (P.is_null()) {
@@ -210,7 +214,7 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   } else {
     smoother = gauss_seidel(smoothed_->matrix());
   }
-  cycle_ = rcp(new Cycle(system, *smoothed_, smoother, P.is_null(), order_one_->inverse()));
+  cycle_ = rcp(new Cycle(system, *rows_, smoother, P.is_null(), order_one_->inverse()));
 }
 
 RCP<const Operator> FineLevel::inverse() const { return cycle_; }

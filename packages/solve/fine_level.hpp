@@ -34,8 +34,9 @@ class FineLevel {
 
   RCP<BlockSolver> order_one_;
   RCP<CrsMatrix> product_;                  // P^T A P
-  std::unique_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
-  RCP<DirectInverse> direct_;               // their inverse, of blocks that enrich
+  std::shared_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
+  std::shared_ptr<JoinedMatrix> rows_;      // the rows of S with all columns
+  RCP<DirectInverse> direct_;               // the inverse of the former, of blocks that enrich
   RCP<const Cycle> cycle_;
 };
 

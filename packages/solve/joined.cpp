@@ -116,7 +116,8 @@ RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined
   return rcp(new JoinedOperator(std::move(joined), std::move(blocks)));
 }
 
-JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<Vector>> chosen)
+JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<Vector>> chosen,
+                           Columns columns)
     : joined_(std::move(joined)), blocks_(std::move(blocks)) {
   if (chosen.empty() && joined_->n_blocks() == 1) {
     matrix_ = blocks_.front();
@@ -130,11 +131,11 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, 
       chosen.push_back(rcp(new Vector(joined_->map(r))));
       chosen.back()->putScalar(1);
     }
-  create(chosen);
+  create(chosen, columns);
   find_entries();
 }
 
-void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
+void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which) {
   const int n = joined_->n_blocks();
   std::vector<std::vector<char>> taken(n * n);  // [r * n + s][column]
   for (int k = 0; k < n * n; ++k)
@@ -154,7 +155,7 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
         if (block.is_null()) continue;
         const auto graph = block->getLocalMatrixHost().graph;
         for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k)
-          if (taken[r * n + s][graph.entries(k)])
+          if (which == Columns::all || taken[r * n + s][graph.entries(k)])
             columns.back().push_back(joined_->offset(s) + block->getColMap()->getGlobalElement(graph.entries(k)));
       }
     }
@@ -169,7 +170,7 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
     zeros.assign(columns[i].size(), 0);
     own_->insertGlobalValues(unknowns[i], static_cast<LocalIndex>(columns[i].size()), zeros.data(), columns[i].data());
   }
-  own_->fillComplete(map, map);
+  own_->fillComplete(which == Columns::all ? joined_->map() : RCP<const Map>(map), map);
   rows_ = on_device("rows", rows);
 }
 

@@ -46,12 +46,15 @@ using Blocks = std::vector<RCP<const fields::CrsMatrix>>;
 /// S A S without storing it; of a single block, A itself.
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks);
 
-/// S A S as one matrix, or the part of it that rows and columns of chosen unknowns make; of a single block, all chosen,
-/// A itself. Collective.
+/// S A S as one matrix, or the part of it that rows of chosen unknowns make, with their columns or all; of a single
+/// block, all chosen, A itself. Collective.
 class JoinedMatrix {
  public:
+  enum class Columns { chosen, all };
+
   /// `chosen` [r](owned unknown of the block): 1 for those to take, else 0; empty: all.
-  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<fields::Vector>> chosen = {});
+  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<fields::Vector>> chosen = {},
+               Columns columns = Columns::chosen);
 
   /// Takes over the present values of the blocks, and the scales.
   void update();
@@ -61,7 +64,7 @@ class JoinedMatrix {
   const View<LocalIndex*>& rows() const { return rows_; }
 
  private:
-  void create(const std::vector<RCP<fields::Vector>>& chosen);
+  void create(const std::vector<RCP<fields::Vector>>& chosen, Columns columns);
   void find_entries();
 
   std::shared_ptr<const Joined> joined_;
