@@ -1,8 +1,10 @@
 #include "solve/chebyshev.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_LAPACK.hpp>
 
 #include <cmath>
+#include <vector>
 
 #include "solve/node_kernels.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 using Policy = Kokkos::RangePolicy<Execution>;
 
 constexpr Real smallest_over_largest = 1.0 / 15, margin = 1.1;  // estimates of the largest come from below
-constexpr int n_powers = 20;  // a few cells unlike all others, as those at crack tips, take more than the usual 10
+constexpr int n_steps = 10;                                     // of Lanczos' method
 
 constexpr int padded(int size) { return (size + 3) / 4 * 4; }
 
@@ -29,7 +31,7 @@ KOKKOS_INLINE_FUNCTION Real scattered(unsigned long long i) {
 template <int b, class Out>
 void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const View<Real*>& x, const Out& out) {
   constexpr int lanes = padded(b);
-  constexpr int n_sums = b < 6 ? b : 1;  // of a row, so that an addition need not wait for the one before
+  constexpr int n_sums = b < 6 ? b : 3;  // of a row, so that an addition need not wait for the one before
   graph.columns->exchange(x, b);
   const auto start = graph.start;
   const auto column = graph.column;
@@ -95,38 +97,54 @@ void Chebyshev::update(const NodeMatrix& A) {
   find_largest_eigenvalue();
 }
 
-/// The power method, from the same vector whatever was set up before.
+/// Lanczos' method, from the same vector whatever was set up before. Of a matrix that is not quite symmetric it finds
+/// about the largest eigenvalue, too.
 void Chebyshev::find_largest_eigenvalue() {
-  const auto x = x_, next = next_;
+  const auto x = x_, next = next_, last = step_;
   const auto& halo = *graph_.columns;
   const auto nodes = halo.owned()->getLocalMap();
   const int b = size_;
   const Policy rows(0, halo.n_owned() * b);
   Kokkos::parallel_for(
-      "start", rows, KOKKOS_LAMBDA(LocalIndex i) { x(i) = scattered(nodes.getGlobalElement(i / b) * b + i % b); });
-  for (int power = 0; power < n_powers; ++power) {
+      "start", rows, KOKKOS_LAMBDA(LocalIndex i) {
+        next(i) = scattered(nodes.getGlobalElement(i / b) * b + i % b);
+        x(i) = 0;
+      });
+  std::vector<Real> diagonal, beside;  // of the tridiagonal matrix
+  for (int k = 0; k < n_steps; ++k) {
+    const Real length = std::sqrt(dot(next, next));
+    if (!(length > 0)) break;
+    if (k > 0) beside.push_back(length);
+    Kokkos::parallel_for(
+        "next", rows, KOKKOS_LAMBDA(LocalIndex i) {
+          last(i) = x(i);
+          x(i) = next(i) / length;
+        });
     with_sizes(b, b, [&](auto size, auto) {
       constexpr int m = size();
       for_scaled_rows<m>(graph_, value_, x, [next](LocalIndex i, const Real* sum) {
         for (int r = 0; r < m; ++r) next(i * m + r) = sum[r];
       });
     });
-    const Real before = square(x), after = square(next);
-    if (!(after > 0)) break;
-    largest_ = std::sqrt(after / before);
-    const Real factor = 1 / std::sqrt(after);
+    const Real along = dot(x, next), back = k > 0 ? length : 0;
+    diagonal.push_back(along);
     Kokkos::parallel_for(
-        "normalise", rows, KOKKOS_LAMBDA(LocalIndex i) { x(i) = factor * next(i); });
+        "orthogonal", rows, KOKKOS_LAMBDA(LocalIndex i) { next(i) -= along * x(i) + back * last(i); });
   }
+  if (diagonal.empty()) return;
+  beside.resize(diagonal.size());
+  int info = 0;
+  Teuchos::LAPACK<int, Real>().STEQR('N', static_cast<int>(diagonal.size()), diagonal.data(), beside.data(), nullptr, 1,
+                                     nullptr, &info);
+  largest_ = std::fmax(-diagonal.front(), diagonal.back());
 }
 
 /// Over all owned nodes.
-Real Chebyshev::square(const View<Real*>& x) const {
+Real Chebyshev::dot(const View<Real*>& x, const View<Real*>& y) const {
   const auto& halo = *graph_.columns;
   Real here = 0, all = 0;
   Kokkos::parallel_reduce(
-      "square", Policy(0, halo.n_owned() * size_), KOKKOS_LAMBDA(LocalIndex i, Real & sum) { sum += x(i) * x(i); },
-      here);
+      "dot", Policy(0, halo.n_owned() * size_), KOKKOS_LAMBDA(LocalIndex i, Real & sum) { sum += x(i) * y(i); }, here);
   Teuchos::reduceAll(*halo.owned()->getComm(), Teuchos::REDUCE_SUM, 1, &here, &all);
   return all;
 }

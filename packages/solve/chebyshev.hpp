@@ -31,7 +31,7 @@ class Chebyshev {
 
  private:
   void find_largest_eigenvalue();
-  Real square(const View<Real*>& x) const;
+  Real dot(const View<Real*>& x, const View<Real*>& y) const;
 
   int size_;
   NodeGraph graph_;
