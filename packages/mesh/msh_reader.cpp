@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -224,22 +225,34 @@ class Builder {
   /// one has nodes in the middle of the other's faces. Candidates are found along an oblique direction.
   void check_free(const std::vector<GlobalIndex>& faces) const {
     const Vector along{0.6127, 0.5431, 0.5741};  // along no axis, in which many faces would be level
-    std::vector<std::pair<Real, GlobalIndex>> centres;
-    for (GlobalIndex face : faces) centres.emplace_back(dot(along, centre(face)), face);
-    std::sort(centres.begin(), centres.end());
+    const int n = n_faces(mesh_.shape);
+    struct Centre {
+      Real along;
+      GlobalIndex face;
+      Vector x;
+    };
+    std::vector<Centre> centres;
+    for (GlobalIndex face : faces) {
+      const auto x = centre(face);
+      centres.push_back({dot(along, x), face, x});
+    }
+    std::sort(centres.begin(), centres.end(),
+              [](const auto& a, const auto& b) { return std::tie(a.along, a.face) < std::tie(b.along, b.face); });
     for (GlobalIndex face : faces) {
       const auto corners = corner_points(face);
+      const Vector middle = centre(face), area = area_vector(mesh_, face / n, static_cast<int>(face % n));
+      const Vector normal = (1 / norm(area)) * area;
       Real lowest = dot(along, corners[0]), highest = lowest;
       for (const auto& x : corners)
         lowest = std::min(lowest, dot(along, x)), highest = std::max(highest, dot(along, x));
-      auto other = std::lower_bound(centres.begin(), centres.end(), std::pair(lowest - 1e-8 * size_, GlobalIndex{-1}));
-      for (; other != centres.end() && other->first <= highest + 1e-8 * size_; ++other) {
-        const Vector x = centre(other->second);
-        if (other->second == face || !lies_on(face, corners, x)) continue;
+      auto other = std::lower_bound(centres.begin(), centres.end(), lowest - 1e-8 * size_,
+                                    [](const Centre& a, Real value) { return a.along < value; });
+      for (; other != centres.end() && other->along <= highest + 1e-8 * size_; ++other) {
+        if (other->face == face || !lies_on(corners, middle, normal, other->x)) continue;
         fail(
             "elements {} and {} touch at {} without sharing nodes; join them (gmsh: Coherence, BooleanFragments), also "
             "where a fracture is to be, as Sprekk opens it",
-            cell_at(std::min(face, other->second)).tag, cell_at(std::max(face, other->second)).tag, text(x));
+            cell_at(std::min(face, other->face)).tag, cell_at(std::max(face, other->face)).tag, text(other->x));
       }
     }
   }
@@ -252,12 +265,10 @@ class Builder {
     return points;
   }
 
-  /// Whether x lies on a face, its edges included.
-  bool lies_on(GlobalIndex face, const std::vector<Vector>& corners, const Vector& x) const {
+  /// Whether x lies on the face with these corners, its edges included.
+  bool lies_on(const std::vector<Vector>& corners, const Vector& middle, const Vector& normal, const Vector& x) const {
     const Real tolerance = 1e-8 * size_;
-    const Vector area = area_vector(mesh_, face / n_faces(mesh_.shape), static_cast<int>(face % n_faces(mesh_.shape)));
-    const Vector normal = (1 / norm(area)) * area;
-    if (std::abs(dot(normal, x - centre(face))) > tolerance) return false;
+    if (std::abs(dot(normal, x - middle)) > tolerance) return false;
     const std::size_t n = corners.size();
     for (std::size_t k = 0; k < n; ++k) {
       const Vector edge = corners[(k + 1) % n] - corners[k], from = x - corners[k];
