@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/node_kernels.hpp"
 
@@ -20,20 +21,28 @@ struct Rows {
   View<Node*> node;
 };
 
-/// fill(i, set) adds to the empty set of row i, perhaps several times the same.
-template <class Node, class Fill>
-Rows<Node> make_rows(LocalIndex n, const Fill& fill) {
-  std::vector<Node> all, set;
-  Rows<Node> rows{View<std::size_t*>("start", n + 1), {}};
+/// name(i, add) hands the nodes of row i to add, perhaps several times the same; all are below n_columns.
+template <class Name>
+Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name) {
+  std::vector<LocalIndex> all, last_row(n_columns, -1);
+  Rows<LocalIndex> rows{View<std::size_t*>("start", n + 1), {}};
   for (LocalIndex i = 0; i < n; ++i) {
-    set.clear();
-    fill(i, set);
-    std::sort(set.begin(), set.end());
-    all.insert(all.end(), set.begin(), std::unique(set.begin(), set.end()));
+    name(i, [&](LocalIndex node) {
+      if (std::exchange(last_row[node], i) != i) all.push_back(node);
+    });
+    std::sort(all.begin() + rows.start(i), all.end());
     rows.start(i + 1) = all.size();
   }
-  rows.node = View<Node*>("node", all.size());
+  rows.node = View<LocalIndex*>("node", all.size());
   std::copy(all.begin(), all.end(), rows.node.data());
+  return rows;
+}
+
+Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const Map& map) {
+  Rows<GlobalIndex> rows{local.start, View<GlobalIndex*>("node", local.node.extent(0))};
+  for (std::size_t k = 0; k < local.node.extent(0); ++k) rows.node(k) = map.getGlobalElement(local.node(k));
+  for (std::size_t i = 0; i + 1 < local.start.extent(0); ++i)
+    std::sort(rows.node.data() + rows.start(i), rows.node.data() + rows.start(i + 1));
   return rows;
 }
 
@@ -51,19 +60,19 @@ Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo) 
   return all;
 }
 
-/// Owned coarse nodes, then all others that the rows name. Collective.
-std::shared_ptr<const Halo> coarse_halo(const RCP<const Map>& owned, const std::vector<Rows<GlobalIndex>>& named) {
+/// Owned coarse nodes, then all others that are named; -1 is none. Collective.
+RCP<const Map> with_named(const RCP<const Map>& owned, const std::vector<View<GlobalIndex*>>& named) {
   std::vector<GlobalIndex> others;
-  for (const auto& rows : named)
-    for (std::size_t k = 0; k < rows.node.extent(0); ++k)
-      if (!owned->isNodeGlobalElement(rows.node(k))) others.push_back(rows.node(k));
+  for (const auto& nodes : named)
+    for (std::size_t k = 0; k < nodes.extent(0); ++k)
+      if (nodes(k) >= 0 && !owned->isNodeGlobalElement(nodes(k))) others.push_back(nodes(k));
   std::sort(others.begin(), others.end());
   others.erase(std::unique(others.begin(), others.end()), others.end());
   const auto mine = owned->getNodeElementList();
   std::vector<GlobalIndex> all(mine.begin(), mine.end());
   all.insert(all.end(), others.begin(), others.end());
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return std::make_shared<Halo>(owned, rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, owned->getComm())));
+  return rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, owned->getComm()));
 }
 
 View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
@@ -72,22 +81,24 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
   return local;
 }
 
-/// Where a node is in a sorted row; nowhere if it is not.
-template <class Node>
-std::uint16_t slot_in(const Rows<Node>& rows, LocalIndex row, Node node) {
-  const auto begin = rows.node.data() + rows.start(row), end = rows.node.data() + rows.start(row + 1);
-  const auto at = std::lower_bound(begin, end, node);
-  if (at == end || *at != node) return nowhere;
-  SPREKK_CHECK(at - begin < out_of_reach - 1, "multigrid: a node couples to {} others; allowed are less than {}",
-               end - begin, out_of_reach - 1);
-  return static_cast<std::uint16_t>(at - begin);
-}
+/// Where columns are in the row that was entered last; nowhere if they are not.
+class Places {
+ public:
+  explicit Places(LocalIndex n_columns) : slot_(n_columns, nowhere) {}
 
-View<std::uint16_t*> to_view(const std::vector<std::uint16_t>& from) {
-  const View<std::uint16_t*> view("slots", from.size());
-  std::copy(from.begin(), from.end(), view.data());
-  return view;
-}
+  void enter(const View<std::size_t*>& start, const View<LocalIndex*>& column, LocalIndex row) {
+    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = nowhere;
+    begin_ = start(row), end_ = start(row + 1);
+    SPREKK_CHECK(end_ - begin_ < out_of_reach, "multigrid: a node couples to {} others; allowed are less than {}",
+                 end_ - begin_, out_of_reach);
+    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = static_cast<std::uint16_t>(k - begin_);
+  }
+  std::uint16_t operator[](LocalIndex column) const { return slot_[column]; }
+
+ private:
+  std::vector<std::uint16_t> slot_;
+  std::size_t begin_ = 0, end_ = 0;
+};
 
 /// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
@@ -146,24 +157,30 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   const auto entries = [&](LocalIndex i, const auto& work) {
     for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e) work(fine_.column(e), e);
   };
-  const auto P = with_ghosts(make_rows<GlobalIndex>(n_owned,
-                                                    [&](LocalIndex i, auto& set) {
-                                                      if (aggregate(i) < 0) return;
-                                                      entries(i, [&](LocalIndex j, std::size_t e) {
-                                                        if (aggregate(j) >= 0 && !far[e]) set.push_back(aggregate(j));
-                                                      });
-                                                    }),
+  const auto nearby = with_named(coarse_map, {aggregate});
+  const auto aggregate_nearby = to_local(aggregate, *nearby);
+  const auto P = with_ghosts(to_global(make_rows(n_owned, nearby->getNodeNumElements(),
+                                                 [&](LocalIndex i, const auto& add) {
+                                                   if (aggregate(i) < 0) return;
+                                                   entries(i, [&](LocalIndex j, std::size_t e) {
+                                                     if (aggregate(j) >= 0 && !far[e]) add(aggregate_nearby(j));
+                                                   });
+                                                 }),
+                                       *nearby),
                              halo);
-  const auto AP = with_ghosts(make_rows<GlobalIndex>(n_owned,
-                                                     [&](LocalIndex i, auto& set) {
-                                                       if (aggregate(i) < 0) return;
-                                                       entries(i, [&](LocalIndex j, std::size_t) {
-                                                         set.insert(set.end(), P.node.data() + P.start(j),
-                                                                    P.node.data() + P.start(j + 1));
-                                                       });
-                                                     }),
+  const auto reached = with_named(coarse_map, {P.node});
+  const auto column_P_reached = to_local(P.node, *reached);
+  const auto AP = with_ghosts(to_global(make_rows(n_owned, reached->getNodeNumElements(),
+                                                  [&](LocalIndex i, const auto& add) {
+                                                    if (aggregate(i) < 0) return;
+                                                    entries(i, [&](LocalIndex j, std::size_t) {
+                                                      for (std::size_t s = P.start(j); s < P.start(j + 1); ++s)
+                                                        add(column_P_reached(s));
+                                                    });
+                                                  }),
+                                        *reached),
                               halo);
-  const auto coarse = coarse_halo(coarse_map, {P, AP});
+  const auto coarse = std::make_shared<Halo>(coarse_map, with_named(coarse_map, {P.node, AP.node}));
   const auto aggregate_here = to_local(aggregate, *coarse->all());
   start_P_all_ = P.start;
   column_P_all_ = to_local(P.node, *coarse->all());
@@ -177,54 +194,16 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
       row_of[e] = k;
       if (column_P_all_(e) < n_coarse) in_row[column_P_all_(e)].push_back(e);
     }
-  const auto R = make_rows<LocalIndex>(n_coarse, [&](LocalIndex I, auto& set) {
-    for (const std::size_t e : in_row[I]) set.push_back(row_of[e]);
+  const auto R = make_rows(n_coarse, n_all, [&](LocalIndex I, const auto& add) {
+    for (const std::size_t e : in_row[I]) add(row_of[e]);
   });
   transposed_ = View<std::size_t*>("transposed", R.node.extent(0));
   for (LocalIndex I = 0; I < n_coarse; ++I)
     std::copy(in_row[I].begin(), in_row[I].end(), transposed_.data() + R.start(I));
-  const auto C = make_rows<LocalIndex>(n_coarse, [&](LocalIndex I, auto& set) {
+  const auto C = make_rows(n_coarse, coarse->n_all(), [&](LocalIndex I, const auto& add) {
     for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
-      set.insert(set.end(), column_AP.data() + AP.start(R.node(e)), column_AP.data() + AP.start(R.node(e) + 1));
+      for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s) add(column_AP(s));
   });
-
-  base::collectively(*halo.owned()->getComm(), [&] {
-    slot_P_ = Slots("slots of P", fine_.n_entries());
-    slot_R_ = Slots("slots of R", fine_.n_entries());
-    first_slot_AP_ = View<std::size_t*>("first slots of A P", n_owned + 1);
-    std::vector<Slot> slots;
-    for (LocalIndex i = 0; i < n_owned; ++i) {
-      const bool free = aggregate(i) >= 0;
-      entries(i, [&](LocalIndex j, std::size_t e) {
-        const bool both = free && aggregate(j) >= 0;
-        const Slot mark = far[e] ? out_of_reach : 0;
-        const LocalIndex to = far[e] ? i : j;
-        slot_P_(e) = both ? slot_in(P, i, aggregate(to)) | mark : nowhere;
-        slot_R_(e) = both ? slot_in(R, aggregate_here(i), to) | mark : nowhere;
-        for (std::size_t s = P.start(j); free && s < P.start(j + 1); ++s) slots.push_back(slot_in(AP, i, P.node(s)));
-      });
-      first_slot_AP_(i + 1) = slots.size();
-    }
-    slot_AP_ = to_view(slots);
-    slots.clear();
-    first_slot_coarse_ = View<std::size_t*>("first slots", n_coarse + 1);
-    for (LocalIndex I = 0; I < n_coarse; ++I) {
-      for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
-        for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s)
-          slots.push_back(slot_in(C, I, column_AP(s)));
-      first_slot_coarse_(I + 1) = slots.size();
-    }
-    slot_coarse_ = to_view(slots);
-  });
-
-  first_member_ = View<std::size_t*>("first members", n_coarse + 1);
-  for (const LocalIndex I : aggregates.of)
-    if (I >= 0) ++first_member_(I + 1);
-  for (LocalIndex I = 0; I < n_coarse; ++I) first_member_(I + 1) += first_member_(I);
-  member_ = View<LocalIndex*>("members", first_member_(n_coarse));
-  std::vector<std::size_t> next(first_member_.data(), first_member_.data() + n_coarse);
-  for (LocalIndex i = 0; i < n_owned; ++i)
-    if (aggregates.of[i] >= 0) member_(next[aggregates.of[i]]++) = i;
 
   const auto values = [](std::size_t n) {
     return View<Real*>(Kokkos::view_alloc("value", Kokkos::WithoutInitializing), n);
@@ -241,6 +220,84 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
              n_modes,
              {coarse, C.start, C.node},
              values(static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
+  find_members(aggregates);
+  base::collectively(*halo.owned()->getComm(), [&] {
+    find_slots_of_fine_rows(far, aggregate_here, column_AP);
+    find_slots_of_coarse_rows(far, aggregate_here, column_AP);
+  });
+}
+
+void Galerkin::find_members(const Aggregates& aggregates) {
+  const LocalIndex n_owned = fine_.n_rows(), n_coarse = aggregates.n;
+  first_member_ = View<std::size_t*>("first members", n_coarse + 1);
+  for (const LocalIndex I : aggregates.of)
+    if (I >= 0) ++first_member_(I + 1);
+  for (LocalIndex I = 0; I < n_coarse; ++I) first_member_(I + 1) += first_member_(I);
+  member_ = View<LocalIndex*>("members", first_member_(n_coarse));
+  std::vector<std::size_t> next(first_member_.data(), first_member_.data() + n_coarse);
+  for (LocalIndex i = 0; i < n_owned; ++i)
+    if (aggregates.of[i] >= 0) member_(next[aggregates.of[i]]++) = i;
+}
+
+/// Of P and A P.
+void Galerkin::find_slots_of_fine_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
+                                       const View<LocalIndex*>& column_AP) {
+  const auto start_P = start_P_all_;
+  const LocalIndex n_owned = fine_.n_rows();
+  slot_P_ = Slots("slots of P", fine_.n_entries());
+  first_slot_AP_ = View<std::size_t*>("first slots of A P", n_owned + 1);
+  for (LocalIndex i = 0; i < n_owned; ++i) {
+    std::size_t n = 0;
+    for (std::size_t e = fine_.start(i); aggregate(i) >= 0 && e < fine_.start(i + 1); ++e)
+      n += start_P(fine_.column(e) + 1) - start_P(fine_.column(e));
+    first_slot_AP_(i + 1) = first_slot_AP_(i) + n;
+  }
+  slot_AP_ = Slots("slots of A P", first_slot_AP_(n_owned));
+  const LocalIndex n_columns = P_.graph.columns->n_all();
+  Places in_P(n_columns), in_AP(n_columns);
+  for (LocalIndex i = 0; i < n_owned; ++i) {
+    std::size_t at = first_slot_AP_(i);
+    in_P.enter(start_P, column_P_all_, i);
+    in_AP.enter(start_AP_all_, column_AP, i);
+    for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e) {
+      const LocalIndex j = fine_.column(e);
+      const bool both = aggregate(i) >= 0 && aggregate(j) >= 0;
+      slot_P_(e) = !both ? nowhere : far[e] ? in_P[aggregate(i)] | out_of_reach : in_P[aggregate(j)];
+      for (std::size_t s = start_P(j); aggregate(i) >= 0 && s < start_P(j + 1); ++s)
+        slot_AP_(at++) = in_AP[column_P_all_(s)];
+    }
+  }
+}
+
+/// Of R and R A P.
+void Galerkin::find_slots_of_coarse_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
+                                         const View<LocalIndex*>& column_AP) {
+  const auto &start_AP = start_AP_all_, &start_R = R_.graph.start;
+  const LocalIndex n_coarse = R_.graph.n_rows();
+  slot_R_ = Slots("slots of R", fine_.n_entries());
+  Kokkos::deep_copy(slot_R_, nowhere);
+  first_slot_coarse_ = View<std::size_t*>("first slots", n_coarse + 1);
+  for (LocalIndex I = 0; I < n_coarse; ++I) {
+    first_slot_coarse_(I + 1) = first_slot_coarse_(I);
+    for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
+      first_slot_coarse_(I + 1) += start_AP(R_.graph.column(e) + 1) - start_AP(R_.graph.column(e));
+  }
+  slot_coarse_ = Slots("slots of R A P", first_slot_coarse_(n_coarse));
+  Places in_R(fine_.columns->n_all()), in_coarse(coarse_.graph.columns->n_all());
+  for (LocalIndex I = 0; I < n_coarse; ++I) {
+    in_R.enter(start_R, R_.graph.column, I);
+    for (std::size_t at = first_member_(I); at < first_member_(I + 1); ++at) {
+      const LocalIndex i = member_(at);
+      for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e)
+        if (const LocalIndex j = fine_.column(e); aggregate(j) >= 0)
+          slot_R_(e) = far[e] ? in_R[i] | out_of_reach : in_R[j];
+    }
+    in_coarse.enter(coarse_.graph.start, coarse_.graph.column, I);
+    std::size_t at = first_slot_coarse_(I);
+    for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
+      for (std::size_t s = start_AP(R_.graph.column(e)); s < start_AP(R_.graph.column(e) + 1); ++s)
+        slot_coarse_(at++) = in_coarse[column_AP(s)];
+  }
 }
 
 void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric) {

@@ -29,6 +29,11 @@ class Galerkin {
   using Slot = std::uint16_t;  // a place in a row; in slot_P_ and slot_R_ perhaps marked as out of reach
   using Slots = View<Slot*>;
 
+  void find_members(const Aggregates& aggregates);
+  void find_slots_of_fine_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
+                               const View<LocalIndex*>& column_AP);
+  void find_slots_of_coarse_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
+                                 const View<LocalIndex*>& column_AP);
   void smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
   void restrict_symmetric() const;
   void restrict_general(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
