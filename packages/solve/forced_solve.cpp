@@ -5,7 +5,7 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real first_accuracy = 1e-4, next_accuracy = 1e-2;
+constexpr Real first_accuracy = 1e-4, next_accuracy = 1e-2, safety = 1e-2;
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);
@@ -40,14 +40,24 @@ std::size_t ForcedSolve::states_after(const BlockVector& dx) const {
   return problem_.state_hash(problem_.states(x));
 }
 
+Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
+  Real error = 0;
+  for (const auto& measure : problem_.measures(x_, b)) error = std::max(error, measure.value);
+  const Real ratio = error_ > 0 ? error / error_ : 0;
+  error_ = error;
+  return safety * ratio * ratio;
+}
+
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
-  Real asked = solve_.forcing() ? std::max(first_accuracy, tolerance) : tolerance;
+  if (!solve_.forcing()) return solve_.solve(b, dx, tolerance);
+  const Real settled = std::max(tolerance, std::min(next_accuracy * first_accuracy, accuracy_without_change(b)));
+  Real asked = std::max(first_accuracy, tolerance);
   auto report = solve_.solve(b, dx, asked);
   if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
   const auto before = problem_.state_hash(problem_.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
   for (auto states = states_after(dx); report.converged && report.residual > tolerance && asked > tolerance;) {
-    asked = states == before ? tolerance : std::max(next_accuracy * asked, tolerance);
+    asked = states == before ? settled : std::max(next_accuracy * asked, tolerance);
     apply(dx, r);
     for (std::size_t i = 0; i < r.size(); ++i) r[i]->update(1, *b[i], -1);
     const auto more = solve_.solve(r, correction, asked / report.residual);
@@ -57,7 +67,7 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
     report.reason = more.reason;
     if (more.converged) add(1, correction, dx);
     const auto refined = states_after(dx);
-    if (refined == states && refined != before) break;
+    if (refined == states) break;
     states = refined;
   }
   return report;

@@ -17,9 +17,10 @@ void LinearSolverOptions::describe(base::Section& section) {
   section.choice(type, "type", {"auto", "direct", "iterative"},
                  "direct: MUMPS; iterative: Belos with multigrid; auto: direct up to the limits below");
   section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
-  section.entry(forcing, "forcing", "-",
-                "iterative: end a solve early while faces change state, once two accuracies a hundred times apart lead "
-                "to the same states");
+  section.entry(
+      forcing, "forcing", "-",
+      "iterative: end a solve early, while faces change state once two accuracies a hundred times apart lead to "
+      "the same states, and after that where Newton's method gains nothing from more");
   section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
   section.entry(reproducible, "reproducible", "-",

@@ -23,7 +23,10 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
   /// What linear solves say since the last clear.
   using LinearHistory = std::vector<LinearReport>;
   const LinearHistory& linear_history() const { return *history_; }
-  void clear_history() { history_->clear(); }
+  void clear_history() {
+    history_->clear();
+    solve_.start();
+  }
 
   /// dx <- -W^-1 f with the Jacobian at x, evaluated anew. False if the solve failed; the history says why.
   bool direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const;

@@ -73,7 +73,8 @@ TEST(LinearSolvers, OrderTwoFollowsContact) {
   ASSERT_TRUE(r.report.converged) << r.report.reason;
 }
 
-/// Early ends of linear solves save iterations, and change neither the answer nor the number of Newton steps by much.
+/// Early ends of linear solves save iterations, while faces change state and after, and change neither the answer nor
+/// the number of Newton steps by much.
 TEST(LinearSolvers, ForcingSavesIterations) {
   std::vector<std::string> overrides = {"Solver.Linear solver.type=iterative", "Mesh.tips=plain",
                                         "Materials.joint.friction coefficient=0.05",
@@ -85,7 +86,8 @@ TEST(LinearSolvers, ForcingSavesIterations) {
   EXPECT_GT(exact.report.newton_iterations, 4);  // faces do change state
   EXPECT_LE(forced.report.newton_iterations, exact.report.newton_iterations + 2);
   for (const int block : {0, 2}) EXPECT_LT(difference_of(exact, forced, block), 1e-8);
-  EXPECT_LT(solve::iterations(forced.report.linear_solves), 0.8 * solve::iterations(exact.report.linear_solves));
+  EXPECT_LT(solve::iterations(forced.report.linear_solves), 0.65 * solve::iterations(exact.report.linear_solves));
+  EXPECT_GT(forced.report.linear_solves.back().residual, 1e-11);
   for (const auto& linear : exact.report.linear_solves) EXPECT_LT(linear.residual, 1e-10);
 }
 
