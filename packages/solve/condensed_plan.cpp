@@ -9,9 +9,9 @@ namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;
 
-LocalIndices to_host(const View<LocalIndex*>& from) {
-  const auto mirror = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), from);
-  return LocalIndices(mirror.data(), mirror.data() + mirror.extent(0));
+template <class T>
+auto to_host(const View<T*>& from) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), from);
 }
 
 class CondensedPlanner {
@@ -30,7 +30,7 @@ class CondensedPlanner {
     const auto columns = find_columns(a, b, products);
     for (auto& product : products)
       for (std::size_t c = 0; c < product.column.size(); ++c)
-        if (product.column[c] == 0) product.column[c] = columns->getLocalElement(product.response->column[c]);
+        if (product.column[c] == 0) product.column[c] = columns->getLocalElement(product.global(c));
     LocalIndices of_matrix;  // [column of A_ab]
     if (!matrix(a, b).is_null())
       for (auto column : matrix(a, b)->getColMap()->getNodeElementList())
@@ -53,14 +53,16 @@ class CondensedPlanner {
 
   /// What couples rows of block a with columns of block b: A_ab, and the products of each group, on the host.
   struct Products {
-    const Response* response;
-    LocalIndices start, row_start, slot;  // of columns, pairs and slots, as in Response and Coupling
-    LocalIndices column;                  // [as response->column] column of J_ab, -1 where no row here needs it
+    using Indices = decltype(to_host(View<LocalIndex*>()));
+    decltype(to_host(View<std::size_t*>())) start;   // as in Response
+    decltype(to_host(View<GlobalIndex*>())) global;  // its columns
+    Indices row_start, slot;                         // as in Coupling
+    LocalIndices column;                             // [as global] column of J_ab, -1 where no row here needs it
 
     template <class Visit>
     void for_columns(LocalIndex row, const Visit& visit) const {
-      for (LocalIndex pair = row_start[row]; pair < row_start[row + 1]; ++pair)
-        for (LocalIndex c = start[slot[pair]]; c < start[slot[pair] + 1]; ++c) visit(c);
+      for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair)
+        for (std::size_t c = start(slot(pair)); c < start(slot(pair) + 1); ++c) visit(c);
     }
   };
 
@@ -69,8 +71,8 @@ class CondensedPlanner {
     for (const auto& group : plan_.groups) {
       const auto& response = group.response[index(b)];
       const auto& coupling = group.coupling[index(a)];
-      all.push_back({&response, to_host(response.column_start), to_host(coupling.row_start), to_host(coupling.slot),
-                     LocalIndices(response.column.size(), -1)});
+      all.push_back({to_host(response.column_start), to_host(response.column), to_host(coupling.row_start),
+                     to_host(coupling.slot), LocalIndices(response.column.extent(0), -1)});
     }
     return all;
   }
@@ -91,7 +93,7 @@ class CondensedPlanner {
     for (auto& product : products)
       for (LocalIndex slot : product.slot)
         for (LocalIndex c = product.start[slot]; c < product.start[slot + 1] && product.column[c] != 0; ++c) {
-          add(product.response->column[c]);
+          add(product.global(c));
           product.column[c] = 0;
         }
     std::sort(others.begin(), others.end());
@@ -126,7 +128,7 @@ class CondensedPlanner {
       if (!matrix(a, b).is_null())
         for (auto k = of_bulk.row_map(row); k < of_bulk.row_map(row + 1); ++k) meet(of_matrix[of_bulk.entries(k)]);
       if (a == b) meet(columns->getLocalElement(rows->getGlobalElement(row)));
-      for (const auto& product : products) product.for_columns(row, [&](LocalIndex c) { meet(product.column[c]); });
+      for (const auto& product : products) product.for_columns(row, [&](std::size_t c) { meet(product.column[c]); });
     };
     const Local::row_map_type::non_const_type start("start", n_rows + 1);
     for (LocalIndex row = 0; row < n_rows; ++row) {

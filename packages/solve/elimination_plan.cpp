@@ -19,16 +19,11 @@ View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
 namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;
-using IndexVector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;
 
 const GlobalIndex count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
 
 RCP<const Map> make_map(const GlobalIndices& indices, const RCP<const Comm>& comm) {
   return rcp(new Map(count_them, Teuchos::arrayView(indices.data(), indices.size()), 0, comm));
-}
-
-RCP<const Map> make_contiguous_map(std::size_t n_owned, const RCP<const Comm>& comm) {
-  return rcp(new Map(count_them, n_owned, 0, comm));
 }
 
 /// Calls visit(row, position of the value, global column) for the stored entries owned here.
@@ -73,6 +68,8 @@ class Planner {
     check_groups_do_not_couple();
     for (const auto& group : groups) plan_group(group);
     plan_condensed(problem_, plan_);
+    for (auto& group : plan_.groups)
+      for (auto& response : group.response) response.column = {};
     return std::move(plan_);
   }
 
@@ -120,28 +117,27 @@ class Planner {
         owned = entities;
       }
     });
-    group.entities = make_map(owned, comm_);
+    const auto entities = make_map(owned, comm_);
     GlobalIndices ghosts;
     for (int a : plan_.remaining)
       for (int z : group.blocks) {
         if (matrix(a, z).is_null()) continue;
         for (auto index : matrix(a, z)->getColMap()->getNodeElementList()) {
           const GlobalIndex entity = index / blocks()[z].n_components;
-          if (!group.entities->isNodeGlobalElement(entity)) ghosts.push_back(entity);
+          if (!entities->isNodeGlobalElement(entity)) ghosts.push_back(entity);
         }
       }
     std::sort(ghosts.begin(), ghosts.end());
     ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
-    ghosts_ = make_map(ghosts, comm_);
-    import_entities_ = rcp(new Import(group.entities, ghosts_));
+    owned.insert(owned.end(), ghosts.begin(), ghosts.end());
+    group.slots = std::make_shared<Halo>(entities, make_map(owned, comm_));
   }
 
-  LocalIndex slot(const GroupPlan& group, GlobalIndex entity) const {
-    const LocalIndex owned = group.entities->getLocalElement(entity);
-    return owned >= 0 ? owned : n_owned(group) + ghosts_->getLocalElement(entity);
+  static LocalIndex slot(const GroupPlan& group, GlobalIndex entity) {
+    return group.slots->all()->getLocalElement(entity);
   }
 
-  static LocalIndex n_owned(const GroupPlan& group) { return group.entities->getNodeNumElements(); }
+  static LocalIndex n_owned(const GroupPlan& group) { return group.slots->n_owned(); }
 
   template <class Find>
   static Scatter make_scatter(const RCP<const CrsMatrix>& matrix, const Find& find) {
@@ -160,9 +156,10 @@ class Planner {
           const int ni = blocks()[zi].n_components, nj = blocks()[zj].n_components;
           group.fill.push_back(make_scatter(matrix(zi, zj), [&](LocalIndex row, GlobalIndex column) {
             const LocalIndex entity = row / ni;
-            SPREKK_CHECK(column / nj == group.entities->getGlobalElement(entity),
+            SPREKK_CHECK(column / nj == group.slots->owned()->getGlobalElement(entity),
                          "local group '{}': entity {} couples to entity {} in block ('{}', '{}')", group.name,
-                         group.entities->getGlobalElement(entity), column / nj, blocks()[zi].name, blocks()[zj].name);
+                         group.slots->owned()->getGlobalElement(entity), column / nj, blocks()[zi].name,
+                         blocks()[zj].name);
             return (entity * m + group.offset[i] + row % ni) * m + group.offset[j] + LocalIndex(column % nj);
           }));
         }
@@ -197,38 +194,18 @@ class Planner {
     exchange(group, columns, response);
   }
 
-  /// Makes the ghosts' columns and the import of their values known. Columns, and with them values, are numbered over
-  /// all ranks; ghosts learn the range of theirs.
-  void exchange(const GroupPlan& group, const ColumnSets& columns, Response& response) const {
-    const auto column_map = make_contiguous_map(columns.column.size(), comm_);
-    const GlobalIndex first = columns.column.empty() ? 0 : column_map->getMinGlobalIndex();
-    IndexVector begin(group.entities), end(group.entities), ghost_begin(ghosts_), ghost_end(ghosts_);
-    for (LocalIndex e = 0; e < n_owned(group); ++e) {
-      begin.replaceLocalValue(e, first + columns.start[e]);
-      end.replaceLocalValue(e, first + columns.start[e + 1]);
-    }
-    ghost_begin.doImport(begin, *import_entities_, Tpetra::INSERT);
-    ghost_end.doImport(end, *import_entities_, Tpetra::INSERT);
-
-    LocalIndices start = columns.start;
-    GlobalIndices ghost_columns, ghost_values;
-    const auto begins = ghost_begin.getData(), ends = ghost_end.getData();
-    for (LocalIndex g = 0; g < begins.size(); ++g) {
-      for (auto c = begins[g]; c < ends[g]; ++c) ghost_columns.push_back(c);
-      for (auto v = group.size * begins[g]; v < group.size * ends[g]; ++v) ghost_values.push_back(v);
-      start.push_back(start.back() + ends[g] - begins[g]);
-    }
-    IndexVector owned(column_map), ghost(make_map(ghost_columns, comm_));
-    for (std::size_t c = 0; c < columns.column.size(); ++c) owned.replaceLocalValue(c, columns.column[c]);
-    ghost.doImport(owned, Import(column_map, ghost.getMap()), Tpetra::INSERT);
-
-    response.column_start = to_device(start, "response column start");
-    response.column = columns.column;
-    const auto ghost_unknowns = ghost.getData();
-    response.column.insert(response.column.end(), ghost_unknowns.begin(), ghost_unknowns.end());
-    response.owned = rcp(new Vector(make_contiguous_map(columns.column.size() * group.size, comm_)));
-    response.ghost = rcp(new Vector(make_map(ghost_values, comm_)));
-    response.import = rcp(new Import(response.owned->getMap(), response.ghost->getMap()));
+  /// Makes the ghosts' columns known.
+  static void exchange(const GroupPlan& group, const ColumnSets& columns, Response& response) {
+    const LocalIndex n = n_owned(group), n_slots = group.slots->n_all();
+    const View<GlobalIndex*> length("response lengths", n_slots);
+    for (LocalIndex e = 0; e < n; ++e) length(e) = columns.start[e + 1] - columns.start[e];
+    group.slots->exchange(length, 1);
+    response.column_start = View<std::size_t*>("response column start", n_slots + 1);
+    for (LocalIndex e = 0; e < n_slots; ++e) response.column_start(e + 1) = response.column_start(e) + length(e);
+    response.column = View<GlobalIndex*>("response columns", response.column_start(n_slots));
+    std::copy(columns.column.begin(), columns.column.end(), response.column.data());
+    group.slots->exchange_rows(response.column_start, response.column, 1);
+    response.value = View<Real*>("responses", group.size * response.column.extent(0));
   }
 
   void plan_coupling(GroupPlan& group, int a) const {
@@ -259,8 +236,6 @@ class Planner {
   const BlockProblem& problem_;
   RCP<const Comm> comm_;
   std::vector<int> group_of_;  // [block] -1 where it remains
-  RCP<const Map> ghosts_;      // of the group in work
-  RCP<Import> import_entities_;
   EliminationPlan plan_;
 };
 

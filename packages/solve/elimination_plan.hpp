@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fields/block_problem.hpp"
+#include "solve/halo.hpp"
 
 namespace sprekk::solve {
 
@@ -13,7 +14,6 @@ using fields::BlockProblem;
 using fields::BlockVector;
 using fields::CrsGraph;
 using fields::CrsMatrix;
-using fields::Import;
 using fields::Map;
 using fields::Vector;
 
@@ -33,11 +33,10 @@ struct Scatter {
 /// row by row; the columns are the union over the rows. Slots count entities: owned ones first, then the ghosts that
 /// rows owned here couple to.
 struct Response {
-  std::vector<Scatter> fill;        ///< A_zb -> owned values
-  View<LocalIndex*> column_start;   ///< [slot + 1] first column of a slot; its first value is m times that
-  std::vector<GlobalIndex> column;  ///< [all columns] global unknown of b; only needed to make graphs
-  RCP<Vector> owned, ghost;         ///< values
-  RCP<Import> import;               ///< owned -> ghost values
+  std::vector<Scatter> fill;        ///< A_zb -> values of owned slots
+  View<std::size_t*> column_start;  ///< [slot + 1] first column of a slot; its first value is m times that
+  View<GlobalIndex*> column;        ///< [all columns] global unknown of b; only while graphs are made
+  View<Real*> value;
 };
 
 /// A_az of one remaining block a, packed: one row of m coefficients for each pair (owned row of a, slot) that couples.
@@ -54,7 +53,7 @@ struct GroupPlan {
   std::vector<int> blocks;
   std::vector<int> offset;  ///< first unknown of a block within the entity
   int size = 0;             ///< m: unknowns of one entity
-  RCP<const Map> entities;  ///< owned
+  std::shared_ptr<const Halo> slots;
   std::vector<Scatter> fill;
   View<Real*> dense, lu;           ///< [entity * m * m]
   View<int*> pivot;                ///< [entity * m]

@@ -190,7 +190,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
       },
       Kokkos::Min<LocalIndex>(first));
   const auto none = std::numeric_limits<GlobalIndex>::max();
-  const GlobalIndex singular_here = first < n ? group.entities->getGlobalElement(first) : none;
+  const GlobalIndex singular_here = first < n ? group.slots->owned()->getGlobalElement(first) : none;
   GlobalIndex singular = none;
   Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MIN, 1, &singular_here, &singular);
   if (singular != none) {
@@ -198,16 +198,15 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     return false;
   }
   for (auto& response : group.response) {
-    response.owned->putScalar(0);
-    const View<Real*> z(response.owned->getLocalViewDevice(Tpetra::Access::ReadWrite).data(),
-                        response.owned->getLocalLength());
+    const auto z = response.value;
+    Kokkos::deep_copy(z, 0.0);
     for (const auto& fill : response.fill) fill(z);
     const auto start = response.column_start;
     Kokkos::parallel_for(
         "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
           lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
         });
-    response.ghost->doImport(*response.owned, *response.import, Tpetra::INSERT);
+    group.slots->exchange_rows(start, z, m);
   }
   for (auto& coupling : group.coupling) {
     Kokkos::deep_copy(coupling.coefficient, 0.0);
@@ -222,9 +221,9 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const int m = group.size;
   const auto& response = group.response[s];
   const auto& coupling = group.coupling[r];
-  const LocalIndex n_owned = group.pivot.extent(0) / m, n_owned_values = response.owned->getLocalLength();
-  const auto owned = read(*response.owned), ghost = read(*response.ghost);
-  const auto column_start = response.column_start, row_start = coupling.row_start, slots = coupling.slot;
+  const auto value = response.value;
+  const auto column_start = response.column_start;
+  const auto row_start = coupling.row_start, slots = coupling.slot;
   const auto column = group.column[r * n_remaining() + s];
   const auto coefficient = coupling.coefficient;
   const auto local = block(r, s).matrix->getLocalMatrixDevice();
@@ -234,8 +233,9 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
         Real sum[strip];
         RowWalk walk(local.graph, row);
         for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
-          const LocalIndex slot = slots(pair), first = column_start(slot), n_columns = column_start(slot + 1) - first;
-          const auto* z = slot < n_owned ? &owned(m * first) : &ghost(m * first - n_owned_values);
+          const auto first = column_start(slots(pair));
+          const auto n_columns = static_cast<LocalIndex>(column_start(slots(pair) + 1) - first);
+          const Real* const z = &value(m * first);
           for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
             const int n = n_columns - begin < strip ? n_columns - begin : strip;
             for (int k = 0; k < n; ++k) sum[k] = 0;
