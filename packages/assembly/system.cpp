@@ -285,6 +285,22 @@ void System::start_matrix() {
     }
 }
 
+/// Blocks of flow are written over by what depends on the step, or measured anew in each.
+std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<fields::CrsMatrix>& J) {
+  const auto& A = linear_(block, block);
+  const bool constant = !A.is_null() && matrix_(block, block) == A && unknowns_[block].row != Quantity::flow;
+  if (!constant || J->getGlobalMaxNumRowEntries() > fields::KeptRows::longest_row) return nullptr;
+  auto kept = linear_.kept(block);
+  if (kept) {
+    kept->restore(*J);
+    return kept;
+  }
+  kept = std::make_shared<fields::KeptRows>(J);
+  linear_.share(block, J, kept);
+  matrix_.share(block, J, kept);
+  return kept;
+}
+
 /// Rows of flow at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
 /// where no module of them is linear.
 void System::assemble_flow() {

@@ -45,6 +45,7 @@ class System : public fields::BlockProblem {
   void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
   void jacobian(const fields::BlockVector& x) override;
   const fields::BlockMatrix& matrix() const override { return matrix_; }
+  std::shared_ptr<fields::KeptRows> share(int block, const RCP<fields::CrsMatrix>& J) override;
   bool stores() const override { return coupled_; }
   bool symmetric() const override { return symmetric_ && !coupled_; }
   bool symmetric_blocks() const override { return symmetric_; }

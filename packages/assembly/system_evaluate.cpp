@@ -168,8 +168,7 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
   }
   for (int i = 0; i < n; ++i) {
     Tpetra::deep_copy(*r[i], *load_[i]);
-    for (int j = 0; j < n; ++j)
-      if (!linear_(i, j).is_null()) linear_(i, j)->localApply(*linear_in[j], *r[i], Teuchos::NO_TRANS, 1.0, 1.0);
+    for (int j = 0; j < n; ++j) linear_.add_local_product(i, j, *linear_in[j], *r[i]);
   }
   const auto views = rows(r);
   for (std::size_t m = 0; m < modules_.size(); ++m) {

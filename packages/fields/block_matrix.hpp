@@ -1,8 +1,9 @@
 // A matrix of named blocks.
 #pragma once
 
-#include "fields/types.hpp"
+#include "fields/kept_rows.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace sprekk::fields {
@@ -11,24 +12,44 @@ namespace sprekk::fields {
 /// block (i, j) are the owned maps of blocks i and j.
 class BlockMatrix {
  public:
-  explicit BlockMatrix(int n_blocks = 0) : n_(n_blocks), blocks_(n_blocks * n_blocks) {}
+  explicit BlockMatrix(int n_blocks = 0) : n_(n_blocks), blocks_(n_blocks * n_blocks), kept_(n_blocks) {}
 
   int n_blocks() const { return n_; }
   const RCP<CrsMatrix>& operator()(int row, int column) const { return blocks_[row * n_ + column]; }
   RCP<CrsMatrix>& operator()(int row, int column) { return blocks_[row * n_ + column]; }
+
+  /// From now on block (b, b) is stored in J, but for rows that are kept: these J may have otherwise.
+  void share(int b, const RCP<CrsMatrix>& J, const std::shared_ptr<KeptRows>& kept) {
+    (*this)(b, b) = J;
+    kept_[b] = kept;
+  }
+  /// Null where (b, b) has all its values.
+  const std::shared_ptr<KeptRows>& kept(int b) const { return kept_[b]; }
 
   /// y = sum_j A_ij x_j for every i. Collective.
   void apply(const BlockVector& x, BlockVector& y) const {
     for (int i = 0; i < n_; ++i) {
       y[i]->putScalar(0);
       for (int j = 0; j < n_; ++j)
-        if (!(*this)(i, j).is_null()) (*this)(i, j)->apply(*x[j], *y[i], Teuchos::NO_TRANS, 1.0, 1.0);
+        if (i == j && kept_[i])
+          kept_[i]->add_product(*x[i], *y[i]);
+        else if (!(*this)(i, j).is_null())
+          (*this)(i, j)->apply(*x[j], *y[i], Teuchos::NO_TRANS, 1.0, 1.0);
     }
+  }
+
+  /// y += A_ij x, x with ghosts; nothing where the block is absent. Local.
+  void add_local_product(int i, int j, const Vector& x, Vector& y) const {
+    if (i == j && kept_[i])
+      kept_[i]->add_local_product(x, y);
+    else if (!(*this)(i, j).is_null())
+      (*this)(i, j)->localApply(x, y, Teuchos::NO_TRANS, 1.0, 1.0);
   }
 
  private:
   int n_;
   std::vector<RCP<CrsMatrix>> blocks_;
+  std::vector<std::shared_ptr<KeptRows>> kept_;  // [block on the diagonal]
 };
 
 }  // namespace sprekk::fields

@@ -4,6 +4,7 @@
 #include "fields/block_matrix.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,11 @@ class BlockProblem {
   /// Fills matrix() with df/dx at x, without the constraints (rows and columns of constrained unknowns are there).
   virtual void jacobian(const BlockVector& x) = 0;
   virtual const BlockMatrix& matrix() const = 0;
+  /// A block on the diagonal of matrix() that never changes: is asked to be stored in J from now on, a matrix whose
+  /// local columns begin with those of the block, with its values as they are and zeros elsewhere. Returns where rows
+  /// are to be kept before J is changed, and gives J the values of those that already are; null if the block stays
+  /// where it is.
+  virtual std::shared_ptr<KeptRows> share(int block, const RCP<CrsMatrix>& J) { return nullptr; }
   /// What is stored over a time step enters f, so that shorter steps are easier to solve; else only their loads count.
   virtual bool stores() const { return false; }
   /// The present matrix() is symmetric after elimination of the local groups.

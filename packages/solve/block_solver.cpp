@@ -101,7 +101,8 @@ class MueLuMultigrid : public BlockSolver {
     const bool anew = hierarchy_.is_null() || (symmetric_ && !block.symmetric);
     if (anew) {
       symmetric_ = block.symmetric;
-      create(block.block, block.bulk ? block.bulk() : matrix);
+      const auto make = [&](const RCP<CrsMatrix>& bulk) { create(block.block, bulk); };
+      block.bulk ? block.bulk(make) : make(matrix);
     }
     if (!anew || block.bulk) {
       const RaisedDiagonal raised(*matrix);
@@ -139,9 +140,16 @@ class NodeMultigrid : public BlockSolver {
 
  private:
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
-    if (multigrid_.is_null())
-      multigrid_ = rcp(new Multigrid(block.matrix, block.bulk ? *block.bulk() : *block.matrix, block.block.n_components,
-                                     block.block.near_null_space, block.block.coordinates));
+    if (multigrid_.is_null()) {
+      const auto& [n, modes, places] =
+          std::tie(block.block.n_components, block.block.near_null_space, block.block.coordinates);
+      Nodes nodes;
+      const auto look = [&](const RCP<const CrsMatrix>& bulk) {
+        nodes = nodes_of(node_matrix(*bulk, n), modes, places);
+      };
+      block.bulk ? block.bulk(look) : look(block.matrix);
+      multigrid_ = rcp(new Multigrid(block.matrix, std::move(nodes), n, modes));
+    }
     multigrid_->setup(block.matrix, block.symmetric);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();

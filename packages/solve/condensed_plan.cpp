@@ -1,5 +1,6 @@
 // The blocks that remain after elimination: their graphs, and the columns in them of what is added.
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "solve/elimination_plan.hpp"
@@ -77,39 +78,51 @@ class CondensedPlanner {
     return all;
   }
 
-  /// The columns that rows of J_ab have here: those owned in their order, then the others by the ranks that own them.
+  /// The columns that rows of J_ab have here: those owned in their order, the others of A_ab in theirs, and the rest by
+  /// the ranks that own them.
   RCP<const Map> find_columns(int a, int b, std::vector<Products>& products) const {
     const auto& domain = *blocks()[b].map;
     std::vector<char> wanted(domain.getNodeNumElements(), a == b);  // of those owned
-    GlobalIndices others;
-    const auto add = [&](GlobalIndex column) {
+    GlobalIndices of_bulk, others;
+    const auto add = [&](GlobalIndex column, GlobalIndices& not_owned) {
       if (const LocalIndex owned = domain.getLocalElement(column); owned >= 0)
         wanted[owned] = true;
       else
-        others.push_back(column);
+        not_owned.push_back(column);
     };
     if (!matrix(a, b).is_null())
-      for (auto column : matrix(a, b)->getColMap()->getNodeElementList()) add(column);
+      for (auto column : matrix(a, b)->getColMap()->getNodeElementList()) add(column, of_bulk);
     for (auto& product : products)
-      for (LocalIndex slot : product.slot)
-        for (LocalIndex c = product.start[slot]; c < product.start[slot + 1] && product.column[c] != 0; ++c) {
-          add(product.global(c));
+      for (std::size_t pair = 0; pair < product.slot.extent(0); ++pair)
+        for (std::size_t c = product.start(product.slot(pair)), end = product.start(product.slot(pair) + 1);
+             c < end && product.column[c] != 0; ++c) {
+          add(product.global(c), others);
           product.column[c] = 0;
         }
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
-    std::vector<int> ranks(others.size());
-    domain.getRemoteIndexList(Teuchos::arrayView(others.data(), others.size()),
-                              Teuchos::arrayView(ranks.data(), ranks.size()));
-    std::vector<std::pair<int, GlobalIndex>> by_rank;
-    for (std::size_t i = 0; i < others.size(); ++i) by_rank.emplace_back(ranks[i], others[i]);
-    std::sort(by_rank.begin(), by_rank.end());
     GlobalIndices all;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i]) all.push_back(domain.getGlobalElement(i));
-    for (const auto& [rank, column] : by_rank) all.push_back(column);
+    all.insert(all.end(), of_bulk.begin(), of_bulk.end());
+    for (auto column : by_rank(others, of_bulk, domain)) all.push_back(column);
     const auto count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
     return rcp(new Map(count_them, Teuchos::arrayView(all.data(), all.size()), 0, problem_.comm()));
+  }
+
+  /// Without those that are known, each once. Collective.
+  static GlobalIndices by_rank(GlobalIndices columns, GlobalIndices known, const Map& domain) {
+    std::sort(columns.begin(), columns.end());
+    std::sort(known.begin(), known.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    GlobalIndices found;
+    std::set_difference(columns.begin(), columns.end(), known.begin(), known.end(), std::back_inserter(found));
+    std::vector<int> ranks(found.size());
+    domain.getRemoteIndexList(Teuchos::arrayView(found.data(), found.size()),
+                              Teuchos::arrayView(ranks.data(), ranks.size()));
+    std::vector<std::pair<int, GlobalIndex>> pairs;
+    for (std::size_t i = 0; i < found.size(); ++i) pairs.emplace_back(ranks[i], found[i]);
+    std::sort(pairs.begin(), pairs.end());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = pairs[i].second;
+    return found;
   }
 
   void make_graph(int a, int b, const RCP<const Map>& columns, const LocalIndices& of_matrix,

@@ -54,7 +54,7 @@ LinearSystem CondensedSolve::system() {
                                problem_.schur(elimination_.remaining()[r])});
     // of displacements, whose aggregates must not cross fractures; other fields couple by what was eliminated
     if (with_bulk && !blocks[r].near_null_space.is_null())
-      system.diagonal.back().bulk = [this, r] { return elimination_.bulk(r); };
+      system.diagonal.back().bulk = [this, r](const auto& work) { elimination_.with_bulk(r, work); };
   }
   return system;
 }

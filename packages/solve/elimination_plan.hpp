@@ -68,9 +68,11 @@ struct GroupPlan {
 /// J_ab; matrix is null where nothing couples a and b.
 struct CondensedBlock {
   RCP<CrsMatrix> matrix;
-  RCP<const CrsMatrix> bulk;      ///< A_ab, or null
-  View<LocalIndex*> bulk_column;  ///< [column of A_ab] its column in J_ab
-  RCP<Vector> constrained;        ///< [column] 1 where the unknown is prescribed
+  RCP<const CrsMatrix> bulk;               ///< A_ab; null: there is none, or it stands in J_ab
+  View<LocalIndex*> bulk_column;           ///< [column of A_ab] its column in J_ab
+  std::shared_ptr<fields::KeptRows> kept;  ///< of A_ab that stands in J_ab, or null
+  View<LocalIndex*> rows;   ///< those that may be other ones than A_ab's, where it stands there; else all
+  RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
 };
 
 struct EliminationPlan {

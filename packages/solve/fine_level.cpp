@@ -184,8 +184,9 @@ FineLevel::FineLevel(const ParameterList& muelu, const std::vector<Block>& block
 void FineLevel::set_up_order_one(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
   const auto& P = first.block.interpolation;
-  std::function<RCP<CrsMatrix>()> bulk;
-  if (first.bulk) bulk = [&] { return at_order_one(first.bulk(), P); };
+  Bulk bulk;
+  if (first.bulk)
+    bulk = [&](const auto& work) { first.bulk([&](const RCP<CrsMatrix>& A) { work(at_order_one(A, P)); }); };
   RCP<const CrsMatrix> matrix = first.matrix;
   if (!P.is_null()) {
     if (product_.is_null()) product_ = order_one_matrix(*first.matrix, P);

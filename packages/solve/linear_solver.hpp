@@ -49,12 +49,15 @@ int iterations(const std::vector<LinearReport>& solves);
 
 inline constexpr Real acceptable_linear_residual = 1e-8;
 
+/// Calls work(A) with a block's matrix without what crosses interfaces, by whose values multigrid aggregates. Meanwhile
+/// the block's matrix may have these values, too.
+using Bulk = std::function<void(const std::function<void(const RCP<CrsMatrix>& A)>& work)>;
+
 /// A block on the diagonal of a linear system.
 struct DiagonalBlock {
   Block block;
   RCP<const CrsMatrix> matrix;  ///< of the block alone; null if it has none
-  /// Makes it without what crosses interfaces, on the same graph, by whose values multigrid aggregates; or empty.
-  std::function<RCP<CrsMatrix>()> bulk;
+  Bulk bulk;                    ///< or empty
   bool symmetric = true;
   RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
 };

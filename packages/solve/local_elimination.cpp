@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -21,12 +22,15 @@ auto write(Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Acce
 auto read(const Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0); }
 
 /// Zeroes rows and columns of the flagged unknowns; keeps |diagonal|, or 1 where it is zero, if the block is diagonal.
-void constrain(CrsMatrix& matrix, const Vector& row_flags, const Vector& column_flags, bool diagonal) {
+void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool diagonal) {
+  const auto& matrix = *condensed.matrix;
   const auto local = matrix.getLocalMatrixDevice();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
-  const auto row_flag = read(row_flags), column_flag = read(column_flags);
+  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
+  const auto changed = condensed.rows;
   Kokkos::parallel_for(
-      "constrain", Policy(0, local.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
+      "constrain", Policy(0, changed.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+        const LocalIndex row = changed(i);
         for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
           const LocalIndex column = local.graph.entries(k);
           if (row_flag(row) == 0 && column_flag(column) == 0) continue;
@@ -37,12 +41,15 @@ void constrain(CrsMatrix& matrix, const Vector& row_flags, const Vector& column_
       });
 }
 
-void add_diagonal(const Vector& diagonal, CrsMatrix& matrix) {
+void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed) {
+  const auto& matrix = *condensed.matrix;
   const auto local = matrix.getLocalMatrixDevice();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
   const auto added = read(diagonal);
+  const auto changed = condensed.rows;
   Kokkos::parallel_for(
-      "add diagonal", Policy(0, local.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
+      "add diagonal", Policy(0, changed.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+        const LocalIndex row = changed(i);
         for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
           if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
             local.values(k) += added(row);
@@ -59,19 +66,22 @@ void spread(const Vector& owned, const CrsMatrix& matrix, Vector& columns) {
 }
 
 /// Changes, but for a chance of 2^-64, when any bit of any value does.
-std::uint64_t checksum(const CrsMatrix& matrix) {
-  const auto values = values_of(matrix);
+std::uint64_t checksum(const CondensedBlock& condensed) {
+  const auto local = condensed.matrix->getLocalMatrixDevice();
+  const auto rows = condensed.rows;
   std::uint64_t sum = 0;
   Kokkos::parallel_reduce(
-      "checksum", Policy(0, values.extent(0)),
-      KOKKOS_LAMBDA(std::int64_t k, std::uint64_t & partial) {
-        const Real value = values(k);
-        std::uint64_t hash;
-        memcpy(&hash, &value, sizeof hash);
-        hash += 0x9e3779b97f4a7c15ull * std::uint64_t(k + 1);
-        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
-        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
-        partial += hash ^ (hash >> 31);
+      "checksum", Policy(0, rows.extent(0)),
+      KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {
+        for (auto k = local.graph.row_map(rows(i)); k < local.graph.row_map(rows(i) + 1); ++k) {
+          const Real value = local.values(k);
+          std::uint64_t hash;
+          memcpy(&hash, &value, sizeof hash);
+          hash += 0x9e3779b97f4a7c15ull * std::uint64_t(k + 1);
+          hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
+          hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
+          partial += hash ^ (hash >> 31);
+        }
       },
       sum);
   return sum;
@@ -91,11 +101,12 @@ struct RowWalk {
   }
 };
 
-/// J_ab of a matrix with the graph of condensed.matrix <- A_ab.
-void copy_bulk(const CondensedBlock& condensed, const CrsMatrix& to) {
-  Kokkos::deep_copy(values_of(to), 0.0);
+/// J_ab <- A_ab.
+void start_from_bulk(const CondensedBlock& condensed) {
+  if (condensed.kept) return condensed.kept->restore(*condensed.matrix);
+  Kokkos::deep_copy(values_of(*condensed.matrix), 0.0);
   if (condensed.bulk.is_null()) return;
-  const auto from = condensed.bulk->getLocalMatrixDevice(), local = to.getLocalMatrixDevice();
+  const auto from = condensed.bulk->getLocalMatrixDevice(), local = condensed.matrix->getLocalMatrixDevice();
   const auto column = condensed.bulk_column;
   Kokkos::parallel_for(
       "copy bulk", Policy(0, from.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
@@ -103,6 +114,22 @@ void copy_bulk(const CondensedBlock& condensed, const CrsMatrix& to) {
         for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1); ++k)
           local.values(walk.find(column(from.graph.entries(k)))) = from.values(k);
       });
+}
+
+/// Lets J_aa take the place of A_aa, if the problem agrees. Collective.
+void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
+  start_from_bulk(condensed);
+  condensed.kept = problem.share(a, condensed.matrix);
+  if (!condensed.kept) return;
+  condensed.bulk = Teuchos::null;
+  condensed.bulk_column = {};
+}
+
+View<LocalIndex*> all_rows(const CrsMatrix& matrix) {
+  const View<LocalIndex*> rows("all rows", matrix.getNodeNumRows());
+  Kokkos::parallel_for(
+      "all rows", Policy(0, rows.extent(0)), KOKKOS_LAMBDA(LocalIndex row) { rows(row) = row; });
+  return rows;
 }
 
 }  // namespace
@@ -114,26 +141,25 @@ void Scatter::operator()(const View<Real*>& out) const {
       "scatter values", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) { out(to(k)) = values(k); });
 }
 
-LocalElimination::LocalElimination(const BlockProblem& problem)
+LocalElimination::LocalElimination(BlockProblem& problem)
     : comm_(problem.comm()), matrix_(&problem.matrix()), plan_(plan_elimination(problem)) {
-  for (int r : plan_.remaining) constrained_.push_back(rcp(new Vector(problem.blocks()[r].map)));
+  for (int r = 0; r < n_remaining(); ++r) {
+    constrained_.push_back(rcp(new Vector(problem.blocks()[plan_.remaining[r]].map)));
+    share(problem, plan_.remaining[r], block(r, r));
+  }
+  for (auto& condensed : plan_.condensed)
+    if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);
 }
 
 LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
+  const bool held_anew = take_constraints(problem);
   for (int r = 0; r < n_remaining(); ++r) {
-    const auto flags = problem.constrained(plan_.remaining[r]);
-    const auto flag = write(*constrained_[r]);
-    Kokkos::parallel_for(
-        "flags", Policy(0, flags.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { flag(i) = flags(i) ? 1 : 0; });
+    const auto proximal = problem.proximal(plan_.remaining[r]);
+    if (held_anew || fresh_ || !proximal.is_null()) keep_rows(r, proximal);
+    for (int s = 0; s < n_remaining(); ++s)
+      if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
+    if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
   }
-  for (auto& condensed : plan_.condensed) {
-    if (condensed.matrix.is_null()) continue;
-    condensed.matrix->resumeFill();
-    copy_bulk(condensed, *condensed.matrix);
-  }
-  for (int r = 0; r < n_remaining(); ++r)
-    if (const auto proximal = problem.proximal(plan_.remaining[r]); !proximal.is_null())
-      add_diagonal(*proximal, *block(r, r).matrix);
   std::string failure;
   for (auto& group : plan_.groups) set_scales(problem, group);
   for (auto& group : plan_.groups)
@@ -144,12 +170,9 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   std::uint64_t sum = 0;
   for (int r = 0; r < n_remaining(); ++r)
     for (int s = 0; s < n_remaining(); ++s) {
-      auto& condensed = block(r, s);
-      if (condensed.matrix.is_null()) continue;
-      spread(*constrained_[s], *condensed.matrix, *condensed.constrained);
-      constrain(*condensed.matrix, *constrained_[r], *condensed.constrained, r == s);
-      condensed.matrix->fillComplete(condensed.matrix->getDomainMap(), condensed.matrix->getRangeMap());
-      sum = 3 * sum + checksum(*condensed.matrix);
+      if (block(r, s).matrix.is_null()) continue;
+      constrain(block(r, s), *constrained_[r], r == s);
+      sum = 3 * sum + checksum(block(r, s));
     }
   const int changed_here = fresh_ || sum != checksum_;
   int changed = 0;
@@ -157,6 +180,63 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   checksum_ = sum;
   fresh_ = !failure.empty();
   return {changed != 0, failure};
+}
+
+/// The flags of all columns, too. True if any has changed on any rank.
+bool LocalElimination::take_constraints(const BlockProblem& problem) {
+  int changed = 0, anywhere = 0;
+  for (int r = 0; r < n_remaining(); ++r) {
+    const auto flags = problem.constrained(plan_.remaining[r]);
+    const auto flag = write(*constrained_[r]);
+    Kokkos::parallel_reduce(
+        "flags", Policy(0, flags.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i, int& any) {
+          const Real before = flag(i);
+          flag(i) = flags(i) ? 1 : 0;
+          if (flag(i) != before) any = 1;
+        },
+        Kokkos::Max<int>(anywhere));
+    changed = std::max(changed, anywhere);
+  }
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &changed, &anywhere);
+  for (int r = 0; r < n_remaining() && anywhere; ++r)
+    for (int s = 0; s < n_remaining(); ++s)
+      if (const auto& condensed = block(r, s); !condensed.matrix.is_null())
+        spread(*constrained_[s], *condensed.matrix, *condensed.constrained);
+  return anywhere != 0;
+}
+
+/// Of A_aa that stands in J_aa, the rows that the proximal diagonal, local groups or constraints will change.
+void LocalElimination::keep_rows(int r, const RCP<const Vector>& proximal) {
+  auto& condensed = block(r, r);
+  if (!condensed.kept) return;
+  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
+  const View<char*> changes("changes", graph.numRows());
+  const Policy rows(0, graph.numRows());
+  const auto row_flag = read(*constrained_[r]), column_flag = read(*condensed.constrained);
+  Kokkos::parallel_for(
+      "constrained rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
+        bool here = row_flag(row) != 0;
+        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
+          here = column_flag(graph.entries(k)) != 0;
+        changes(row) = here;
+      });
+  if (!proximal.is_null()) {
+    const auto added = read(*proximal);
+    Kokkos::parallel_for(
+        "raised rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
+          if (added(row) != 0) changes(row) = 1;
+        });
+  }
+  for (const auto& group : plan_.groups) {
+    const auto first = group.coupling[r].row_start;
+    Kokkos::parallel_for(
+        "condensed rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
+          if (first(row) < first(row + 1)) changes(row) = 1;
+        });
+  }
+  condensed.kept->keep(changes);
+  condensed.rows = condensed.kept->rows();
 }
 
 /// The sizes of a group's unknowns under the present loads, as powers of two relative to the first block: so scaling
@@ -252,16 +332,15 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
 
 RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
 
-RCP<CrsMatrix> LocalElimination::bulk(int r) const {
+void LocalElimination::with_bulk(int r, const std::function<void(const RCP<CrsMatrix>& A)>& work) const {
   const auto& condensed = block(r, r);
-  const auto copy = rcp(new CrsMatrix(condensed.matrix->getCrsGraph()));
-  const auto complete = [&] { copy->fillComplete(condensed.matrix->getDomainMap(), condensed.matrix->getRangeMap()); };
-  complete();
-  copy->resumeFill();
-  copy_bulk(condensed, *copy);
-  constrain(*copy, *constrained_[r], *condensed.constrained, true);
-  complete();
-  return copy;
+  const auto values = values_of(*condensed.matrix);
+  const View<Real*> of_J(Kokkos::view_alloc("values of J", Kokkos::WithoutInitializing), values.extent(0));
+  Kokkos::deep_copy(of_J, values);
+  start_from_bulk(condensed);
+  constrain(condensed, *constrained_[r], true);
+  work(condensed.matrix);
+  Kokkos::deep_copy(values, of_J);
 }
 
 /// z <- A_zz^-1 z for the blocks of one group.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "solve/elimination_plan.hpp"
 
@@ -21,7 +22,8 @@ class LocalElimination {
     std::string failure;  ///< empty, or which entity of which group is singular; J is then not usable
   };
 
-  explicit LocalElimination(const BlockProblem& problem);
+  /// J takes the place of blocks that the problem shares: see BlockProblem::share().
+  explicit LocalElimination(BlockProblem& problem);
 
   /// Forms J from the present values of problem.matrix(). The same answer on every rank.
   Status update(const BlockProblem& problem);
@@ -31,8 +33,8 @@ class LocalElimination {
   /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for
   /// good.
   RCP<const CrsMatrix> condensed(int r, int s) const;
-  /// A_aa of the r-th remaining block, constrained like J, without what the local groups add, on the graph of J.
-  RCP<CrsMatrix> bulk(int r) const;
+  /// Calls work(A) while J of the r-th remaining block is A_aa, constrained like J, without what the local groups add.
+  void with_bulk(int r, const std::function<void(const RCP<CrsMatrix>& A)>& work) const;
 
   /// c [r] for b [block].
   BlockVector reduce(const BlockVector& b) const;
@@ -40,6 +42,8 @@ class LocalElimination {
   void expand(const BlockVector& b, const BlockVector& y, BlockVector& dx) const;
 
  private:
+  bool take_constraints(const BlockProblem& problem);
+  void keep_rows(int r, const RCP<const Vector>& proximal);
   static void set_scales(const BlockProblem& problem, GroupPlan& group);
   bool factor(GroupPlan& group, std::string& failure) const;
   void condense(GroupPlan& group, int r, int s) const;

@@ -40,15 +40,14 @@ bool Multigrid::can_solve(int n_components, int n_modes) {
          try_sizes(n_modes, n_modes, nothing);
 }
 
-Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
-                     const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places)
+Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_components,
+                     const RCP<const MultiVector>& modes)
     : map_(matrix->getRowMap()), finest_(matrix), size_(n_components) {
   add_level(node_matrix(*matrix, size_));
   const int shares = levels_.front().A.value.data() == matrix->getLocalMatrixHost().values.data();
   int all_share = 0;
   Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_MIN, 1, &shares, &all_share);
   shares_ = all_share == 1;
-  auto nodes = nodes_of(node_matrix(bulk, size_), modes, places);
   while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
     const auto& A = levels_.back().A;
     const auto aggregates = aggregate(nodes);

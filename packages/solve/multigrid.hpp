@@ -17,11 +17,14 @@ class Multigrid : public fields::Operator {
   /// Whether there is code for that many unknowns of a node and motions.
   static bool can_solve(int n_components, int n_modes);
 
-  /// Aggregates by `bulk`, which has the graph of the matrices that follow or less, and no edge across an interface,
-  /// so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones; `places`
-  /// [node, dim], null: near and far neighbours are alike.
+  /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
+  /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
+  Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_components,
+            const RCP<const fields::MultiVector>& modes);
+  /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
   Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
-            const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null);
+            const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null)
+      : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
   /// Makes ready for the values of a matrix with the graph of the first.
   void setup(const RCP<const CrsMatrix>& matrix, bool symmetric);

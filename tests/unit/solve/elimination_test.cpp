@@ -125,6 +125,65 @@ TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
   }
 }
 
+std::vector<Real> values_of(const CrsMatrix& matrix) {
+  const auto values = matrix.getLocalMatrixHost().values;
+  return {values.data(), values.data() + values.extent(0)};
+}
+
+std::vector<Real> bulk_of(const LocalElimination& elimination) {
+  std::vector<Real> values;
+  elimination.with_bulk(0, [&](const RCP<CrsMatrix>& A) { values = values_of(*A); });
+  return values;
+}
+
+/// What two eliminations, and the problem itself, see of a matrix that stands in theirs is what a problem sees that
+/// keeps its own, bit by bit, while more and more rows differ.
+TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
+  GridOptions options;
+  options.ny = 12;
+  for (int d : {2, 3}) {
+    options.d = d;
+    options.shares = false;
+    GridProblem alone(Tpetra::getDefaultComm(), options);
+    options.shares = true;
+    GridProblem sharing(Tpetra::getDefaultComm(), options);
+    LocalElimination own(alone), first(sharing);
+    std::unique_ptr<LocalElimination> second;
+    EXPECT_EQ(sharing.matrix()(0, 0), first.condensed(0, 0));
+    const auto diagonal = rcp(new Vector(alone.blocks()[0].map));
+    diagonal->putScalar(0.3);
+    const auto x = mixed_state(alone), zero = alone.zero();
+    auto there = alone.zero(), here = alone.zero();
+    std::vector<GlobalIndex> kept;
+    for (const auto& [state, added] :
+         {std::pair{x, RCP<Vector>()}, {zero, RCP<Vector>()}, {x, diagonal}, {zero, RCP<Vector>()}}) {
+      for (auto* problem : {&alone, &sharing}) {
+        problem->added = added;
+        problem->jacobian(state);
+      }
+      ASSERT_EQ(own.update(alone).failure, "");
+      ASSERT_EQ(first.update(sharing).failure, "");
+      if (!second) second = std::make_unique<LocalElimination>(sharing);
+      ASSERT_EQ(second->update(sharing).failure, "");
+      for (const auto* elimination : {&std::as_const(first), &std::as_const(*second)}) {
+        EXPECT_EQ(bulk_of(*elimination), bulk_of(own));
+        EXPECT_EQ(values_of(*elimination->condensed(0, 0)), values_of(*own.condensed(0, 0)));
+      }
+      alone.matrix().apply(x, there);
+      sharing.matrix().apply(x, here);
+      for (std::size_t b = 0; b < x.size(); ++b) {
+        here[b]->update(-1, *there[b], 1);
+        EXPECT_LE(here[b]->normInf(), 1e-14 * there[b]->normInf());
+      }
+      const GlobalIndex n = sharing.matrix().kept(0)->rows().extent(0);
+      kept.push_back(0);
+      Teuchos::reduceAll(*alone.comm(), Teuchos::REDUCE_SUM, 1, &n, &kept.back());
+    }
+    const GlobalIndex n = diagonal->getGlobalLength(), row = d * options.nx;  // 4 at the ends, 3 around faces
+    EXPECT_EQ(kept, (std::vector<GlobalIndex>{7 * row, 7 * row, n, n}));
+  }
+}
+
 TEST(LocalElimination, KnowsWhatChanged) {
   GridProblem problem(Tpetra::getDefaultComm(), {});
   LocalElimination elimination(problem);

@@ -50,6 +50,7 @@ struct GridOptions {
   bool faces = true, constraints = true;
   int singular_face = -1;  ///< a face whose bubble has no stiffness
   bool eliminate = true;   ///< bubble and traction are a local group
+  bool shares = false;     ///< the springs' matrix
 };
 
 /// Springs on a grid of nodes, cut by a row of faces between two rows of nodes: 'displacement' u at nodes; at faces a
@@ -131,6 +132,14 @@ class GridProblem : public BlockProblem {
     }
   }
   const BlockMatrix& matrix() const override { return matrix_; }
+  std::shared_ptr<fields::KeptRows> share(int block, const RCP<CrsMatrix>& J) override {
+    if (!o_.shares || block > 0) return nullptr;
+    if (matrix_.kept(0))
+      matrix_.kept(0)->restore(*J);
+    else
+      matrix_.share(0, J, std::make_shared<fields::KeptRows>(J));
+    return matrix_.kept(0);
+  }
   RCP<const Vector> proximal(int block) const override { return block == 0 ? added : Teuchos::null; }
   bool symmetric() const override { return o_.eliminate; }
   ConstView<char*> constrained(int block) const override {

@@ -1,0 +1,119 @@
+#include "fields/kept_rows.hpp"
+
+namespace sprekk::fields {
+
+namespace {
+
+using Policy = Kokkos::RangePolicy<Execution>;
+
+constexpr int n_sums = 4;  // of a row, so that an addition need not wait for the one before
+
+/// The sum of value(k) x(column(k)), k < n.
+template <class Value, class Column, class X>
+KOKKOS_INLINE_FUNCTION Real sum_of(std::size_t n, const Value& value, const Column& column, const X& x) {
+  Real sums[n_sums] = {};
+  std::size_t k = 0;
+  for (; k + n_sums <= n; k += n_sums)
+    for (int s = 0; s < n_sums; ++s) sums[s] += value(k + s) * x(column(k + s), 0);
+  for (; k < n; ++k) sums[0] += value(k) * x(column(k), 0);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+}  // namespace
+
+KeptRows::KeptRows(RCP<const CrsMatrix> J) : J_(J) {
+  kept_.number = View<LocalIndex*>("number of a row", J->getNodeNumRows());
+  Kokkos::deep_copy(kept_.number, -1);
+}
+
+void KeptRows::keep(const View<char*>& rows) {
+  const auto before = kept_;
+  const auto J = J_->getLocalMatrixDevice();
+  const Policy all(0, before.number.extent(0));
+  const auto number = before.number;
+  LocalIndex n_kept = 0;
+  Kokkos::parallel_reduce(
+      "kept rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum) { sum += number(row) >= 0 || rows(row) != 0; },
+      n_kept);
+  if (n_kept == static_cast<LocalIndex>(before.row.extent(0))) return;
+  Rows now{View<LocalIndex*>("number of a row", number.extent(0)), View<LocalIndex*>("kept rows", n_kept),
+           View<std::size_t*>("kept values", n_kept + 1)};
+  Kokkos::parallel_scan(
+      "number rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum, bool last) {
+        const bool keeps = number(row) >= 0 || rows(row) != 0;
+        if (last) now.number(row) = keeps ? sum : -1;
+        if (last && keeps) now.row(sum) = row;
+        sum += keeps;
+      });
+  // visit(place, value) for values of A in a row that are not 0
+  const auto for_values = KOKKOS_LAMBDA(LocalIndex row, const auto& visit) {
+    if (const LocalIndex k = number(row); k >= 0) {
+      for (auto i = before.start(k); i < before.start(k + 1); ++i) visit(before.place(i), before.value(i));
+      return;
+    }
+    const auto begin = J.graph.row_map(row);
+    for (auto i = begin; i < J.graph.row_map(row + 1); ++i)
+      if (J.values(i) != 0) visit(static_cast<Place>(i - begin), J.values(i));
+  };
+  std::size_t n_values = 0;
+  Kokkos::parallel_scan(
+      "count values", Policy(0, n_kept),
+      KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
+        for_values(now.row(k), [&](Place, Real) { ++sum; });
+        if (last) now.start(k + 1) = sum;
+      },
+      n_values);
+  now.place = View<Place*>("kept places", n_values);
+  now.value = View<Real*>("kept values", n_values);
+  Kokkos::parallel_for(
+      "keep values", Policy(0, n_kept), KOKKOS_LAMBDA(LocalIndex k) {
+        auto to = now.start(k);
+        for_values(now.row(k), [&](Place at, Real a) {
+          now.place(to) = at;
+          now.value(to++) = a;
+        });
+      });
+  kept_ = now;
+}
+
+void KeptRows::restore(const CrsMatrix& matrix) const {
+  const auto to = matrix.getLocalMatrixDevice();
+  const auto kept = kept_;
+  Kokkos::parallel_for(
+      "restore", Policy(0, kept.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        const auto begin = to.graph.row_map(kept.row(k)), end = to.graph.row_map(kept.row(k) + 1);
+        for (auto i = begin; i < end; ++i) to.values(i) = 0;
+        for (auto i = kept.start(k); i < kept.start(k + 1); ++i) to.values(begin + kept.place(i)) = kept.value(i);
+      });
+}
+
+void KeptRows::add_local_product(const Vector& x, Vector& y) const {
+  const auto J = J_->getLocalMatrixDevice();
+  const auto kept = kept_;
+  const auto from = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  Kokkos::parallel_for(
+      "product", Policy(0, J.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
+        const auto begin = J.graph.row_map(row);
+        if (const LocalIndex k = kept.number(row); k >= 0) {
+          const auto first = kept.start(k);
+          to(row, 0) += sum_of(
+              kept.start(k + 1) - first, [&](std::size_t i) { return kept.value(first + i); },
+              [&](std::size_t i) { return J.graph.entries(begin + kept.place(first + i)); }, from);
+        } else {
+          to(row, 0) += sum_of(
+              J.graph.row_map(row + 1) - begin, [&](std::size_t i) { return J.values(begin + i); },
+              [&](std::size_t i) { return J.graph.entries(begin + i); }, from);
+        }
+      });
+}
+
+void KeptRows::add_product(const Vector& x, Vector& y) const {
+  const auto import = J_->getGraph()->getImporter();
+  if (import.is_null()) return add_local_product(x, y);
+  Vector all(J_->getColMap());
+  all.doImport(x, *import, Tpetra::INSERT);
+  add_local_product(all, y);
+}
+
+}  // namespace sprekk::fields
