@@ -1,5 +1,7 @@
 #include "solve/aggregates.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +13,7 @@ constexpr Real rounding = 1e-12;     // blocks this much smaller than those on t
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
 constexpr Real strong = 0.02;        // a coupling, relative to the geometric mean of the diagonals
 constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
+constexpr Real flattest = 100;
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
 View<Real*> diagonal_sizes(const NodeMatrix& A) {
@@ -121,6 +124,23 @@ std::vector<Real> reach(const Nodes& nodes) {
     for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
       result[i] = std::fmin(result[i], steps * distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
   return result;
+}
+
+Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
+  constexpr std::size_t third = 2;
+  Real here[2] = {}, all[2] = {};  // sum, number
+  std::vector<Real> far;
+  for (std::size_t i = 0; i < nodes.place.size(); ++i) {
+    far.clear();
+    for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
+      far.push_back(distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
+    if (far.size() <= third) continue;
+    std::sort(far.begin(), far.end());
+    here[0] += std::fmin(far[third] / far[0], flattest);
+    ++here[1];
+  }
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, here, all);
+  return all[1] > 0 ? all[0] / all[1] : 1;
 }
 
 Aggregates aggregate(const Nodes& nodes) {

@@ -36,6 +36,10 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
 /// what they join is less flat on the next level. Without limit where places are not known. Stored data.
 std::vector<Real> reach(const Nodes& nodes);
 
+/// How flat cells are: the distance of the third nearest neighbour, in distances of the nearest one, at most 100; the
+/// mean over all nodes. It is 1 to 1.4 of cubes and of needles, and 1 where places are not known. Collective.
+Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm);
+
 /// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours in reach are all in no
 /// aggregate yet makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel
 /// and Brezina 1996). Aggregates hold nodes of one rank only. Stored data.

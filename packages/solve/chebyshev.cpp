@@ -13,8 +13,8 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-constexpr Real smallest_over_largest = 1.0 / 15, margin = 1.1;  // estimates of the largest come from below
-constexpr int n_steps = 10;                                     // of Lanczos' method
+constexpr Real usual_smallest = 1.0 / 15, margin = 1.1;  // estimates of the largest come from below
+constexpr int n_steps = 10;                              // of Lanczos' method
 
 constexpr int padded(int size) { return (size + 3) / 4 * 4; }
 
@@ -63,7 +63,8 @@ Chebyshev::Chebyshev(const NodeMatrix& A)
   step_ = vector(halo.n_owned());
 }
 
-void Chebyshev::update(const NodeMatrix& A) {
+void Chebyshev::update(const NodeMatrix& A, int degree) {
+  degree_ = degree;
   const auto start = graph_.start;
   const auto column = graph_.column;
   const auto a = A.value, root = root_;
@@ -150,7 +151,8 @@ Real Chebyshev::dot(const View<Real*>& x, const View<Real*>& y) const {
 }
 
 void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) const {
-  const Real high = margin * widening_ * largest_, low = smallest_over_largest * widening_ * largest_;
+  const Real shorter = static_cast<Real>(usual_degree) / degree_, widest = widening_ * largest_;
+  const Real high = margin * widest, low = usual_smallest * shorter * shorter * widest;
   const Real middle = (high + low) / 2, half = (high - low) / 2, sigma = middle / half;
   const auto root = root_;
   const auto scaled = b_, step = step_;
@@ -162,7 +164,7 @@ void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) cons
         from(i) = step(i) = scaled(i) / middle;
       });
   Real rho = 1 / sigma;
-  for (int k = 1; k < degree; ++k) {
+  for (int k = 1; k < degree_; ++k) {
     const Real next_rho = 1 / (2 * sigma - rho), keep = next_rho * rho, gain = 2 * next_rho / half;
     with_sizes(size_, size_, [&](auto size, auto) {
       constexpr int m = size();

@@ -209,7 +209,7 @@ class IterativeSolver : public LinearSolver {
     }
     auto& list = parameters_.sublist("multigrid");
     list.set("coarsest level", Multigrid::coarse_size, "unknowns at most");
-    list.set("degree of Chebyshev's polynomial", Chebyshev::degree);
+    list.set("degree of Chebyshev's polynomial", Chebyshev::usual_degree);
     return Multigrid::coarse_size;
   }
 

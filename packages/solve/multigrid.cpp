@@ -2,6 +2,7 @@
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solve/node_kernels.hpp"
@@ -18,9 +19,17 @@ constexpr Real raise = 1e-8;
 
 constexpr Real most_growth = 5;  // of the residual in a cycle
 constexpr int most_widenings = 4;
+constexpr int most_degree = 24;
 
 /// Levels end where there are more coarse nodes than this share of the fine ones: all alone, or one on each rank.
 constexpr Real least_coarsening = 0.8;
+
+/// Of the smoother on the finest level. Jumps that alternate along the long edges of fractures do no work on contact,
+/// which is as stiff as the short edges of flat cells: the diagonal is too large for them by the square of the aspect
+/// ratio, and aggregates do not represent them. On that level it costs least to smooth them.
+int degree_for(Real flatness) {
+  return static_cast<int>(std::lround(std::clamp<Real>(1.2 * flatness, Chebyshev::usual_degree, most_degree)));
+}
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
 
@@ -48,6 +57,7 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_comp
   int all_share = 0;
   Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_MIN, 1, &shares, &all_share);
   shares_ = all_share == 1;
+  degree_ = modes.is_null() ? Chebyshev::usual_degree : degree_for(flatness(nodes, *map_->getComm()));
   while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
     const auto& A = levels_.back().A;
     const auto aggregates = aggregate(nodes);
@@ -92,7 +102,8 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
   finest_ = matrix;
   for (auto& level : levels_) {
     if (!level.to_coarse) continue;
-    level.smoother->update(level.A);
+    const bool finest = &level == &levels_.front();
+    level.smoother->update(level.A, finest && symmetric ? degree_ : Chebyshev::usual_degree);
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);
@@ -188,7 +199,7 @@ double Multigrid::cycle_bytes() const {
     const auto matrix = [](const NodeMatrix& A, std::size_t number) {
       return static_cast<double>(A.value.extent(0) * number + A.graph.n_entries() * sizeof(LocalIndex));
     };
-    sum += 2 * matrix(level.A, sizeof(Real)) + 2 * (Chebyshev::degree - 1) * matrix(level.A, sizeof(float));
+    sum += 2 * matrix(level.A, sizeof(Real)) + 2 * (level.smoother->degree() - 1) * matrix(level.A, sizeof(float));
     sum += matrix(level.to_coarse->prolongation(), sizeof(Real)) + matrix(level.to_coarse->restriction(), sizeof(Real));
   }
   return sum;

@@ -57,6 +57,7 @@ class Multigrid : public fields::Operator {
   RCP<const fields::Map> map_;
   RCP<const CrsMatrix> finest_;
   int size_;
+  int degree_;  // of the smoother on the finest level, of a symmetric matrix
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
   std::vector<Level> levels_;

@@ -31,6 +31,7 @@ class Case:
     sets: tuple
     beyond: bool = False  # of what is asked: counted in rows of its own
     quick: bool = False
+    quick_cells: str = "tetrahedra"
 
 
 def rocks(entry, value):
@@ -86,6 +87,7 @@ def cases():
         yield Case(f"Poisson's ratio {nu}", MIXED + rocks("Poisson's ratio", nu), quick=nu == 0.45)
     for factor, text in ((3, "3"), (10, "10"), (1 / 3, "1/3"), (0.1, "1/10")):
         yield Case(f"aspect ratio {text}", STICK + SOFT + stretched(factor), quick=factor == 10)
+    yield Case("aspect ratio 1/10, plain tips", STICK + SOFT + stretched(0.1) + ("Mesh.tips=plain",), quick=True, quick_cells="hexahedra")
     yield Case("E 1e6, K_t 1e-9", MIXED + contrast("1e6") + stiff("1e-9"))
     yield Case("E 1e-6, K_n and K_t 1e-9", STICK + SOFT + contrast("1e-6") + springs("1e-9"))
     yield Case("E 1e6, K_n and K_t 1e9", MIXED + contrast("1e6") + springs("1e9"))
@@ -123,7 +125,7 @@ def draw(rows, file):
 
 def main(words):
     options = linear.parser("contrast", __doc__).parse_args(words)
-    runs = [(case, cell) for case in cases() for cell in (["tetrahedra"] if options.quick else CELLS) if case.quick or not options.quick]
+    runs = [(case, cell) for case in cases() for cell in CELLS if not options.quick or (case.quick and cell == case.quick_cells)]
     chosen = linear.matching(options, runs, lambda run: f"{run[1]}, {run[0].name}")
     options.output.mkdir(parents=True, exist_ok=True)
     table, rows = linear.Table(COLUMNS, 44), []

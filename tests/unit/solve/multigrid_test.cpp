@@ -265,6 +265,31 @@ TEST(Galerkin, TakesGraphsThatAreNotSymmetric) {
   for (LocalIndex I = 0; I < aggregates.n; ++I) EXPECT_NEAR(at_once(I), by_parts(I), 1e-12);
 }
 
+/// Trilinear elements of the Laplacian in cells 1 x 1 x h, on [n, n, n] nodes, with a little of the identity.
+struct FlatCells {
+  explicit FlatCells(int n, Real h = 0.1) : map(rcp(new Map(n * n * n, 0, Tpetra::getDefaultComm()))) {
+    matrix = rcp(new CrsMatrix(map, 27));
+    places = rcp(new MultiVector(map, 3));
+    const Real stiffness[] = {-1, 2, -1}, mass[] = {1 / 6.0, 4 / 6.0, 1 / 6.0};
+    for (const GlobalIndex node : map->getNodeElementList()) {
+      const int p[] = {int(node % n), int(node / n % n), int(node / n / n)};
+      for (int k = 0; k < 3; ++k) places->replaceGlobalValue(node, k, p[k] * (k == 2 ? h : 1));
+      for (int k = 0; k < 27; ++k) {
+        const int d[] = {k % 3, k / 3 % 3, k / 9}, q[] = {p[0] + d[0] - 1, p[1] + d[1] - 1, p[2] + d[2] - 1};
+        if (*std::min_element(q, q + 3) < 0 || *std::max_element(q, q + 3) >= n) continue;
+        const Real value = h * (stiffness[d[0]] * mass[d[1]] + mass[d[0]] * stiffness[d[1]]) * mass[d[2]] +
+                           mass[d[0]] * mass[d[1]] * stiffness[d[2]] / h + (k == 13 ? 1e-3 : 0);
+        const GlobalIndex column = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
+        matrix->insertGlobalValues(node, 1, &value, &column);
+      }
+    }
+    matrix->fillComplete();
+  }
+  RCP<const Map> map;
+  RCP<CrsMatrix> matrix;
+  RCP<MultiVector> places;
+};
+
 /// S = S^T, and S damps what multigrid cannot: on the upper part of the spectrum 1 - S A is small.
 TEST(Chebyshev, IsSymmetricAndSmooths) {
   const Truss truss(8, true);
@@ -318,30 +343,21 @@ TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
   }
 }
 
-/// Trilinear elements of the Laplacian in flat cells, 1 x 1 x 0.1, on [n, n, n] nodes, with a little of the identity.
-struct FlatCells {
-  explicit FlatCells(int n) : map(rcp(new Map(n * n * n, 0, Tpetra::getDefaultComm()))) {
-    matrix = rcp(new CrsMatrix(map, 27));
-    places = rcp(new MultiVector(map, 3));
-    const Real stiffness[] = {-1, 2, -1}, mass[] = {1 / 6.0, 4 / 6.0, 1 / 6.0}, h = 0.1;
-    for (const GlobalIndex node : map->getNodeElementList()) {
-      const int p[] = {int(node % n), int(node / n % n), int(node / n / n)};
-      for (int k = 0; k < 3; ++k) places->replaceGlobalValue(node, k, p[k] * (k == 2 ? h : 1));
-      for (int k = 0; k < 27; ++k) {
-        const int d[] = {k % 3, k / 3 % 3, k / 9}, q[] = {p[0] + d[0] - 1, p[1] + d[1] - 1, p[2] + d[2] - 1};
-        if (*std::min_element(q, q + 3) < 0 || *std::max_element(q, q + 3) >= n) continue;
-        const Real value = h * (stiffness[d[0]] * mass[d[1]] + mass[d[0]] * stiffness[d[1]]) * mass[d[2]] +
-                           mass[d[0]] * mass[d[1]] * stiffness[d[2]] / h + (k == 13 ? 1e-3 : 0);
-        const GlobalIndex column = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
-        matrix->insertGlobalValues(node, 1, &value, &column);
-      }
-    }
-    matrix->fillComplete();
-  }
-  RCP<const Map> map;
-  RCP<CrsMatrix> matrix;
-  RCP<MultiVector> places;
-};
+TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
+  const auto flatness = [](Real h, bool placed) {
+    const FlatCells cells(8, h);
+    const auto ones = rcp(new MultiVector(cells.map, 1));
+    ones->putScalar(1);
+    const auto nodes =
+        solve::nodes_of(solve::node_matrix(*cells.matrix, 1), ones, placed ? cells.places : Teuchos::null);
+    return solve::flatness(nodes, *cells.map->getComm());
+  };
+  EXPECT_NEAR(flatness(0.1, true), 10, 0.1);
+  EXPECT_NEAR(flatness(1e-3, true), 100, 1e-10);
+  EXPECT_NEAR(flatness(1, true), 1, 0.1);
+  EXPECT_NEAR(flatness(10, true), 1, 0.1);
+  EXPECT_EQ(flatness(0.1, false), 1);
+}
 
 /// Flat cells are coarsened across their short edges first: which are those, the places tell.
 TEST(Multigrid, ContractsInFlatCells) {
