@@ -27,7 +27,10 @@ RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
 }  // namespace
 
 DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name)
-    : name_(name), map_(A->getRowMap()), A_(renumbered(A)), solver_(make_direct_solver({}, true)) {}
+    : name_(name),
+      map_(A->getRowMap()),
+      A_(renumbered(A)),
+      solver_(make_direct_solver(Teuchos::ParameterList().set("ICNTL(8)", 1, "scaling: by the diagonal"), true)) {}
 
 void DirectInverse::setup(bool symmetric) {
   const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
