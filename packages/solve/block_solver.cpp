@@ -138,6 +138,8 @@ class NodeMultigrid : public BlockSolver {
  public:
   explicit NodeMultigrid(const std::string& name) : BlockSolver(fmt::format("multigrid of '{}'", name)) {}
 
+  bool flat() const override { return !multigrid_.is_null() && multigrid_->flat(); }
+
  private:
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     if (multigrid_.is_null()) {

@@ -18,6 +18,8 @@ class BlockSolver {
   }
   /// About the inverse of the block's matrix, without the system's scale. The object may change at every set-up.
   RCP<const fields::Operator> inverse() const { return rcp(new CountedOperator(prepared(), cost_)); }
+  /// Whether cells are so flat that smoothing has to be better than elsewhere. Known after the first set-up.
+  virtual bool flat() const { return false; }
   /// Its own and those of what it uses.
   virtual std::vector<SolverCost> costs() const { return {*cost_}; }
 

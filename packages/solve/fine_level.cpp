@@ -63,9 +63,25 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   return S;
 }
 
-/// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; empty, for all, of a
-/// block of order 2.
-std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
+/// Flags also the unknowns whose rows have a column that is flagged. Collective.
+void add_neighbours(const CrsMatrix& A, Vector& flags) {
+  Vector of_columns(A.getColMap());
+  const auto import = A.getGraph()->getImporter();
+  if (import.is_null())
+    Tpetra::deep_copy(of_columns, flags);
+  else
+    of_columns.doImport(flags, *import, Tpetra::INSERT);
+  const auto graph = A.getLocalMatrixHost().graph;
+  const auto column_flag = of_columns.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto flag = flags.getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (LocalIndex row = 0, n = graph.numRows(); row < n; ++row)
+    for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && flag(row, 0) == 0; ++k)
+      flag(row, 0) = column_flag(graph.entries(k), 0);
+}
+
+/// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; in flat cells, where
+/// the rows around them are hard for multigrid, of their neighbours, too. Empty, for all, of a block of order 2.
+std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system, bool flat) {
   if (!system.diagonal.front().block.interpolation.is_null()) return {};
   const int n = system.joined->n_blocks();
   std::vector<RCP<Vector>> chosen;
@@ -80,6 +96,7 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system) {
     for (std::size_t i = 0; i < flags.extent(0); ++i)
       if (rows(i + 1) > rows(i)) flags(i, 0) = 1;
   }
+  if (flat) add_neighbours(*system.blocks[0], *chosen[0]);
   return chosen;
 }
 
@@ -199,7 +216,7 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
 void FineLevel::setup(const LinearSystem& system, bool keeps) {
   if (!keeps) set_up_order_one(system);
   if (!smoothed_) {
-    const auto chosen = smoothed_unknowns(system);
+    const auto chosen = smoothed_unknowns(system, order_one_->flat());
     smoothed_ = rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
     if (!chosen.empty())
       rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen, JoinedMatrix::Columns::all);

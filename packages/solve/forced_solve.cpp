@@ -57,7 +57,8 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
   const auto before = problem_.state_hash(problem_.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
   for (auto states = states_after(dx); report.converged && report.residual > tolerance && asked > tolerance;) {
-    asked = states == before ? settled : std::max(next_accuracy * asked, tolerance);
+    asked = states == before ? settled : std::max(next_accuracy * std::min(asked, report.residual), tolerance);
+    if (report.residual <= asked) break;
     apply(dx, r);
     for (std::size_t i = 0; i < r.size(); ++i) r[i]->update(1, *b[i], -1);
     const auto more = solve_.solve(r, correction, asked / report.residual);

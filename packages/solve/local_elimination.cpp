@@ -146,6 +146,7 @@ LocalElimination::LocalElimination(BlockProblem& problem)
   for (int r = 0; r < n_remaining(); ++r) {
     constrained_.push_back(rcp(new Vector(problem.blocks()[plan_.remaining[r]].map)));
     share(problem, plan_.remaining[r], block(r, r));
+    keep_rows(r, Teuchos::null);  // before anything is multiplied: J has columns there that A does not
   }
   for (auto& condensed : plan_.condensed)
     if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);

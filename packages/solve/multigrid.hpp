@@ -34,6 +34,8 @@ class Multigrid : public fields::Operator {
   void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real alpha,
              Real beta) const override;
 
+  /// Whether cells are so flat that the smoother of the finest level has a higher degree.
+  bool flat() const { return degree_ > Chebyshev::usual_degree; }
   double operator_complexity() const {
     return operator_complexity_;
   }                            ///< entries of the matrices of all levels over those of the finest

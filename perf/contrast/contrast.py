@@ -86,7 +86,8 @@ def cases():
     for nu in (0, 0.4, 0.45):
         yield Case(f"Poisson's ratio {nu}", MIXED + rocks("Poisson's ratio", nu), quick=nu == 0.45)
     for factor, text in ((3, "3"), (10, "10"), (1 / 3, "1/3"), (0.1, "1/10")):
-        yield Case(f"aspect ratio {text}", STICK + SOFT + stretched(factor), quick=factor == 10)
+        yield Case(f"aspect ratio {text}", STICK + SOFT + stretched(factor), quick=text in ("10", "1/10"),
+                   quick_cells="hexahedra" if text == "1/10" else "tetrahedra")
     yield Case("aspect ratio 1/10, plain tips", STICK + SOFT + stretched(0.1) + ("Mesh.tips=plain",), quick=True, quick_cells="hexahedra")
     yield Case("E 1e6, K_t 1e-9", MIXED + contrast("1e6") + stiff("1e-9"))
     yield Case("E 1e-6, K_n and K_t 1e-9", STICK + SOFT + contrast("1e-6") + springs("1e-9"))
