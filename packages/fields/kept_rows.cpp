@@ -6,18 +6,11 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-constexpr int n_sums = 4;  // of a row, so that an addition need not wait for the one before
+/// Sums of a row: that of place p takes part in number p % n_sums, so that an addition need not wait for the one
+/// before, and rows have the same bits whether they are kept, without zeros, or not.
+constexpr int n_sums = 4;
 
-/// The sum of value(k) x(column(k)), k < n.
-template <class Value, class Column, class X>
-KOKKOS_INLINE_FUNCTION Real sum_of(std::size_t n, const Value& value, const Column& column, const X& x) {
-  Real sums[n_sums] = {};
-  std::size_t k = 0;
-  for (; k + n_sums <= n; k += n_sums)
-    for (int s = 0; s < n_sums; ++s) sums[s] += value(k + s) * x(column(k + s), 0);
-  for (; k < n; ++k) sums[0] += value(k) * x(column(k), 0);
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
+KOKKOS_INLINE_FUNCTION Real total(const Real (&sums)[n_sums]) { return (sums[0] + sums[1]) + (sums[2] + sums[3]); }
 
 }  // namespace
 
@@ -94,17 +87,18 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
   const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
   Kokkos::parallel_for(
       "product", Policy(0, J.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
-        const auto begin = J.graph.row_map(row);
+        const auto begin = J.graph.row_map(row), end = J.graph.row_map(row + 1);
+        Real sums[n_sums] = {};
         if (const LocalIndex k = kept.number(row); k >= 0) {
-          const auto first = kept.start(k);
-          to(row, 0) += sum_of(
-              kept.start(k + 1) - first, [&](std::size_t i) { return kept.value(first + i); },
-              [&](std::size_t i) { return J.graph.entries(begin + kept.place(first + i)); }, from);
+          for (auto i = kept.start(k); i < kept.start(k + 1); ++i)
+            sums[kept.place(i) % n_sums] += kept.value(i) * from(J.graph.entries(begin + kept.place(i)), 0);
         } else {
-          to(row, 0) += sum_of(
-              J.graph.row_map(row + 1) - begin, [&](std::size_t i) { return J.values(begin + i); },
-              [&](std::size_t i) { return J.graph.entries(begin + i); }, from);
+          auto i = begin;
+          for (; i + n_sums <= end; i += n_sums)
+            for (int s = 0; s < n_sums; ++s) sums[s] += J.values(i + s) * from(J.graph.entries(i + s), 0);
+          for (int s = 0; i + s < end; ++s) sums[s] += J.values(i + s) * from(J.graph.entries(i + s), 0);
         }
+        to(row, 0) += total(sums);
       });
 }
 

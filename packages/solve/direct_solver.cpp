@@ -155,7 +155,7 @@ class DirectSolver : public LinearSolver {
     mumps_.sym = symmetric ? 2 : 0;
     run(initialise);
     for (int quiet : {1, 2, 3, 4}) mumps_.icntl[quiet - 1] = quiet < 4 ? -1 : 0;
-    mumps_.icntl[17] = on_one_rank_ ? 0 : 3;  // distributed matrix
+    mumps_.icntl[17] = 3;  // distributed matrix; with a centralised one the analysis would look at values
     for (const auto& [i, value] : icntl_) mumps_.icntl[i] = value;
     for (const auto& [i, value] : cntl_) mumps_.cntl[i] = value;
 
@@ -176,10 +176,10 @@ class DirectSolver : public LinearSolver {
     for (auto* indices : {&rows_, &columns_}) indices->reserve(1);  // MUMPS wants a pointer also where nothing is
     values_.reserve(1);
     mumps_.n = n;
-    mumps_.nnz = mumps_.nnz_loc = rows_.size();
-    mumps_.irn = mumps_.irn_loc = rows_.data();
-    mumps_.jcn = mumps_.jcn_loc = columns_.data();
-    mumps_.a = mumps_.a_loc = values_.data();
+    mumps_.nnz_loc = rows_.size();
+    mumps_.irn_loc = rows_.data();
+    mumps_.jcn_loc = columns_.data();
+    mumps_.a_loc = values_.data();
     ready_ = true;
     analysed_ = false;
   }
