@@ -133,7 +133,7 @@ Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
   for (std::size_t i = 0; i < nodes.place.size(); ++i) {
     far.clear();
     for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
-      far.push_back(distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
+      if (const Real r = distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]); r > 0) far.push_back(r);
     if (far.size() <= third) continue;
     std::sort(far.begin(), far.end());
     here[0] += std::fmin(far[third] / far[0], flattest);

@@ -137,7 +137,7 @@ void Chebyshev::find_largest_eigenvalue() {
   int info = 0;
   Teuchos::LAPACK<int, Real>().STEQR('N', static_cast<int>(diagonal.size()), diagonal.data(), beside.data(), nullptr, 1,
                                      nullptr, &info);
-  largest_ = std::fmax(-diagonal.front(), diagonal.back());
+  if (const Real found = std::fmax(-diagonal.front(), diagonal.back()); info == 0 && found > 0) largest_ = found;
 }
 
 /// Over all owned nodes.
