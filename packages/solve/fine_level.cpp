@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/check.hpp"
+#include "solve/columns.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -66,11 +67,7 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
 /// Flags also the unknowns whose rows have a column that is flagged. Collective.
 void add_neighbours(const CrsMatrix& A, Vector& flags) {
   Vector of_columns(A.getColMap());
-  const auto import = A.getGraph()->getImporter();
-  if (import.is_null())
-    Tpetra::deep_copy(of_columns, flags);
-  else
-    of_columns.doImport(flags, *import, Tpetra::INSERT);
+  spread(flags, A, of_columns);
   const auto graph = A.getLocalMatrixHost().graph;
   const auto column_flag = of_columns.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto flag = flags.getLocalViewHost(Tpetra::Access::ReadWrite);

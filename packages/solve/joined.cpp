@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "solve/columns.hpp"
+
 namespace sprekk::solve {
 namespace {
 
@@ -54,11 +56,7 @@ class JoinedOperator : public fields::Operator {
 /// The flags of the matrix' columns, from those of its domain.
 std::vector<char> of_columns(const CrsMatrix& matrix, const Vector& flags) {
   Vector columns(matrix.getColMap());
-  const auto import = matrix.getGraph()->getImporter();
-  if (import.is_null())
-    Tpetra::deep_copy(columns, flags);
-  else
-    columns.doImport(flags, *import, Tpetra::INSERT);
+  spread(flags, matrix, columns);
   const auto values = columns.getLocalViewHost(Tpetra::Access::ReadOnly);
   std::vector<char> taken(values.extent(0));
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = values(i, 0) != 0;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "solve/columns.hpp"
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
@@ -54,15 +55,6 @@ void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed) {
           if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
             local.values(k) += added(row);
       });
-}
-
-/// target <- the owned flags and those of ghosts.
-void spread(const Vector& owned, const CrsMatrix& matrix, Vector& columns) {
-  const auto import = matrix.getGraph()->getImporter();
-  if (import.is_null())
-    Tpetra::deep_copy(columns, owned);
-  else
-    columns.doImport(owned, *import, Tpetra::INSERT);
 }
 
 /// Changes, but for a chance of 2^-64, when any bit of any value does.
