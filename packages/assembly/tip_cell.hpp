@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -22,8 +23,8 @@ namespace sprekk::assembly {
 /// from the tip; on a triangle N and psi span what a quarter-point triangle has along its edges at the tip.
 ///
 /// Integrals over a cell of grad psi, and of grad (x psi), are those of psi n and x psi n over its faces to round-off:
-/// a function linear in x is added to each gradient for what the rule misses where cells are no simplices. So stress
-/// that is uniform, or linear and balanced by body forces, is in equilibrium.
+/// on simplices the rules are exact, elsewhere a function linear in x is added to each gradient for what they miss. So
+/// stress that is uniform, or linear and balanced by body forces, is in equilibrium.
 template <Shape shape>
 class TipCell {
  public:
@@ -41,7 +42,15 @@ class TipCell {
       : rules_(std::move(rules)), tips_(n) {
     gather_host<shape>(mesh, cell, X_);
     for (int a = 0; a < n; ++a) tips_[a] = mesh.tip[mesh.cells[cell * n + a]];
-    balance();
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < dim; ++i) {
+        size_ = std::max(size_, std::abs(X_[a][i] - X_[0][i]));
+        centre_[i] += X_[a][i] / n;
+      }
+    if constexpr (is_simplex(shape))
+      affine_ = point({});
+    else
+      balance();
   }
 
   /// At a reference point that is no tip; returns |det(dx/dxi)|.
@@ -49,7 +58,7 @@ class TipCell {
     Real dN[n][dim];
     Cell::shape_functions(xi, v.N);
     Cell::gradients(xi, dN);
-    const CellPoint<shape> point(X_, dN);
+    const auto point = this->point(xi);
     Real rho = 0, grad_rho[dim] = {};
     for (int a = 0; a < n; ++a) {
       point.gradient(dN[a], v.grad_N[a]);
@@ -57,24 +66,19 @@ class TipCell {
       rho += v.N[a];
       for (int i = 0; i < dim; ++i) grad_rho[i] += v.grad_N[a][i];
     }
-    const Real root = std::sqrt(rho);
-    Real offset[dim + 1];
-    offsets(place(v.N), offset);
+    const Real fall = 1 / std::sqrt(rho) - 1, slope = -1 / (2 * rho * std::sqrt(rho));
     for (int a = 0; a < n; ++a) {
-      v.psi[a] = tips_[a] ? 0 : v.N[a] * (1 / root - 1);
-      for (int i = 0; i < dim; ++i) {
-        v.grad_psi[a][i] = tips_[a] ? 0 : v.grad_N[a][i] * (1 / root - 1) - v.N[a] * grad_rho[i] / (2 * rho * root);
-        for (int m = 0; m <= dim; ++m) v.grad_psi[a][i] += correction_[a][i][m] * offset[m];
-      }
+      v.psi[a] = tips_[a] ? 0 : v.N[a] * fall;
+      for (int i = 0; i < dim; ++i)
+        v.grad_psi[a][i] = tips_[a] ? 0 : v.grad_N[a][i] * fall + v.N[a] * slope * grad_rho[i];
     }
+    if constexpr (!is_simplex(shape)) correct(v);
     return point.volume;
   }
 
   /// Gradient in space of a function with reference gradient g at a reference point.
   void gradient(const Real (&xi)[dim], const Real (&g)[dim], Real (&out)[dim]) const {
-    Real dN[n][dim];
-    Cell::gradients(xi, dN);
-    CellPoint<shape>(X_, dN).gradient(g, out);
+    point(xi).gradient(g, out);
   }
 
   /// Mean of psi over a face, [node of face_nodes(shape)].
@@ -144,6 +148,13 @@ class TipCell {
   }
 
  private:
+  CellPoint<shape> point(const Real (&xi)[dim]) const {
+    if (affine_) return *affine_;
+    Real dN[n][dim];
+    Cell::gradients(xi, dN);
+    return {X_, dN};
+  }
+
   static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
   static constexpr int n_face_points = 10;  // fewer than those of a cell, and they decide about equilibrium
 
@@ -180,12 +191,15 @@ class TipCell {
     for (int i = 0; i < dim; ++i) offset[1 + i] = (x[i] - centre_[i]) / size_;
   }
 
-  void balance() {
+  void correct(Values& v) const {
+    Real offset[dim + 1];
+    offsets(place(v.N), offset);
     for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i) {
-        size_ = std::max(size_, std::abs(X_[a][i] - X_[0][i]));
-        centre_[i] += X_[a][i] / n;
-      }
+      for (int i = 0; i < dim; ++i)
+        for (int m = 0; m <= dim; ++m) v.grad_psi[a][i] += correction_[a][i][m] * offset[m];
+  }
+
+  void balance() {
     Real missing[n * dim][dim + 1] = {}, moments[(dim + 1) * (dim + 1)] = {}, offset[dim + 1];
     for (int f = 0; f < mesh::n_faces(shape); ++f) {
       const auto& nodes = mesh::face_nodes(shape)[f];
@@ -215,6 +229,7 @@ class TipCell {
   std::shared_ptr<TipRules> rules_;
   std::vector<char> tips_;  // [node]
   Real X_[n][dim], centre_[dim] = {}, correction_[n][dim][dim + 1] = {}, size_ = 0;
+  std::optional<CellPoint<shape>> affine_;  // of a simplex: the same everywhere
 };
 
 }  // namespace sprekk::assembly

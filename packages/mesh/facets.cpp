@@ -95,21 +95,21 @@ std::array<Vector, 3> face_frame(const Vector& direction, int dim) {
 
 std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh) {
   const int faces_per_cell = n_faces(mesh.shape);
-  const auto sorted_corners = [&](GlobalIndex face) {
-    const auto nodes = nodes_of_face(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
-    std::array<GlobalIndex, 4> corners{-1, -1, -1, -1};
-    std::copy_n(nodes.begin(), n_face_corners(mesh.shape), corners.begin());
-    std::sort(corners.begin(), corners.begin() + n_face_corners(mesh.shape));
-    return corners;
+  const GlobalIndex n = mesh.n_cells() * faces_per_cell;
+  const auto corners_of = [&](GlobalIndex face) {
+    return sorted_corners(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
   };
-  // Faces hashed by their lowest corner: a chain per node, first[node] -> next[face] -> ... -> -1.
-  std::vector<GlobalIndex> first(mesh.n_nodes(), -1), next(mesh.n_cells() * faces_per_cell, -1), neighbour(next);
-  for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(next.size()); ++face) {
-    const auto corners = sorted_corners(face);
-    GlobalIndex other = first[corners[0]];
-    while (other >= 0 && sorted_corners(other) != corners) other = next[other];
+  // Faces hashed by their corners: a chain for each value, first[hash] -> next[face] -> ... -> -1.
+  std::size_t n_hashes = 1;
+  while (n_hashes < static_cast<std::size_t>(n)) n_hashes *= 2;
+  std::vector<GlobalIndex> first(n_hashes, -1), next(n, -1), neighbour(next);
+  for (GlobalIndex face = 0; face < n; ++face) {
+    const auto corners = corners_of(face);
+    GlobalIndex& start = first[SortedCornersHash()(corners) & (n_hashes - 1)];
+    GlobalIndex other = start;
+    while (other >= 0 && corners_of(other) != corners) other = next[other];
     if (other < 0) {
-      next[face] = std::exchange(first[corners[0]], face);
+      next[face] = std::exchange(start, face);
       continue;
     }
     SPREKK_CHECK(neighbour[other] < 0, "mesh: cells {}, {} and {} share one face; at most two may",

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -24,6 +25,29 @@ Vector point(const GlobalMesh& mesh, GlobalIndex node);
 
 /// Nodes of a cell's face in the order of face_nodes(shape); unused entries are -1.
 std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
+
+/// The corners of a cell's face, the lowest first; unused entries are -1. The same from both sides.
+using SortedCorners = std::array<GlobalIndex, 4>;
+
+struct SortedCornersHash {
+  std::size_t operator()(const SortedCorners& corners) const {
+    std::size_t hash = 0;
+    for (const GlobalIndex corner : corners) hash = (hash ^ static_cast<std::size_t>(corner)) * 0x9e3779b97f4a7c15ull;
+    return hash ^ (hash >> 29);
+  }
+};
+
+inline SortedCorners sorted_corners(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
+  SortedCorners corners{-1, -1, -1, -1};
+  const int n = n_face_corners(mesh.shape);
+  const auto& local = face_nodes(mesh.shape)[local_face];
+  const GlobalIndex* const nodes = &mesh.cells[cell * n_nodes(mesh.shape)];
+  for (int k = 0; k < n; ++k) {
+    corners[k] = nodes[local[k]];
+    for (int j = k; j > 0 && corners[j] < corners[j - 1]; --j) std::swap(corners[j], corners[j - 1]);
+  }
+  return corners;
+}
 
 /// The corners of a face in order around it, and how many they are.
 struct FaceCorners {

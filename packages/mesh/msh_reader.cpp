@@ -20,15 +20,6 @@ namespace sprekk::mesh {
 namespace {
 
 using Element = MshFile::Element;
-using Key = std::array<GlobalIndex, 4>;
-
-struct Hash {
-  std::size_t operator()(const Key& key) const {
-    std::size_t h = 0;
-    for (GlobalIndex part : key) h = (h ^ static_cast<std::size_t>(part)) * 0x9e3779b97f4a7c15ULL;
-    return h ^ (h >> 29);
-  }
-};
 
 std::string text(const Vector& x) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", x[0], x[1], x[2]); }
 
@@ -168,13 +159,9 @@ class Builder {
     }
   }
 
-  Key corners_of_face(GlobalIndex face) const {
+  SortedCorners corners_of_face(GlobalIndex face) const {
     const int n = n_faces(mesh_.shape);
-    const auto nodes = nodes_of_face(mesh_, face / n, static_cast<int>(face % n));
-    Key key{-1, -1, -1, -1};
-    std::copy_n(nodes.begin(), n_face_corners(mesh_.shape), key.begin());
-    std::sort(key.begin(), key.end());
-    return key;
+    return sorted_corners(mesh_, face / n, static_cast<int>(face % n));
   }
 
   Vector centre(GlobalIndex face) const {
@@ -186,7 +173,7 @@ class Builder {
     try {
       return face_neighbours(mesh_);
     } catch (const Error&) {
-      std::map<Key, std::vector<GlobalIndex>> faces;
+      std::map<SortedCorners, std::vector<GlobalIndex>> faces;
       for (GlobalIndex face = 0; face < mesh_.n_cells() * n_faces(mesh_.shape); ++face) {
         auto& same = faces[corners_of_face(face)];
         same.push_back(face);
@@ -299,19 +286,19 @@ class Builder {
     }
   }
 
-  std::optional<Key> corners(const Element& element) const {
-    Key key{-1, -1, -1, -1};
+  std::optional<SortedCorners> corners(const Element& element) const {
+    SortedCorners key{-1, -1, -1, -1};
     for (int k = 0; k < element.type->n_corners; ++k) {
       key[k] = node_of_point_[node(element, k)];
       if (key[k] < 0) return std::nullopt;
     }
-    std::sort(key.begin(), key.end());
+    std::sort(key.begin(), key.begin() + element.type->n_corners);
     return key;
   }
 
   /// Finds the cell face of every element in a group of dimension d - 1.
   void add_faces() {
-    std::unordered_map<Key, GlobalIndex, Hash> face_at;
+    std::unordered_map<SortedCorners, GlobalIndex, SortedCornersHash> face_at;
     for (const auto& element : msh_.elements)
       if (is_grouped_face(element))
         if (const auto key = corners(element)) face_at.emplace(*key, -1);

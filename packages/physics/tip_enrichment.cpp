@@ -190,34 +190,37 @@ class TipEnrichment final : public assembly::Module {
 
   Tip tip(LocalIndex cell) const { return {*mesh_, cell, rules_}; }
 
+  /// The block of nodes a and b.
+  template <class Matrix>
+  static void set_stiffness(const laws::Elasticity& elasticity, const Real (&moment)[n * dim][n * dim], int a, int b,
+                            const Matrix& matrix) {
+    Real one[dim][dim], stiffness[dim][dim];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) one[i][j] = moment[a * dim + i][b * dim + j];
+    elasticity.stiffness(one, stiffness);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) matrix(a * dim + i, b * dim + j) = stiffness[i][j];
+  }
+
   void build_cells() {
     constexpr int size = n * dim;
     cell_ = {View<Real***>("mixed", cell_of_.size(), size, size), View<Real***>("own", cell_of_.size(), size, size)};
     const auto mixed = Kokkos::create_mirror_view(cell_.mixed), own = Kokkos::create_mirror_view(cell_.own);
     for (std::size_t c = 0; c < cell_of_.size(); ++c) {
       const auto& elasticity = law(cell_of_[c]);
-      Real mixed_moment[n][n][dim][dim] = {}, own_moment[n][n][dim][dim] = {};  // integrals of grad_i grad_j
+      Real mixed_moment[size][size] = {}, own_moment[size][size] = {};  // integrals of grad_i grad_j
       tip(cell_of_[c]).for_each_point([&](const auto&, Real volume, const auto&, const auto& v) {
-        for (int a = 0; a < n; ++a)
-          for (int i = 0; i < dim; ++i) {
-            const Real N = volume * v.grad_N[a][i], psi = volume * v.grad_psi[a][i];
-            for (int b = 0; b < n; ++b)
-              for (int j = 0; j < dim; ++j) {
-                mixed_moment[a][b][i][j] += N * v.grad_psi[b][j];
-                own_moment[a][b][i][j] += psi * v.grad_psi[b][j];
-              }
-          }
+        const Real *const grad_N = v.grad_N[0], *const grad_psi = v.grad_psi[0];
+        for (int k = 0; k < size; ++k) {
+          const Real N = volume * grad_N[k], psi = volume * grad_psi[k];
+          for (int l = 0; l < size; ++l) mixed_moment[k][l] += N * grad_psi[l];
+          for (int l = 0; l < size; ++l) own_moment[k][l] += psi * grad_psi[l];
+        }
       });
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b) {
-          Real of_mixed[dim][dim], of_own[dim][dim];
-          elasticity.stiffness(mixed_moment[a][b], of_mixed);
-          elasticity.stiffness(own_moment[a][b], of_own);
-          for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j) {
-              mixed(c, a * dim + i, b * dim + j) = of_mixed[i][j];
-              own(c, a * dim + i, b * dim + j) = of_own[i][j];
-            }
+          set_stiffness(elasticity, mixed_moment, a, b, Kokkos::subview(mixed, c, Kokkos::ALL, Kokkos::ALL));
+          set_stiffness(elasticity, own_moment, a, b, Kokkos::subview(own, c, Kokkos::ALL, Kokkos::ALL));
         }
     }
     Kokkos::deep_copy(cell_.mixed, mixed);
