@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <unordered_map>
 
 #include "solve/columns.hpp"
 
@@ -130,75 +131,100 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, 
       chosen.back()->putScalar(1);
     }
   create(chosen, columns);
-  find_entries();
 }
 
 void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which) {
-  const int n = joined_->n_blocks();
-  std::vector<std::vector<char>> taken(n * n);  // [r * n + s][column]
-  for (int k = 0; k < n * n; ++k)
-    if (!blocks_[k].is_null()) taken[k] = of_columns(*blocks_[k], *chosen[k % n]);
   std::vector<GlobalIndex> unknowns;
   std::vector<LocalIndex> rows;
-  std::vector<std::vector<GlobalIndex>> columns;
-  for (int r = 0; r < n; ++r) {
-    const auto row_taken = chosen[r]->getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (LocalIndex row = 0, n_rows = row_taken.extent(0); row < n_rows; ++row) {
-      if (row_taken(row, 0) == 0) continue;
+  for (int r = 0; r < joined_->n_blocks(); ++r) {
+    const auto taken = chosen[r]->getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LocalIndex row = 0, n_rows = taken.extent(0); row < n_rows; ++row) {
+      if (taken(row, 0) == 0) continue;
       unknowns.push_back(joined_->offset(r) + joined_->map(r)->getGlobalElement(row));
       rows.push_back(joined_->first(r) + row);
-      columns.emplace_back();
-      for (int s = 0; s < n; ++s) {
-        const auto& block = blocks_[r * n + s];
-        if (block.is_null()) continue;
-        const auto graph = block->getLocalMatrixHost().graph;
-        for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k)
-          if (which == Columns::all || taken[r * n + s][graph.entries(k)])
-            columns.back().push_back(joined_->offset(s) + block->getColMap()->getGlobalElement(graph.entries(k)));
-      }
+    }
+  }
+  rows_ = on_device("rows", rows);
+  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const auto map = rcp(new Map(invalid, unknowns.data(), unknowns.size(), 0, joined_->map()->getComm()));
+  const auto domain = which == Columns::all ? joined_->map() : RCP<const Map>(map);
+  RCP<const Map> columns;
+  const auto places = number_columns(chosen, which, *domain, columns);
+  std::vector<std::size_t> start;
+  const auto of_entries = find_entries(rows, places, start);
+  const Teuchos::ArrayRCP<std::size_t> row_start(start.size());
+  const Teuchos::ArrayRCP<LocalIndex> column(of_entries.size());
+  std::copy(start.begin(), start.end(), row_start.begin());
+  std::copy(of_entries.begin(), of_entries.end(), column.begin());
+  matrix_ = own_ = rcp(new CrsMatrix(map, columns, 0));
+  own_->setAllValues(row_start, column, Teuchos::ArrayRCP<Real>(of_entries.size(), 0));
+  own_->expertStaticFillComplete(domain, map);
+}
+
+/// The columns of all entries, and where those of each row start; and which entry of which block goes where.
+std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>& rows, const Places& places,
+                                                   std::vector<std::size_t>& start) {
+  const int n = joined_->n_blocks();
+  struct Entry {
+    LocalIndex column;
+    int block;
+    LocalIndex from;
+  };
+  std::vector<Entry> of_row;
+  std::vector<std::vector<LocalIndex>> from(n * n), to(n * n);
+  std::vector<LocalIndex> columns;
+  start.push_back(0);
+  for (const LocalIndex joined_row : rows) {
+    int r = n - 1;
+    while (joined_row < joined_->first(r)) --r;
+    const LocalIndex row = joined_row - joined_->first(r);
+    of_row.clear();
+    for (int k = r * n; k < (r + 1) * n; ++k) {
+      if (blocks_[k].is_null()) continue;
+      const auto graph = blocks_[k]->getLocalMatrixHost().graph;
+      for (auto j = graph.row_map(row); j < graph.row_map(row + 1); ++j)
+        if (const LocalIndex column = places[k][graph.entries(j)]; column >= 0)
+          of_row.push_back({column, k, static_cast<LocalIndex>(j)});
+    }
+    std::sort(of_row.begin(), of_row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    for (const auto& entry : of_row) {
+      from[entry.block].push_back(entry.from);
+      to[entry.block].push_back(static_cast<LocalIndex>(columns.size()));
+      columns.push_back(entry.column);
+    }
+    start.push_back(columns.size());
+  }
+  for (int k = 0; k < n * n; ++k) entries_.push_back({on_device("from", from[k]), on_device("to", to[k])});
+  return columns;
+}
+
+/// For each block the columns' places in the matrix, -1 for those that it does not have: of owned unknowns as in its
+/// domain, then of ghosts.
+JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen, Columns which,
+                                                  const Map& domain, RCP<const Map>& columns) const {
+  const int n = joined_->n_blocks();
+  const auto owned = domain.getNodeElementList();
+  std::vector<GlobalIndex> all(owned.begin(), owned.end());
+  std::unordered_map<GlobalIndex, LocalIndex> ghosts;
+  Places places(n * n);
+  for (int k = 0; k < n * n; ++k) {
+    if (blocks_[k].is_null()) continue;
+    const auto& of_block = *blocks_[k]->getColMap();
+    const auto taken = of_columns(*blocks_[k], *chosen[k % n]);
+    places[k].assign(taken.size(), -1);
+    for (std::size_t c = 0; c < taken.size(); ++c) {
+      if (which == Columns::chosen && !taken[c]) continue;
+      const GlobalIndex unknown = joined_->offset(k % n) + of_block.getGlobalElement(static_cast<LocalIndex>(c));
+      places[k][c] = domain.getLocalElement(unknown);
+      if (places[k][c] >= 0) continue;
+      const auto [at, is_new] = ghosts.emplace(unknown, static_cast<LocalIndex>(all.size()));
+      if (is_new) all.push_back(unknown);
+      places[k][c] = at->second;
     }
   }
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  const auto map = rcp(new Map(invalid, unknowns.data(), unknowns.size(), 0, joined_->map()->getComm()));
-  std::vector<std::size_t> n_entries;
-  for (const auto& row : columns) n_entries.push_back(row.size());
-  matrix_ = own_ = rcp(new CrsMatrix(map, Teuchos::arrayView<const std::size_t>(n_entries.data(), n_entries.size())));
-  std::vector<Real> zeros;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    zeros.assign(columns[i].size(), 0);
-    own_->insertGlobalValues(unknowns[i], static_cast<LocalIndex>(columns[i].size()), zeros.data(), columns[i].data());
-  }
-  own_->fillComplete(which == Columns::all ? joined_->map() : RCP<const Map>(map), map);
-  rows_ = on_device("rows", rows);
-}
-
-void JoinedMatrix::find_entries() {
-  const int n = joined_->n_blocks();
-  const auto graph = matrix_->getLocalMatrixHost().graph;
-  const auto& columns = *matrix_->getColMap();
-  const auto rows = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows_);
-  std::vector<LocalIndex> row_of(joined_->map()->getNodeNumElements(), -1);
-  for (std::size_t i = 0; i < rows.extent(0); ++i) row_of[rows(i)] = static_cast<LocalIndex>(i);
-  for (int k = 0; k < n * n; ++k) {
-    entries_.emplace_back();
-    const auto& block = blocks_[k];
-    if (block.is_null()) continue;
-    std::vector<LocalIndex> from, to;
-    const auto source = block->getLocalMatrixHost().graph;
-    for (LocalIndex i = 0, n_rows = source.numRows(); i < n_rows; ++i) {
-      const LocalIndex row = row_of[joined_->first(k / n) + i];
-      if (row < 0) continue;
-      const auto *begin = &graph.entries(0) + graph.row_map(row), *end = &graph.entries(0) + graph.row_map(row + 1);
-      for (auto j = source.row_map(i); j < source.row_map(i + 1); ++j) {
-        const auto number = joined_->offset(k % n) + block->getColMap()->getGlobalElement(source.entries(j));
-        const auto* found = std::find(begin, end, columns.getLocalElement(number));
-        if (found == end) continue;
-        from.push_back(static_cast<LocalIndex>(j));
-        to.push_back(static_cast<LocalIndex>(found - &graph.entries(0)));
-      }
-    }
-    entries_.back() = {on_device("from", from), on_device("to", to)};
-  }
+  columns = rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, domain.getComm()));
+  return places;
 }
 
 void JoinedMatrix::update() {
