@@ -15,7 +15,7 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-constexpr int coarse_size = Multigrid::coarse_size;
+constexpr int coarse_size = 1000;
 
 /// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
 /// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.

@@ -1,18 +1,24 @@
 // The inverse of a matrix that is small enough for one rank.
 #pragma once
 
+#include <vector>
+
 #include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
 
-/// By factors on rank 0, for multigrid's last level and the rows around crack tips. The graph must stay as it is.
+/// By factors, for multigrid's last level and the rows around crack tips: those of MUMPS on rank 0; of few unknowns,
+/// for which calls of MUMPS take longer than the work, dense ones on every rank. The graph must stay as it is.
 class DirectInverse : public fields::Operator {
  public:
+  static constexpr int most_dense = 300;  ///< unknowns
+
   /// `name` begins the messages of errors. Collective.
   DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name);
 
-  /// Factors the present values. Collective.
-  void setup(bool symmetric);
+  /// Factors the present values, unless none has changed by more than `change` of what is on the diagonal since the
+  /// last ones were. Throws where they are singular. Collective.
+  void setup(bool symmetric, Real change = 0);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
@@ -20,10 +26,20 @@ class DirectInverse : public fields::Operator {
   void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real, Real) const override;
 
  private:
+  bool has_changed(Real much) const;
+  void factor_dense();
+  void solve_dense(const Vector& b, Vector& x) const;
+
   std::string name_;
   RCP<const fields::Map> map_;
   RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
-  std::unique_ptr<LinearSolver> solver_;
+  mutable Vector from_, to_;
+  std::unique_ptr<LinearSolver> solver_;  // null: dense
+  bool symmetric_ = true;
+  View<Real*> factored_;       // the values that it has factored, unless they are always made anew
+  std::vector<Real> factors_;  // of the whole matrix, column by column
+  std::vector<int> pivots_;
+  mutable std::vector<Real> part_, whole_;  // of a vector: what this rank has, zero elsewhere; all of it
 };
 
 }  // namespace sprekk::solve

@@ -27,7 +27,7 @@ struct LinearSolverOptions {
   Real tolerance = 1e-12;              ///< relative residual that is asked for
   bool forcing = true;                 ///< less is asked for while faces still change state
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
-  long long direct_limit_3d = 5000;    ///< auto: the same in 3D
+  long long direct_limit_3d = 3000;    ///< auto: the same in 3D
   std::optional<bool> reproducible;    ///< the direct solver factors on one rank; absent: no
   Teuchos::ParameterList mumps, belos, muelu;
 
@@ -84,7 +84,7 @@ class LinearSolver {
   /// Makes ready to solve with this system. Empty, or what failed.
   virtual std::string setup(const LinearSystem& system) = 0;
 
-  /// x <- A^-1 b.
+  /// x <- A^-1 b; of a tolerance of 1 or more it may leave the residual unknown.
   virtual LinearReport solve(const Vector& b, Vector& x, Real tolerance) = 0;
 
   /// About the inverse of the system of the last set-up, as Krylov's method uses it; null if there is none.

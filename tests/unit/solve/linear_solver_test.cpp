@@ -5,6 +5,7 @@
 #include "base/check.hpp"
 #include "dense.hpp"
 #include "solve/condensed_solve.hpp"
+#include "solve/direct_inverse.hpp"
 
 namespace sprekk::test {
 namespace {
@@ -98,6 +99,68 @@ TEST(DirectSolver, RefusesUnknownParameters) {
   Teuchos::ParameterList list;
   list.set("ICNTL(99)", 1);
   EXPECT_THROW(solve::make_direct_solver(list), Error);
+}
+
+/// Grids whose unknowns are few enough for dense factors, and too many.
+constexpr int few = 8, many = 20;
+
+/// Distance of A^-1 A x from x, over the largest of x.
+Real error_of(const solve::DirectInverse& inverse, const CrsMatrix& A) {
+  Vector x(A.getDomainMap()), b(A.getRangeMap()), y(A.getDomainMap());
+  for (std::size_t i = 0; i < x.getLocalLength(); ++i)
+    x.replaceLocalValue(i, std::cos(0.1 * x.getMap()->getGlobalElement(i)));
+  A.apply(x, b);
+  inverse.apply(b, y, Teuchos::NO_TRANS, 1, 0);
+  y.update(-1, x, 1);
+  return y.normInf() / x.normInf();
+}
+
+void scale(CrsMatrix& A, Real factor) {
+  A.resumeFill();
+  A.scale(factor);
+  A.fillComplete(A.getDomainMap(), A.getRangeMap());
+}
+
+TEST(DirectInverse, InvertsFewAndManyUnknowns) {
+  for (const int n : {few, many}) {
+    Grid grid(n);
+    ASSERT_EQ(grid.matrix->getGlobalNumRows() <= solve::DirectInverse::most_dense, n == few);
+    solve::DirectInverse inverse(grid.matrix, "test");
+    for (const Real factor : {1, 3}) {
+      scale(*grid.matrix, factor);
+      inverse.setup(true);
+      EXPECT_LT(error_of(inverse, *grid.matrix), 1e-10) << n;
+    }
+  }
+}
+
+TEST(DirectInverse, KeepsItsFactorsWhileLittleChanges) {
+  Grid grid(many);
+  solve::DirectInverse inverse(grid.matrix, "test");
+  inverse.setup(true, 0.01);
+  scale(*grid.matrix, 1.008);
+  inverse.setup(true, 0.01);
+  EXPECT_NEAR(error_of(inverse, *grid.matrix), 0.008, 1e-9);
+  scale(*grid.matrix, 1.004);  // since the factors were made 1.012
+  inverse.setup(true, 0.01);
+  EXPECT_LT(error_of(inverse, *grid.matrix), 1e-10);
+  scale(*grid.matrix, 1.008);
+  inverse.setup(false, 0.01);  // of another kind
+  EXPECT_LT(error_of(inverse, *grid.matrix), 1e-10);
+}
+
+TEST(DirectInverse, ThrowsWhereTheMatrixIsSingular) {
+  for (const int n : {few, many}) {
+    Grid grid(n);
+    scale(*grid.matrix, 0);
+    solve::DirectInverse inverse(grid.matrix, "test");
+    try {
+      inverse.setup(false);
+      ADD_FAILURE() << n;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("test: "), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
