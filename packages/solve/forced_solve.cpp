@@ -5,7 +5,7 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real first_accuracy = 1e-4, next_accuracy = 1e-2, safety = 1e-2;
+constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);

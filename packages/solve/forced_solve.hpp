@@ -6,7 +6,7 @@
 namespace sprekk::solve {
 
 /// While faces change state a Newton step only has to find the states that come next. A solve then ends when two
-/// accuracies, the second a hundred times the first (relative residuals 1e-4, 1e-6, ...), lead to the same states, so
+/// accuracies, the second a hundred times the first (relative residuals 1e-3, 1e-5, ...), lead to the same states, so
 /// that none is mistaken for what the exact step leads to; else it goes on to the tolerance. If no face changes,
 /// Newton's method converges about quadratically, and the solve ends well below what the next residual will be for that
 /// reason, 0.01 (e / e of the iteration before)^2 with e the largest measure of convergence (as Eisenstat and Walker
