@@ -12,6 +12,9 @@
 #include <cstdlib>
 #include <iostream>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #ifndef SPREKK_VERSION
 #define SPREKK_VERSION "unknown"
@@ -136,9 +139,21 @@ int run_command(int argc, char** argv, RCP<const Comm> comm) {
   }
 }
 
+/// The heap grows by many pages at once, and keeps what steps free and take again: the kernel need not clear them anew.
+/// Large arrays are returned as ever.
+void keep_memory() {
+#ifdef __GLIBC__
+  constexpr int MB = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * MB);
+  mallopt(M_TRIM_THRESHOLD, 256 * MB);
+  mallopt(M_TOP_PAD, 64 * MB);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
   int n_libraries_may_read = 1;   // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
