@@ -77,9 +77,7 @@ class TipCell {
   }
 
   /// Gradient in space of a function with reference gradient g at a reference point.
-  void gradient(const Real (&xi)[dim], const Real (&g)[dim], Real (&out)[dim]) const {
-    point(xi).gradient(g, out);
-  }
+  void gradient(const Real (&xi)[dim], const Real (&g)[dim], Real (&out)[dim]) const { point(xi).gradient(g, out); }
 
   /// Mean of psi over a face, [node of face_nodes(shape)].
   FaceValues face_means(int local_face) const {
