@@ -45,7 +45,7 @@ Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
   for (const auto& measure : problem_.measures(x_, b)) error = std::max(error, measure.value);
   const Real ratio = error_ > 0 ? error / error_ : 0;
   error_ = error;
-  return safety * ratio * ratio;
+  return safety * std::max(ratio * ratio, error > 0 ? enough_ / error : 0);
 }
 
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {

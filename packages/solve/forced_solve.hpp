@@ -10,13 +10,17 @@ namespace sprekk::solve {
 /// that none is mistaken for what the exact step leads to; else it goes on to the tolerance. If no face changes,
 /// Newton's method converges about quadratically, and the solve ends well below what the next residual will be for that
 /// reason, 0.01 (e / e of the iteration before)^2 with e the largest measure of convergence (as Eisenstat and Walker
-/// 1996, choice 2), at the second accuracy or below. Refers to its arguments. All members are collective.
+/// 1996, choice 2), or well below what ends Newton's method, 0.01 tolerance / e (as Kelley 1995, 6.3); at the second
+/// accuracy or below. Refers to its arguments. All members are collective.
 class ForcedSolve {
  public:
   ForcedSolve(BlockProblem& problem, CondensedSolve& solve) : problem_(problem), solve_(solve) {}
 
-  /// Before the first iteration of Newton's method.
-  void start() { error_ = 0; }
+  /// Before the first iteration of Newton's method, which ends when no measure is above the tolerance.
+  void start(Real tolerance) {
+    error_ = 0;
+    enough_ = tolerance;
+  }
 
   /// Fills problem.matrix() at x; `update` makes ready to solve with it.
   void jacobian(const BlockVector& x);
@@ -37,7 +41,8 @@ class ForcedSolve {
   BlockProblem& problem_;
   CondensedSolve& solve_;
   BlockVector x_;
-  Real error_ = 0;  // of the iteration before: its largest measure; 0: there was none
+  Real error_ = 0;   // of the iteration before: its largest measure; 0: there was none
+  Real enough_ = 0;  // what ends Newton's method
 };
 
 }  // namespace sprekk::solve

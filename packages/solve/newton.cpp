@@ -127,7 +127,7 @@ Newton::~Newton() = default;
 
 NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
-  model_->clear_history();
+  model_->start(options_.tolerance);
   problem_.damp(0, {});
   const auto start = model_->make_vector(x);
   // NOX holds references by RCP; the model outlives the solver here

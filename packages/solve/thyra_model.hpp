@@ -20,13 +20,14 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
 
   ThyraModel(BlockProblem& problem, CondensedSolve& solve);
 
-  /// What linear solves say since the last clear.
+  /// Before Newton's method, which ends when no measure is above the tolerance.
+  void start(Real tolerance) {
+    history_->clear();
+    solve_.start(tolerance);
+  }
+  /// What linear solves say since then.
   using LinearHistory = std::vector<LinearReport>;
   const LinearHistory& linear_history() const { return *history_; }
-  void clear_history() {
-    history_->clear();
-    solve_.start();
-  }
 
   /// dx <- -W^-1 f with the Jacobian at x, evaluated anew. False if the solve failed; the history says why.
   bool direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const;
