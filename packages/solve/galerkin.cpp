@@ -1,9 +1,9 @@
 #include "solve/galerkin.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+#include <tuple>
 
+#include "solve/coarse_graphs.hpp"
 #include "solve/node_kernels.hpp"
 
 namespace sprekk::solve {
@@ -12,113 +12,7 @@ namespace {
 using fields::Map;
 using Policy = Kokkos::RangePolicy<Execution>;
 
-constexpr std::uint16_t nowhere = 0xffff, out_of_reach = 0x8000;
-
-/// Sets of nodes, one for each row.
-template <class Node>
-struct Rows {
-  View<std::size_t*> start;
-  View<Node*> node;
-};
-
-/// name(i, add) hands the nodes of row i to add, perhaps several times the same; all are below n_columns.
-template <class Name>
-Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name) {
-  std::vector<LocalIndex> all, last_row(n_columns, -1);
-  Rows<LocalIndex> rows{View<std::size_t*>("start", n + 1), {}};
-  for (LocalIndex i = 0; i < n; ++i) {
-    name(i, [&](LocalIndex node) {
-      if (std::exchange(last_row[node], i) != i) all.push_back(node);
-    });
-    std::sort(all.begin() + rows.start(i), all.end());
-    rows.start(i + 1) = all.size();
-  }
-  rows.node = View<LocalIndex*>("node", all.size());
-  std::copy(all.begin(), all.end(), rows.node.data());
-  return rows;
-}
-
-Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const Map& map) {
-  Rows<GlobalIndex> rows{local.start, View<GlobalIndex*>("node", local.node.extent(0))};
-  for (std::size_t k = 0; k < local.node.extent(0); ++k) rows.node(k) = map.getGlobalElement(local.node(k));
-  for (std::size_t i = 0; i + 1 < local.start.extent(0); ++i)
-    std::sort(rows.node.data() + rows.start(i), rows.node.data() + rows.start(i + 1));
-  return rows;
-}
-
-/// The rows of owned nodes, with those of ghosts after them. Collective.
-Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo) {
-  const LocalIndex n_owned = halo.n_owned(), n_all = halo.n_all();
-  const View<GlobalIndex*> length("length", n_all);
-  for (LocalIndex i = 0; i < n_owned; ++i) length(i) = owned.start(i + 1) - owned.start(i);
-  halo.exchange(length, 1);
-  Rows<GlobalIndex> all{View<std::size_t*>("start", n_all + 1), {}};
-  for (LocalIndex i = 0; i < n_all; ++i) all.start(i + 1) = all.start(i) + length(i);
-  all.node = View<GlobalIndex*>("node", all.start(n_all));
-  std::copy_n(owned.node.data(), owned.node.extent(0), all.node.data());
-  halo.exchange_rows(all.start, all.node, 1);
-  return all;
-}
-
-/// Owned coarse nodes, then all others that are named; -1 is none. Collective.
-RCP<const Map> with_named(const RCP<const Map>& owned, const std::vector<View<GlobalIndex*>>& named) {
-  std::vector<GlobalIndex> others;
-  for (const auto& nodes : named)
-    for (std::size_t k = 0; k < nodes.extent(0); ++k)
-      if (nodes(k) >= 0 && !owned->isNodeGlobalElement(nodes(k))) others.push_back(nodes(k));
-  std::sort(others.begin(), others.end());
-  others.erase(std::unique(others.begin(), others.end()), others.end());
-  const auto mine = owned->getNodeElementList();
-  std::vector<GlobalIndex> all(mine.begin(), mine.end());
-  all.insert(all.end(), others.begin(), others.end());
-  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, owned->getComm()));
-}
-
-View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
-  const View<LocalIndex*> local("local", nodes.extent(0));
-  for (std::size_t k = 0; k < nodes.extent(0); ++k) local(k) = map.getLocalElement(nodes(k));
-  return local;
-}
-
-/// Where columns are in the row that was entered last; nowhere if they are not.
-class Places {
- public:
-  explicit Places(LocalIndex n_columns) : slot_(n_columns, nowhere) {}
-
-  void enter(const View<std::size_t*>& start, const View<LocalIndex*>& column, LocalIndex row) {
-    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = nowhere;
-    begin_ = start(row), end_ = start(row + 1);
-    SPREKK_CHECK(end_ - begin_ < out_of_reach, "multigrid: a node couples to {} others; allowed are less than {}",
-                 end_ - begin_, out_of_reach);
-    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = static_cast<std::uint16_t>(k - begin_);
-  }
-  std::uint16_t operator[](LocalIndex column) const { return slot_[column]; }
-
- private:
-  std::vector<std::uint16_t> slot_;
-  std::size_t begin_ = 0, end_ = 0;
-};
-
-/// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
-std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
-  auto far = nodes.weak;
-  far.resize(graph.n_entries(), false);
-  const auto& halo = *graph.columns;
-  const View<Real*> ball("place and reach", static_cast<std::size_t>(halo.n_all()) * 4);
-  const auto reaches = reach(nodes);
-  for (std::size_t i = 0; i < nodes.place.size(); ++i) {
-    for (int k = 0; k < 3; ++k) ball(4 * i + k) = nodes.place[i][k];
-    ball(4 * i + 3) = reaches[i];
-  }
-  halo.exchange(ball, 4);
-  for (LocalIndex i = 0; i < graph.n_rows(); ++i)
-    for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
-      const Real *const a = &ball(4 * i), *const b = &ball(4 * graph.column(e));
-      far[e] = far[e] || std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
-    }
-  return far;
-}
+constexpr auto nowhere = Places::nowhere, out_of_reach = Places::out_of_reach;
 
 /// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
 template <int h, int b, int m>
@@ -220,6 +114,7 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
              n_modes,
              {coarse, C.start, C.node},
              values(static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
+  slices_ = make_slices(R_.graph, start_AP_all_);
   find_members(aggregates);
   base::collectively(*halo.owned()->getComm(), [&] {
     find_slots_of_fine_rows(far, aggregate_here, column_AP);
@@ -308,11 +203,14 @@ void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, 
     restrict_symmetric();
   else
     restrict_general(A, inverse_diagonal);
-  const View<Real*> AP(Kokkos::view_alloc("A P", Kokkos::WithoutInitializing),
-                       block * start_AP_all_(start_AP_all_.extent(0) - 1));
-  multiply_right(A, AP);
-  fine_.columns->exchange_rows(start_AP_all_, AP, block);
-  multiply_left(AP);
+  const View<Real*> AP(Kokkos::view_alloc("slice of A P", Kokkos::WithoutInitializing), block * slices_.size);
+  const auto& [first, first_made] = std::tie(slices_.first, slices_.first_made);
+  multiply_right(A, AP, first_made[0], first_made[1]);
+  fine_.columns->exchange_rows(slices_.start_kept, AP, block);
+  for (int s = 0; s < slices_.n(); ++s) {
+    multiply_right(A, AP, first_made[s + 1], first_made[s + 2]);
+    multiply_left(AP, first[s], first[s + 1]);
+  }
 }
 
 void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const {
@@ -406,19 +304,22 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
   });
 }
 
-void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP) const {
+void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::size_t first_made,
+                              std::size_t end_made) const {
   const auto graph = fine_;
   const auto a = A.value, p = value_P_all_;
   const auto start_P = start_P_all_, start = start_AP_all_, first_slot = first_slot_AP_;
+  const auto made = slices_.made;
+  const auto to = slices_.to, at_present = slices_.at;
   const auto slots = slot_AP_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
-        "A P", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
-          const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
-                            n_a = graph.start(i + 1) - begin;
-          if (n == 0) return;
-          Real* const row = &AP(b * m * first);
+        "A P", Policy(first_made, end_made), KOKKOS_LAMBDA(std::size_t k_made) {
+          const LocalIndex i = made(k_made);
+          const std::size_t n = start(i + 1) - start(i), begin = graph.start(i), n_a = graph.start(i + 1) - begin;
+          at_present(i) = to(k_made);
+          Real* const row = &AP(b * m * to(k_made));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           std::size_t at = first_slot(i);
           for (std::size_t k = 0; k < n_a; ++k) {
@@ -434,25 +335,25 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP) const 
   });
 }
 
-void Galerkin::multiply_left(const View<Real*>& AP) const {
+void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex end) const {
   const auto r = R_.value, out = coarse_.value;
   const auto start_R = R_.graph.start, start_AP = start_AP_all_, start = coarse_.graph.start,
-             first_slot = first_slot_coarse_;
+             first_slot = first_slot_coarse_, at_present = slices_.at;
   const auto column_R = R_.graph.column, column = coarse_.graph.column;
   const auto slots = slot_coarse_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
-        "R A P", Policy(0, coarse_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
+        "R A P", Policy(first, end), KOKKOS_LAMBDA(LocalIndex I) {
           const std::size_t n = start(I + 1) - start(I), begin = start_R(I), n_r = start_R(I + 1) - begin;
           Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
           std::size_t at = first_slot(I);
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
-            const std::size_t first = start_AP(fine), n_ap = start_AP(fine + 1) - first;
+            const std::size_t n_ap = start_AP(fine + 1) - start_AP(fine);
             if (n_ap == 0) continue;
-            const Real* const from = &AP(b * m * first);
+            const Real* const from = &AP(b * m * at_present(fine));
             const Real* const block = &r(b * m * begin + k * b);
             for (std::size_t s = 0; s < n_ap; ++s, ++at)
               add_block<m, b, m>(block, n_r * b, from + s * m, n_ap * m, row + slots(at) * m, n * m);
@@ -466,7 +367,8 @@ void Galerkin::multiply_left(const View<Real*>& AP) const {
 
 std::size_t Galerkin::bytes() const {
   return sizeof(Real) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0) + coarse_.value.extent(0)) +
-         sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) + slot_coarse_.extent(0));
+         sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) + slot_coarse_.extent(0)) +
+         slices_.bytes();
 }
 
 }  // namespace sprekk::solve

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solve/aggregates.hpp"
+#include "solve/slices.hpp"
 
 namespace sprekk::solve {
 
@@ -9,8 +10,8 @@ namespace sprekk::solve {
 /// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
 /// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). In P and R, blocks of A between nodes
 /// out of each other's reach are added to the diagonal, or levels would fill up where cells are flat. Where numbers go
-/// is found once, with the graphs. Coarse nodes are aggregates, numbered through the ranks; their unknowns are modes. R
-/// has the graph of P^T.
+/// is found once, with the graphs; of A P there is never more than a slice. Coarse nodes are aggregates, numbered
+/// through the ranks; their unknowns are modes. R has the graph of P^T.
 class Galerkin {
  public:
   /// Makes the graphs. `tentative` [owned node, unknown, mode]. Throws where a node couples to 32767 others or more.
@@ -37,15 +38,15 @@ class Galerkin {
   void smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
   void restrict_symmetric() const;
   void restrict_general(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const;
-  void multiply_right(const NodeMatrix& A, const View<Real*>& AP) const;
-  void multiply_left(const View<Real*>& AP) const;
+  void multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::size_t first_made, std::size_t end_made) const;
+  void multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex end) const;
 
   NodeGraph fine_;                  // of A
   View<Real*> tentative_;           // [all nodes, unknown, mode]
   View<std::size_t*> start_P_all_;  // of rows of P, ghosts' included; their values follow the owned ones'
   View<LocalIndex*> column_P_all_;
   View<Real*> value_P_all_;
-  View<std::size_t*> start_AP_all_;   // the same of A P
+  View<std::size_t*> start_AP_all_;   // the same of A P, of which there are slices only
   Slots slot_P_;                      // [entry of A] where its column's aggregate is in the row of P
   Slots slot_AP_;                     // [owned row, entry of A, entry of P] where the product goes in the row of A P
   View<std::size_t*> first_slot_AP_;  // [owned row]
@@ -55,6 +56,7 @@ class Galerkin {
   View<std::size_t*> first_slot_coarse_;  // [coarse row]
   View<std::size_t*> first_member_;       // [coarse row]
   View<LocalIndex*> member_;
+  Slices slices_;  // of A P
   NodeMatrix P_, R_, coarse_;
 };
 

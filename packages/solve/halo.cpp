@@ -2,8 +2,6 @@
 
 #include <Tpetra_Distributor.hpp>
 
-#include <vector>
-
 #include "base/check.hpp"
 
 namespace sprekk::solve {
@@ -12,6 +10,12 @@ Halo::Halo(RCP<const fields::Map> owned, RCP<const fields::Map> all) : owned_(ow
   if (all->getGlobalNumElements() == owned->getGlobalNumElements()) return;
   import_ = rcp(new fields::Import(owned, all));
   SPREKK_CHECK(import_->getNumSameIDs() == owned->getNodeNumElements(), "owned nodes must come first");
+}
+
+std::vector<LocalIndex> Halo::sent_nodes() const {
+  if (import_.is_null()) return {};
+  const auto nodes = import_->getExportLIDs();
+  return {nodes.begin(), nodes.end()};
 }
 
 template <class T>

@@ -1,6 +1,8 @@
 // What neighbouring ranks know of each other's nodes.
 #pragma once
 
+#include <vector>
+
 #include "fields/types.hpp"
 
 namespace sprekk::solve {
@@ -16,6 +18,7 @@ class Halo {
   LocalIndex n_all() const { return static_cast<LocalIndex>(all_->getNodeNumElements()); }
   const RCP<const fields::Map>& owned() const { return owned_; }
   const RCP<const fields::Map>& all() const { return all_; }
+  std::vector<LocalIndex> sent_nodes() const;  ///< owned ones that are ghosts of other ranks, perhaps several times
 
   /// Takes the `width` values of each ghost, x(width * node) ..., from its owner.
   template <class T>

@@ -22,13 +22,14 @@ using fields::MultiVector;
 using fields::Vector;
 using solve::NodeMatrix;
 
-/// Bars between all nodes of a cubic lattice [n, n, n] that are at most sqrt(3) apart, each with a stiffness of its
+/// Bars between all nodes of a lattice [n, n, height] that are at most sqrt(3) apart, each with a stiffness of its
 /// own: rigid motions cost nothing. `held` nodes with x = 0 are prescribed; `skew` makes it unsymmetric and keeps the
 /// translations.
 struct Truss {
-  explicit Truss(int n_, bool held = false, Real skew = 0) : n(n_) {
+  explicit Truss(int n_, bool held = false, Real skew = 0, int height_ = 0)
+      : n(n_), height(height_ > 0 ? height_ : n_) {
     const auto comm = Tpetra::getDefaultComm();
-    const int n_nodes = n * n * n, rank = comm->getRank(), size = comm->getSize();
+    const int n_nodes = n * n * height, rank = comm->getRank(), size = comm->getSize();
     std::vector<GlobalIndex> unknowns;  // uneven parts
     for (GlobalIndex i = 3 * (GlobalIndex(n_nodes) * rank * rank / (size * size)),
                      end = 3 * (GlobalIndex(n_nodes) * (rank + 1) * (rank + 1) / (size * size));
@@ -49,7 +50,7 @@ struct Truss {
     for (int k = 0; k < 27; ++k) {
       const std::array<int, 3> d = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, q = {p[0] + d[0], p[1] + d[1], p[2] + d[2]};
       const int square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      if (square == 0 || *std::min_element(q.begin(), q.end()) < 0 || *std::max_element(q.begin(), q.end()) >= n)
+      if (square == 0 || *std::min_element(q.begin(), q.end()) < 0 || std::max(q[0], q[1]) >= n || q[2] >= height)
         continue;
       const GlobalIndex other = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
       const Real stiffness = (1.5 + std::sin(Real(std::min(node, other) * 7 + std::max(node, other)))) / square;
@@ -77,7 +78,7 @@ struct Truss {
     }
   }
 
-  int n;
+  int n, height;
   RCP<Map> map;
   RCP<CrsMatrix> matrix;
   RCP<MultiVector> modes;
@@ -232,6 +233,82 @@ TEST(Galerkin, MultipliesAndTransposes) {
     solve::product(R, f, restricted);
     solve::product(other.galerkin->prolongation(), c_there, interpolated);
     EXPECT_NEAR(dot(c, restricted, restricted.extent(0)), dot(f, interpolated, 3 * step.A.graph.n_rows()), 1e-10);
+  }
+}
+
+/// All numbers of all ranks, row by row.
+struct Dense {
+  Dense(std::size_t rows_, std::size_t columns_) : rows(rows_), columns(columns_), value(rows_ * columns_, 0) {}
+  Dense(const NodeMatrix& A, const Map& row_map)
+      : Dense(A.height * row_map.getGlobalNumElements(), A.width * A.graph.columns->owned()->getGlobalNumElements()) {
+    std::vector<Real> here(value.size(), 0);
+    const auto& column_map = *A.graph.columns->all();
+    for (LocalIndex i = 0; i < A.graph.n_rows(); ++i)
+      for (int r = 0; r < A.height; ++r) {
+        const std::size_t begin = A.graph.start(i), n = A.graph.start(i + 1) - begin;
+        for (std::size_t k = 0; k < n * A.width; ++k)
+          here[(A.height * row_map.getGlobalElement(i) + r) * columns +
+               A.width * column_map.getGlobalElement(A.graph.column(begin + k / A.width)) + k % A.width] =
+              A.value(A.width * (A.height * begin + r * n) + k);
+      }
+    Teuchos::reduceAll(*row_map.getComm(), Teuchos::REDUCE_SUM, int(here.size()), here.data(), value.data());
+  }
+  Dense operator*(const Dense& other) const {
+    Dense result(rows, other.columns);
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t k = 0; k < columns; ++k)
+        for (std::size_t j = 0; j < other.columns && value[i * columns + k] != 0; ++j)
+          result.value[i * other.columns + j] += value[i * columns + k] * other.value[k * other.columns + j];
+    return result;
+  }
+  std::size_t rows, columns;
+  std::vector<Real> value;
+};
+
+/// A long bar, which is multiplied in several slices.
+TEST(Galerkin, MultipliesInSlices) {
+  for (const Real skew : {0.0, 0.2}) {
+    const Truss truss(2, false, skew, 120);
+    const Step step(*truss.matrix, truss.modes, skew == 0);
+    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+    const auto &fine_map = *step.A.graph.columns->owned(), &coarse_map = *coarse.graph.columns->owned();
+    const auto product = Dense(R, coarse_map) * (Dense(step.A, fine_map) * Dense(P, fine_map));
+    const Dense found(coarse, coarse_map);
+    ASSERT_EQ(found.value.size(), product.value.size());
+    for (std::size_t k = 0; k < found.value.size(); ++k) ASSERT_NEAR(found.value[k], product.value[k], 1e-11) << k;
+  }
+}
+
+/// Every row that a slice names is in the buffer at its time, and in no other's place.
+TEST(Slices, HaveRoomForWhatTheyName) {
+  const Truss truss(2, false, 0, 120);
+  const Step step(*truss.matrix, truss.modes);
+  const auto& R = step.galerkin->restriction().graph;
+  const auto& halo = *R.columns;
+  const View<std::size_t*> start("start", halo.n_all() + 1);
+  for (LocalIndex row = 0; row < halo.n_all(); ++row)
+    start(row + 1) = start(row) + halo.all()->getGlobalElement(row) % 4;
+  const auto slices = solve::make_slices(R, start);
+  const bool alone = halo.owned()->getComm()->getSize() == 1;
+  EXPECT_GE(slices.n(), alone ? 16 : 2);
+  EXPECT_LT(slices.size, start(halo.n_all()) / (alone ? 4.0 : 0.99));
+  ASSERT_EQ(slices.first.front(), 0);
+  ASSERT_EQ(slices.first.back(), R.n_rows());
+  std::vector<LocalIndex> held(slices.size, -1);  // [place] its row
+  const auto put = [&](LocalIndex row, std::size_t at) {
+    for (std::size_t k = start(row); k < start(row + 1); ++k) held.at(at + k - start(row)) = row;
+  };
+  for (LocalIndex row = halo.n_owned(); row < halo.n_all(); ++row) put(row, slices.at(row));
+  for (std::size_t k = 0; k < slices.first_made.back(); ++k) {
+    const auto s = std::upper_bound(slices.first_made.begin(), slices.first_made.end(), k) - slices.first_made.begin();
+    put(slices.made(k), slices.to(k));
+    slices.at(slices.made(k)) = slices.to(k);
+    if (s < 2 || k + 1 < slices.first_made[s]) continue;
+    for (std::size_t e = R.start(slices.first[s - 2]); e < R.start(slices.first[s - 1]); ++e) {
+      const LocalIndex row = R.column(e);
+      for (std::size_t c = start(row); c < start(row + 1); ++c)
+        ASSERT_EQ(held.at(slices.at(row) + c - start(row)), row) << s;
+    }
   }
 }
 

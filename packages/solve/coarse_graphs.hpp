@@ -1,0 +1,75 @@
+// Graphs of the products that lead to the next level of multigrid, and where numbers go in them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/check.hpp"
+#include "solve/aggregates.hpp"
+
+namespace sprekk::solve {
+
+/// Sets of nodes, one for each row: row i has node(start(i)) ... node(start(i + 1) - 1), sorted.
+template <class Node>
+struct Rows {
+  View<std::size_t*> start;
+  View<Node*> node;
+};
+
+/// name(i, add) hands the nodes of row i to add, perhaps several times the same; all are below n_columns.
+template <class Name>
+Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name) {
+  std::vector<LocalIndex> all, last_row(n_columns, -1);
+  Rows<LocalIndex> rows{View<std::size_t*>("start", n + 1), {}};
+  for (LocalIndex i = 0; i < n; ++i) {
+    name(i, [&](LocalIndex node) {
+      if (std::exchange(last_row[node], i) != i) all.push_back(node);
+    });
+    std::sort(all.begin() + rows.start(i), all.end());
+    rows.start(i + 1) = all.size();
+  }
+  rows.node = View<LocalIndex*>("node", all.size());
+  std::copy(all.begin(), all.end(), rows.node.data());
+  return rows;
+}
+
+/// The same rows, sorted by global numbers. Stored data.
+Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const fields::Map& map);
+
+/// The rows of owned nodes, with those of ghosts after them. Collective.
+Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo);
+
+/// Owned coarse nodes, then all others that are named; -1 is none. Collective.
+RCP<const fields::Map> with_named(const RCP<const fields::Map>& owned, const std::vector<View<GlobalIndex*>>& named);
+
+/// Stored data.
+View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const fields::Map& map);
+
+/// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
+std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
+
+/// Where columns are in the row that was entered last; nowhere if they are not.
+class Places {
+ public:
+  static constexpr std::uint16_t nowhere = 0xffff, out_of_reach = 0x8000;  ///< rows are shorter than the latter
+
+  explicit Places(LocalIndex n_columns) : slot_(n_columns, nowhere) {}
+
+  /// Throws where the row is too long.
+  void enter(const View<std::size_t*>& start, const View<LocalIndex*>& column, LocalIndex row) {
+    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = nowhere;
+    begin_ = start(row), end_ = start(row + 1);
+    SPREKK_CHECK(end_ - begin_ < out_of_reach, "multigrid: a node couples to {} others; allowed are less than {}",
+                 end_ - begin_, out_of_reach);
+    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = static_cast<std::uint16_t>(k - begin_);
+  }
+  std::uint16_t operator[](LocalIndex column) const { return slot_[column]; }
+
+ private:
+  std::vector<std::uint16_t> slot_;
+  std::size_t begin_ = 0, end_ = 0;
+};
+
+}  // namespace sprekk::solve
