@@ -15,8 +15,8 @@ using Policy = Kokkos::RangePolicy<Execution>;
 constexpr auto nowhere = Places::nowhere, out_of_reach = Places::out_of_reach;
 
 /// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
-template <int h, int b, int m>
-KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, const Real* Y, std::size_t apart_Y,
+template <int h, int b, int m, class Number>
+KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, const Number* Y, std::size_t apart_Y,
                                            Real* Z, std::size_t apart_Z) {
   Numbers<m> y[b];
   for (int c = 0; c < b; ++c) y[c].load(Y + c * apart_Y);
@@ -44,8 +44,8 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   for (LocalIndex i = 0; i < n_owned; ++i)
     aggregate(i) = aggregates.of[i] < 0 ? -1 : coarse_map->getGlobalElement(aggregates.of[i]);
   halo.exchange(aggregate, 1);
-  tentative_ = View<Real*>("tentative prolongator", static_cast<std::size_t>(n_all) * size * n_modes);
-  std::copy(tentative.begin(), tentative.end(), tentative_.data());
+  tentative_ = View<float*>("tentative prolongator", static_cast<std::size_t>(n_all) * size * n_modes);
+  std::transform(tentative.begin(), tentative.end(), tentative_.data(), [](Real x) { return static_cast<float>(x); });
   halo.exchange(tentative_, size * n_modes);
 
   const auto entries = [&](LocalIndex i, const auto& work) {
@@ -100,7 +100,7 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   });
 
   const auto values = [](std::size_t n) {
-    return View<Real*>(Kokkos::view_alloc("value", Kokkos::WithoutInitializing), n);
+    return View<float*>(Kokkos::view_alloc("value", Kokkos::WithoutInitializing), n);
   };
   const std::size_t n_P = P.start(n_owned), block = static_cast<std::size_t>(size) * n_modes;
   value_P_all_ = values(block * P.node.extent(0));
@@ -113,7 +113,8 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   coarse_ = {n_modes,
              n_modes,
              {coarse, C.start, C.node},
-             values(static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
+             View<Real*>(Kokkos::view_alloc("value", Kokkos::WithoutInitializing),
+                         static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
   slices_ = make_slices(R_.graph, start_AP_all_);
   find_members(aggregates);
   base::collectively(*halo.owned()->getComm(), [&] {
@@ -215,7 +216,8 @@ void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, 
 
 void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const {
   const auto graph = fine_;
-  const auto a = A.value, p = value_P_all_, t = tentative_;
+  const auto a = A.value;
+  const auto p = value_P_all_, t = tentative_;
   const auto start = start_P_all_;
   const auto slot = slot_P_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
@@ -225,22 +227,24 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
           const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
                             n_a = graph.start(i + 1) - begin;
           if (n == 0) return;
-          Real* const row = &p(b * m * first);
-          for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
-          for (std::size_t k = 0; k < n_a; ++k) {
-            const Slot s = slot(begin + k);
-            if (s == nowhere) continue;
-            const LocalIndex j = graph.column(begin + k);
-            const Real* const from = &t(static_cast<std::size_t>(s & out_of_reach ? i : j) * b * m);
-            for (int r = 0; r < b; ++r) {
-              const Real* const a_r = &a(b * b * begin + (r * n_a + k) * b);
-              Real* const to = row + (r * n + (s & ~out_of_reach)) * m;
-              const Real w = inverse_diagonal(static_cast<std::size_t>(i) * b + r);
-              for (int c = 0; c < b; ++c)
-                for (int q = 0; q < m; ++q) to[q] -= w * a_r[c] * from[c * m + q];
-              if (i == j)
-                for (int q = 0; q < m; ++q) to[q] += from[r * m + q];
+          for (std::size_t s = 0; s < n; ++s) {
+            Real sums[b][m] = {};
+            for (std::size_t k = 0; k < n_a; ++k) {
+              const Slot found = slot(begin + k);
+              if (found == nowhere || (found & ~out_of_reach) != s) continue;
+              const LocalIndex j = graph.column(begin + k);
+              const float* const from = &t(static_cast<std::size_t>(found & out_of_reach ? i : j) * b * m);
+              for (int r = 0; r < b; ++r) {
+                const Real* const a_r = &a(b * b * begin + (r * n_a + k) * b);
+                const Real w = inverse_diagonal(static_cast<std::size_t>(i) * b + r);
+                for (int c = 0; c < b; ++c)
+                  for (int q = 0; q < m; ++q) sums[r][q] -= w * a_r[c] * from[c * m + q];
+                if (i == j)
+                  for (int q = 0; q < m; ++q) sums[r][q] += from[r * m + q];
+              }
             }
+            for (int r = 0; r < b; ++r)
+              for (int q = 0; q < m; ++q) p(b * m * first + (r * n + s) * m + q) = static_cast<float>(sums[r][q]);
           }
         });
   });
@@ -269,7 +273,8 @@ void Galerkin::restrict_symmetric() const {
 
 void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_diagonal) const {
   const auto graph = fine_;
-  const auto a = A.value, r = R_.value, t = tentative_;
+  const auto a = A.value;
+  const auto r = R_.value, t = tentative_;
   const auto start = R_.graph.start, first_member = first_member_;
   const auto member = member_;
   const auto slot = slot_R_;
@@ -278,24 +283,24 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
     Kokkos::parallel_for(
         "restriction", Policy(0, R_.graph.n_rows()), KOKKOS_LAMBDA(LocalIndex I) {
           const std::size_t n = start(I + 1) - start(I);
-          Real* const row = &r(b * m * start(I));
+          float* const row = &r(b * m * start(I));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           for (std::size_t at = first_member(I); at < first_member(I + 1); ++at) {
             const LocalIndex j = member(at);
             const std::size_t begin = graph.start(j), n_a = graph.start(j + 1) - begin;
-            const Real* const from = &t(static_cast<std::size_t>(j) * b * m);
+            const float* const from = &t(static_cast<std::size_t>(j) * b * m);
             for (std::size_t k = 0; k < n_a; ++k) {
               const Slot s = slot(begin + k);
               if (s == nowhere) continue;
               const bool own = graph.column(begin + k) == j;
               const LocalIndex column = s & out_of_reach ? j : graph.column(begin + k);
               for (int q = 0; q < m; ++q) {
-                Real* const to = row + (q * n + (s & ~out_of_reach)) * b;
+                float* const to = row + (q * n + (s & ~out_of_reach)) * b;
                 for (int c = 0; c < b; ++c) {
                   Real sum = 0;
                   for (int d = 0; d < b; ++d) sum += from[d * m + q] * a(b * b * begin + (d * n_a + k) * b + c);
-                  to[c] +=
-                      (own ? from[c * m + q] : 0) - sum * inverse_diagonal(static_cast<std::size_t>(column) * b + c);
+                  sum = (own ? from[c * m + q] : 0) - sum * inverse_diagonal(static_cast<std::size_t>(column) * b + c);
+                  to[c] = static_cast<float>(to[c] + sum);
                 }
               }
             }
@@ -307,7 +312,8 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
 void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::size_t first_made,
                               std::size_t end_made) const {
   const auto graph = fine_;
-  const auto a = A.value, p = value_P_all_;
+  const auto a = A.value;
+  const auto p = value_P_all_;
   const auto start_P = start_P_all_, start = start_AP_all_, first_slot = first_slot_AP_;
   const auto made = slices_.made;
   const auto to = slices_.to, at_present = slices_.at;
@@ -326,7 +332,7 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
             const LocalIndex j = graph.column(begin + k);
             const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
             if (n_p == 0) continue;
-            const Real* const from = &p(b * m * first_p);
+            const float* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
             for (std::size_t s = 0; s < n_p; ++s, ++at)
               add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + slots(at) * m, n * m);
@@ -336,7 +342,8 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
 }
 
 void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex end) const {
-  const auto r = R_.value, out = coarse_.value;
+  const auto r = R_.value;
+  const auto out = coarse_.value;
   const auto start_R = R_.graph.start, start_AP = start_AP_all_, start = coarse_.graph.start,
              first_slot = first_slot_coarse_, at_present = slices_.at;
   const auto column_R = R_.graph.column, column = coarse_.graph.column;
@@ -354,9 +361,11 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
             const std::size_t n_ap = start_AP(fine + 1) - start_AP(fine);
             if (n_ap == 0) continue;
             const Real* const from = &AP(b * m * at_present(fine));
-            const Real* const block = &r(b * m * begin + k * b);
+            Real block[m * b];
+            for (int q = 0; q < m; ++q)
+              for (int c = 0; c < b; ++c) block[q * b + c] = r(b * m * begin + (q * n_r + k) * b + c);
             for (std::size_t s = 0; s < n_ap; ++s, ++at)
-              add_block<m, b, m>(block, n_r * b, from + s * m, n_ap * m, row + slots(at) * m, n * m);
+              add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + slots(at) * m, n * m);
           }
           for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)
@@ -366,7 +375,8 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
 }
 
 std::size_t Galerkin::bytes() const {
-  return sizeof(Real) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0) + coarse_.value.extent(0)) +
+  return sizeof(float) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0)) +
+         sizeof(Real) * coarse_.value.extent(0) +
          sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) + slot_coarse_.extent(0)) +
          slices_.bytes();
 }

@@ -10,7 +10,8 @@ namespace sprekk::solve {
 /// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
 /// matrix that is not symmetric is P^T of its transpose: Sala and Tuminaro 2008). In P and R, blocks of A between nodes
 /// out of each other's reach are added to the diagonal, or levels would fill up where cells are flat. Where numbers go
-/// is found once, with the graphs; of A P there is never more than a slice. Coarse nodes are aggregates, numbered
+/// is found once, with the graphs; of A P there is never more than a slice. P and R are
+/// stored in single precision, and R A P is the product of what is stored. Coarse nodes are aggregates, numbered
 /// through the ranks; their unknowns are modes. R has the graph of P^T.
 class Galerkin {
  public:
@@ -21,8 +22,8 @@ class Galerkin {
   /// Makes the matrices for the present values of A; `inverse_diagonal` [all nodes, unknown] is w D^-1. Collective.
   void update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric);
 
-  const NodeMatrix& prolongation() const { return P_; }  ///< [fine, coarse]
-  const NodeMatrix& restriction() const { return R_; }   ///< [coarse, fine]
+  const ShortNodeMatrix& prolongation() const { return P_; }  ///< [fine, coarse]
+  const ShortNodeMatrix& restriction() const { return R_; }   ///< [coarse, fine]
   const NodeMatrix& coarse() const { return coarse_; }
   std::size_t bytes() const;  ///< of values and places of products
 
@@ -42,10 +43,10 @@ class Galerkin {
   void multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex end) const;
 
   NodeGraph fine_;                  // of A
-  View<Real*> tentative_;           // [all nodes, unknown, mode]
+  View<float*> tentative_;          // [all nodes, unknown, mode]
   View<std::size_t*> start_P_all_;  // of rows of P, ghosts' included; their values follow the owned ones'
   View<LocalIndex*> column_P_all_;
-  View<Real*> value_P_all_;
+  View<float*> value_P_all_;
   View<std::size_t*> start_AP_all_;   // the same of A P, of which there are slices only
   Slots slot_P_;                      // [entry of A] where its column's aggregate is in the row of P
   Slots slot_AP_;                     // [owned row, entry of A, entry of P] where the product goes in the row of A P
@@ -57,7 +58,8 @@ class Galerkin {
   View<std::size_t*> first_member_;       // [coarse row]
   View<LocalIndex*> member_;
   Slices slices_;  // of A P
-  NodeMatrix P_, R_, coarse_;
+  ShortNodeMatrix P_, R_;
+  NodeMatrix coarse_;
 };
 
 }  // namespace sprekk::solve

@@ -64,8 +64,10 @@ void Halo::exchange_rows(const View<std::size_t*>& start, const View<T*>& x, int
 }
 
 template void Halo::exchange(const View<Real*>&, int) const;
+template void Halo::exchange(const View<float*>&, int) const;
 template void Halo::exchange(const View<GlobalIndex*>&, int) const;
 template void Halo::exchange_rows(const View<std::size_t*>&, const View<Real*>&, int) const;
+template void Halo::exchange_rows(const View<std::size_t*>&, const View<float*>&, int) const;
 template void Halo::exchange_rows(const View<std::size_t*>&, const View<GlobalIndex*>&, int) const;
 
 }  // namespace sprekk::solve

@@ -196,11 +196,12 @@ double Multigrid::cycle_bytes() const {
   double sum = 0;
   for (const auto& level : levels_) {
     if (!level.to_coarse) continue;
-    const auto matrix = [](const NodeMatrix& A, std::size_t number) {
+    const auto matrix = [](const auto& A, std::size_t number) {
       return static_cast<double>(A.value.extent(0) * number + A.graph.n_entries() * sizeof(LocalIndex));
     };
     sum += 2 * matrix(level.A, sizeof(Real)) + 2 * (level.smoother->degree() - 1) * matrix(level.A, sizeof(float));
-    sum += matrix(level.to_coarse->prolongation(), sizeof(Real)) + matrix(level.to_coarse->restriction(), sizeof(Real));
+    sum +=
+        matrix(level.to_coarse->prolongation(), sizeof(float)) + matrix(level.to_coarse->restriction(), sizeof(float));
   }
   return sum;
 }

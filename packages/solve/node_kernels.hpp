@@ -21,6 +21,12 @@ struct Numbers {
     head = *reinterpret_cast<const Vector*>(from);
     rest.load(from + here);
   }
+  KOKKOS_FORCEINLINE_FUNCTION void load(const float* from) {
+    Real numbers[here];
+    for (int k = 0; k < here; ++k) numbers[k] = from[k];
+    head = *reinterpret_cast<const Vector*>(numbers);
+    rest.load(from + here);
+  }
   KOKKOS_FORCEINLINE_FUNCTION void store(Real* to) const {
     *reinterpret_cast<Vector*>(to) = head;
     rest.store(to + here);
@@ -46,6 +52,7 @@ struct Numbers {
 template <>
 struct Numbers<0> {
   KOKKOS_FORCEINLINE_FUNCTION void load(const Real*) {}
+  KOKKOS_FORCEINLINE_FUNCTION void load(const float*) {}
   KOKKOS_FORCEINLINE_FUNCTION void store(Real*) const {}
   KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
   KOKKOS_FORCEINLINE_FUNCTION void add(const Numbers&, const Numbers&) {}

@@ -110,8 +110,8 @@ NodeMatrix copied(const Local& A, const ColumnNodes& columns, const Map& map, in
 
 /// out(i, sums, height) for every row node i, with the numbers of (A x) there. Exchanges the ghosts of x first.
 /// Collective.
-template <class Out>
-void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
+template <class Number, class Out>
+void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& out) {
   const auto& graph = A.graph;
   graph.columns->exchange(x, A.width);
   with_sizes(A.height, A.width, [&](auto height, auto width) {
@@ -122,7 +122,7 @@ void for_rows(const NodeMatrix& A, const View<Real*>& x, const Out& out) {
     Kokkos::parallel_for(
         "product of nodes", Kokkos::RangePolicy<Execution>(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t begin = start(i), n = start(i + 1) - begin;
-          const Real* row[h];
+          const Number* row[h];
           for (int r = 0; r < h; ++r) row[r] = &value(w * (h * begin + r * n));
           Numbers<w> terms[h], from, a;
           for (std::size_t k = 0; k < n; ++k) {
@@ -181,17 +181,24 @@ RCP<CrsMatrix> crs_matrix(const NodeMatrix& A) {
   return result;
 }
 
-void product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y) {
+template <class Number>
+void product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y) {
   for_rows(A, x, [y](LocalIndex i, const Real* sum, auto height) {
     for (int k = 0; k < height(); ++k) y(i * height() + k) = sum[k];
   });
 }
 
-void add_product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y) {
+template <class Number>
+void add_product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y) {
   for_rows(A, x, [y](LocalIndex i, const Real* sum, auto height) {
     for (int k = 0; k < height(); ++k) y(i * height() + k) += sum[k];
   });
 }
+
+template void product(const NodeMatrix&, const View<Real*>&, const View<Real*>&);
+template void product(const ShortNodeMatrix&, const View<Real*>&, const View<Real*>&);
+template void add_product(const NodeMatrix&, const View<Real*>&, const View<Real*>&);
+template void add_product(const ShortNodeMatrix&, const View<Real*>&, const View<Real*>&);
 
 void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r) {
   for_rows(A, x, [b, r](LocalIndex i, const Real* sum, auto height) {

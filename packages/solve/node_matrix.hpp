@@ -19,11 +19,14 @@ struct NodeGraph {
 
 /// Blocks [height, width] on a graph of nodes. Those of row i make `height` rows of numbers, one after another, from
 /// value(height * width * start(i)) on: as Tpetra stores them where the unknowns of a node follow one another.
-struct NodeMatrix {
+template <class Number>
+struct NodeMatrixOf {
   int height = 0, width = 0;
   NodeGraph graph;
-  View<Real*> value;
+  View<Number*> value;
 };
+using NodeMatrix = NodeMatrixOf<Real>;
+using ShortNodeMatrix = NodeMatrixOf<float>;  ///< in half of the bytes; products with it are in double precision
 
 /// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
 /// the values of A where A's rows and columns on this rank allow that. Throws where unknowns are numbered otherwise.
@@ -34,9 +37,11 @@ NodeMatrix node_matrix(const fields::CrsMatrix& A, int size);
 RCP<fields::CrsMatrix> crs_matrix(const NodeMatrix& A);
 
 /// y <- A x with x [all columns], whose ghosts it exchanges first; y [rows]. Collective.
-void product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
+template <class Number>
+void product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y);
 /// y += A x. Collective.
-void add_product(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& y);
+template <class Number>
+void add_product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y);
 /// r <- b - A x. Collective.
 void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r);
 

@@ -181,30 +181,34 @@ TEST(Aggregates, KeepRigidMotions) {
   for (const Real square : squares) EXPECT_TRUE(square == 0 || std::fabs(square - 1) < 1e-12) << square;
 }
 
-/// A matrix without stiffness against rigid motions: they are interpolated exactly, and cost nothing on the next level.
+/// A matrix without stiffness against rigid motions: they are interpolated in single precision, and cost next
+/// to nothing on the next level.
 TEST(Galerkin, InterpolatesRigidMotions) {
   const Truss truss(7);
   const Step step(*truss.matrix, truss.modes);
-  const auto &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+  const auto& P = step.galerkin->prolongation();
+  const auto& coarse = step.galerkin->coarse();
   for (int mode = 0; mode < 6; ++mode) {
     const auto c = zeros(P.graph.columns->n_all(), 6), fine = zeros(P.graph.n_rows(), 3);
     for (std::size_t i = 0; i < step.coarse_nodes.motion.size() / 6; ++i) c(i) = step.coarse_nodes.motion[6 * i + mode];
     solve::product(P, c, fine);
     for (std::size_t i = 0; i < fine.extent(0); ++i)
-      EXPECT_NEAR(fine(i), step.nodes.motion[6 * i + mode], 1e-10) << mode;
+      EXPECT_NEAR(fine(i), step.nodes.motion[6 * i + mode], 1e-6) << mode;
     const auto force = zeros(coarse.graph.n_rows(), 6);
     solve::product(coarse, c, force);
     EXPECT_LT(dot(c, force, force.extent(0)), 1e-10);
   }
 }
 
-/// coarse = R A P, with R the transpose of P, or of the P that the transpose of the matrix has.
+/// coarse = R A P, with R the transpose of P, or but for single precision of the P that the transpose of the matrix
+/// has.
 TEST(Galerkin, MultipliesAndTransposes) {
   for (const auto& [n, skew] : {std::pair{7, 0.0}, {7, 0.2}, {2, 0.0}, {2, 0.2}}) {  // of 2: some ranks have nothing
     const Truss truss(n, n > 2, skew);
     const bool symmetric = skew == 0;
     const Step step(*truss.matrix, truss.modes, symmetric);
-    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation();
+    const auto& coarse = step.galerkin->coarse();
     const LocalIndex n_fine = step.A.graph.columns->n_all(), n_coarse = coarse.graph.columns->n_all();
     const auto c = random_vector(n_coarse, 6, 2), f = random_vector(n_fine, 3, 3);
 
@@ -232,14 +236,15 @@ TEST(Galerkin, MultipliesAndTransposes) {
     for (std::size_t i = 0; i < restricted.extent(0); ++i) c_there(i) = c(i);
     solve::product(R, f, restricted);
     solve::product(other.galerkin->prolongation(), c_there, interpolated);
-    EXPECT_NEAR(dot(c, restricted, restricted.extent(0)), dot(f, interpolated, 3 * step.A.graph.n_rows()), 1e-10);
+    EXPECT_NEAR(dot(c, restricted, restricted.extent(0)), dot(f, interpolated, 3 * step.A.graph.n_rows()), 1e-6);
   }
 }
 
 /// All numbers of all ranks, row by row.
 struct Dense {
   Dense(std::size_t rows_, std::size_t columns_) : rows(rows_), columns(columns_), value(rows_ * columns_, 0) {}
-  Dense(const NodeMatrix& A, const Map& row_map)
+  template <class Matrix>
+  Dense(const Matrix& A, const Map& row_map)
       : Dense(A.height * row_map.getGlobalNumElements(), A.width * A.graph.columns->owned()->getGlobalNumElements()) {
     std::vector<Real> here(value.size(), 0);
     const auto& column_map = *A.graph.columns->all();
@@ -270,7 +275,8 @@ TEST(Galerkin, MultipliesInSlices) {
   for (const Real skew : {0.0, 0.2}) {
     const Truss truss(2, false, skew, 120);
     const Step step(*truss.matrix, truss.modes, skew == 0);
-    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation(), &coarse = step.galerkin->coarse();
+    const auto &R = step.galerkin->restriction(), &P = step.galerkin->prolongation();
+    const auto& coarse = step.galerkin->coarse();
     const auto &fine_map = *step.A.graph.columns->owned(), &coarse_map = *coarse.graph.columns->owned();
     const auto product = Dense(R, coarse_map) * (Dense(step.A, fine_map) * Dense(P, fine_map));
     const Dense found(coarse, coarse_map);
@@ -449,7 +455,7 @@ TEST(Multigrid, ContractsInFlatCells) {
   EXPECT_GT(with(Teuchos::null), 0.7);
 }
 
-/// The way of matrices that are not symmetric leads to the same for those that are.
+/// The way of matrices that are not symmetric leads to about the same for those that are: R is rounded more often.
 TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   const Truss truss(13, true);
   Vector b(truss.map), y(truss.map), z(truss.map);
@@ -460,7 +466,7 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   M.setup(truss.matrix, false);
   M.apply(b, z, Teuchos::NO_TRANS, 1, 0);
   z.update(-1, y, 1);
-  EXPECT_LT(z.normInf(), 1e-9 * y.normInf());
+  EXPECT_LT(z.normInf(), 1e-6 * y.normInf());
 }
 
 /// Eigenvalues far off the real axis: the smoother takes a wider interval rather than enlarge what belongs to them.
