@@ -91,9 +91,10 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   const auto R = make_rows(n_coarse, n_all, [&](LocalIndex I, const auto& add) {
     for (const std::size_t e : in_row[I]) add(row_of[e]);
   });
-  transposed_ = View<std::size_t*>("transposed", R.node.extent(0));
+  slot_transposed_ = Slots("transposed", R.node.extent(0));
   for (LocalIndex I = 0; I < n_coarse; ++I)
-    std::copy(in_row[I].begin(), in_row[I].end(), transposed_.data() + R.start(I));
+    std::transform(in_row[I].begin(), in_row[I].end(), slot_transposed_.data() + R.start(I),
+                   [&](std::size_t e) { return static_cast<Slot>(e - P.start(row_of[e])); });
   const auto C = make_rows(n_coarse, coarse->n_all(), [&](LocalIndex I, const auto& add) {
     for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
       for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s) add(column_AP(s));
@@ -254,7 +255,7 @@ void Galerkin::restrict_symmetric() const {
   const auto p = value_P_all_, r = R_.value;
   const auto start_P = start_P_all_, start = R_.graph.start;
   const auto column = R_.graph.column;
-  const auto transposed = transposed_;
+  const auto transposed = slot_transposed_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -262,7 +263,7 @@ void Galerkin::restrict_symmetric() const {
           const std::size_t begin = start(I), n = start(I + 1) - begin;
           for (std::size_t k = 0; k < n; ++k) {
             const LocalIndex row = column(begin + k);
-            const std::size_t first = start_P(row), n_p = start_P(row + 1) - first, s = transposed(begin + k) - first;
+            const std::size_t first = start_P(row), n_p = start_P(row + 1) - first, s = transposed(begin + k);
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c)
                 r(b * m * begin + (q * n + k) * b + c) = p(b * m * first + (c * n_p + s) * m + q);
@@ -377,7 +378,8 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
 std::size_t Galerkin::bytes() const {
   return sizeof(float) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0)) +
          sizeof(Real) * coarse_.value.extent(0) +
-         sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) + slot_coarse_.extent(0)) +
+         sizeof(Slot) * (slot_transposed_.extent(0) + slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) +
+                         slot_coarse_.extent(0)) +
          slices_.bytes();
 }
 

@@ -51,7 +51,7 @@ class Galerkin {
   Slots slot_P_;                      // [entry of A] where its column's aggregate is in the row of P
   Slots slot_AP_;                     // [owned row, entry of A, entry of P] where the product goes in the row of A P
   View<std::size_t*> first_slot_AP_;  // [owned row]
-  View<std::size_t*> transposed_;     // [entry of R] that of P, ghosts' included
+  Slots slot_transposed_;             // [entry of R] where the entry is in the row of P
   Slots slot_R_;                      // [entry of A] where its column is in the row of R of its row's aggregate
   Slots slot_coarse_;                 // [coarse row, entry of R, entry of A P] where the product goes
   View<std::size_t*> first_slot_coarse_;  // [coarse row]
