@@ -140,12 +140,12 @@ int run_command(int argc, char** argv, RCP<const Comm> comm) {
 }
 
 /// The heap grows by many pages at once, and keeps what steps free and take again: the kernel need not clear them anew.
-/// Large arrays are returned as ever.
+/// Arrays above 32 MB are returned as ever.
 void keep_memory() {
 #ifdef __GLIBC__
   constexpr int MB = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, 32 * MB);
-  mallopt(M_TRIM_THRESHOLD, 256 * MB);
+  mallopt(M_TRIM_THRESHOLD, 64 * MB);
   mallopt(M_TOP_PAD, 64 * MB);
 #endif
 }

@@ -101,7 +101,7 @@ std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh) {
   };
   // Faces hashed by their corners: a chain for each value, first[hash] -> next[face] -> ... -> -1.
   std::size_t n_hashes = 1;
-  while (n_hashes < static_cast<std::size_t>(n)) n_hashes *= 2;
+  while (4 * n_hashes < static_cast<std::size_t>(n)) n_hashes *= 2;
   std::vector<GlobalIndex> first(n_hashes, -1), next(n, -1), neighbour(next);
   for (GlobalIndex face = 0; face < n; ++face) {
     const auto corners = corners_of(face);

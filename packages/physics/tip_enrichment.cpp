@@ -210,7 +210,11 @@ class TipEnrichment final : public assembly::Module {
       const auto& elasticity = law(cell_of_[c]);
       Real mixed_moment[size][size] = {}, own_moment[size][size] = {};  // integrals of grad_i grad_j
       tip(cell_of_[c]).for_each_point([&](const auto&, Real volume, const auto&, const auto& v) {
-        const Real *const grad_N = v.grad_N[0], *const grad_psi = v.grad_psi[0];
+        Real grad_N[size], grad_psi[size];
+        for (int k = 0; k < size; ++k) {
+          grad_N[k] = v.grad_N[k / dim][k % dim];
+          grad_psi[k] = v.grad_psi[k / dim][k % dim];
+        }
         for (int k = 0; k < size; ++k) {
           const Real N = volume * grad_N[k], psi = volume * grad_psi[k];
           for (int l = 0; l < size; ++l) mixed_moment[k][l] += N * grad_psi[l];

@@ -15,7 +15,7 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-constexpr int coarse_size = 1000;
+constexpr int coarse_size_of_muelu = 1000;
 
 /// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
 /// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
@@ -31,7 +31,7 @@ ParameterList multigrid_defaults(int n_components, int n_ranks) {
   list.set("verbosity", "none");
   list.set("number of equations", n_components);
   list.set("multigrid algorithm", "sa");
-  list.set("coarse: max size", coarse_size);
+  list.set("coarse: max size", coarse_size_of_muelu);
   list.set("reuse: type", "tP");
   list.set("aggregation: drop tol", 1e-12);
   list.set("sa: use filtered matrix", true);
@@ -47,8 +47,8 @@ ParameterList multigrid_defaults(int n_components, int n_ranks) {
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
     list.set("repartition: start level", 1);
-    list.set("repartition: min rows per proc", 3 * coarse_size);
-    list.set("repartition: target rows per proc", 3 * coarse_size);
+    list.set("repartition: min rows per proc", 3 * coarse_size_of_muelu);
+    list.set("repartition: target rows per proc", 3 * coarse_size_of_muelu);
     list.set("repartition: max imbalance", 1.3);
   }
   return list;

@@ -4,10 +4,8 @@
 #include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/check.hpp"
-#include "solve/columns.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -39,51 +37,18 @@ DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& n
     solver_ = make_direct_solver(Teuchos::ParameterList().set("ICNTL(8)", 1, "scaling: by the diagonal"), true);
 }
 
-void DirectInverse::setup(bool symmetric, Real change) {
+void DirectInverse::setup(bool symmetric) {
   if (!solver_) return factor_dense();
-  if (change > 0 && symmetric == symmetric_ && !has_changed(change)) return;
-  symmetric_ = symmetric;
-  factored_ = View<Real*>();
   const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
   const auto failure = solver_->setup({joined, {A_}, symmetric, {}, A_});
   SPREKK_CHECK(failure.empty(), "{}: {}", name_, failure);
-  if (change == 0) return;
-  const auto values = A_->getLocalMatrixDevice().values;
-  factored_ = View<Real*>(Kokkos::view_alloc("factored", Kokkos::WithoutInitializing), values.extent(0));
-  Kokkos::deep_copy(factored_, values);
-}
-
-/// Whether any entry has by more than so much of the geometric mean of its row's and column's diagonals, since they
-/// were factored.
-bool DirectInverse::has_changed(Real much) const {
-  const auto& comm = *A_->getComm();
-  int here = factored_.extent(0) != A_->getNodeNumEntries(), anywhere = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-  if (anywhere) return true;
-  Vector diagonal(A_->getRowMap()), of_columns(A_->getColMap());
-  A_->getLocalDiagCopy(diagonal);
-  spread(diagonal, *A_, of_columns);
-  const auto local = A_->getLocalMatrixDevice();
-  const auto row_size = diagonal.getLocalViewDevice(Tpetra::Access::ReadOnly),
-             column_size = of_columns.getLocalViewDevice(Tpetra::Access::ReadOnly);
-  const auto before = factored_;
-  Kokkos::parallel_reduce(
-      "changed entries", Kokkos::RangePolicy<Execution>(0, local.numRows()),
-      KOKKOS_LAMBDA(LocalIndex row, int& any) {
-        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
-          const Real size = std::sqrt(std::fabs(row_size(row, 0) * column_size(local.graph.entries(k), 0)));
-          if (!(std::fabs(local.values(k) - before(k)) <= much * size)) any = 1;
-        }
-      },
-      Kokkos::Max<int>(here));
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-  return anywhere > 0;
 }
 
 void DirectInverse::factor_dense() {
   const auto& rows = *A_->getRowMap();
   const auto& columns = *A_->getColMap();
   const int n = static_cast<int>(rows.getGlobalNumElements());
+  if (n == 0) return;
   std::vector<Real> part(static_cast<std::size_t>(n) * n, 0);
   const auto local = A_->getLocalMatrixHost();
   for (LocalIndex row = 0, n_rows = local.numRows(); row < n_rows; ++row)
@@ -92,13 +57,15 @@ void DirectInverse::factor_dense() {
   factors_.resize(part.size());
   pivots_.resize(n);
   Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_SUM, n * n, part.data(), factors_.data());
-  int info = 0;
+  int info = 0, singular = 0;
   Teuchos::LAPACK<int, Real>().GETRF(n, n, factors_.data(), n, pivots_.data(), &info);
-  SPREKK_CHECK(info == 0, "{}: the matrix is singular (after {} pivots)", name_, info - 1);
+  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_MAX, 1, &info, &singular);  // ranks may round differently
+  SPREKK_CHECK(singular == 0, "{}: the matrix is singular (after {} pivots)", name_, singular - 1);
 }
 
 void DirectInverse::solve_dense(const Vector& b, Vector& x) const {
   const int n = static_cast<int>(pivots_.size());
+  if (n == 0) return;
   const std::size_t first = b.getMap()->getMinGlobalIndex(), n_here = b.getLocalLength();
   part_.assign(n, 0);
   whole_.resize(n);
@@ -114,10 +81,12 @@ void DirectInverse::apply(const fields::MultiVector& b, fields::MultiVector& y, 
   for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
     Kokkos::deep_copy(from_.getLocalViewDevice(Tpetra::Access::OverwriteAll),
                       b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
-    if (solver_)
-      solver_->solve(from_, to_, 1);
-    else
+    if (solver_) {
+      const auto report = solver_->solve(from_, to_, 1);
+      SPREKK_CHECK(report.converged, "{}: {}", name_, report.reason);
+    } else {
       solve_dense(from_, to_);
+    }
     Kokkos::deep_copy(y.getVectorNonConst(v)->getLocalViewDevice(Tpetra::Access::OverwriteAll),
                       to_.getLocalViewDevice(Tpetra::Access::ReadOnly));
   }

@@ -16,9 +16,8 @@ class DirectInverse : public fields::Operator {
   /// `name` begins the messages of errors. Collective.
   DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name);
 
-  /// Factors the present values, unless none has changed by more than `change` of what is on the diagonal since the
-  /// last ones were. Throws where they are singular. Collective.
-  void setup(bool symmetric, Real change = 0);
+  /// Factors the present values. Throws where they are singular. Collective.
+  void setup(bool symmetric);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
@@ -26,7 +25,6 @@ class DirectInverse : public fields::Operator {
   void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real, Real) const override;
 
  private:
-  bool has_changed(Real much) const;
   void factor_dense();
   void solve_dense(const Vector& b, Vector& x) const;
 
@@ -35,9 +33,7 @@ class DirectInverse : public fields::Operator {
   RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
   mutable Vector from_, to_;
   std::unique_ptr<LinearSolver> solver_;  // null: dense
-  bool symmetric_ = true;
-  View<Real*> factored_;       // the values that it has factored, unless they are always made anew
-  std::vector<Real> factors_;  // of the whole matrix, column by column
+  std::vector<Real> factors_;             // of the whole matrix, column by column
   std::vector<int> pivots_;
   mutable std::vector<Real> part_, whole_;  // of a vector: what this rank has, zero elsewhere; all of it
 };

@@ -81,6 +81,7 @@ class DirectSolver : public LinearSolver {
     }
     report.iterations = 1;
     if (tolerance >= 1) {  // no residual is asked for
+      report.residual = std::numeric_limits<Real>::quiet_NaN();
       report.converged = substitute_rhs(b, x);
       if (!report.converged) report.reason = message(mumps_);
       return report;

@@ -16,9 +16,6 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-/// Of what is on the diagonal: as long as nothing around crack tips has changed by more, its factors are kept.
-constexpr Real small_change = 1e-2;
-
 /// P^T A P, or A itself without P. Its graph leaves out what is zero in A.
 RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
   if (P.is_null()) return A;
@@ -227,7 +224,7 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   RCP<const Operator> smoother;
   if (P.is_null()) {
     if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips"));
-    direct_->setup(system.symmetric, small_change);
+    direct_->setup(system.symmetric);
     smoother = direct_;
   } else {
     smoother = gauss_seidel(smoothed_->matrix());

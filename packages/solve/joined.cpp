@@ -64,6 +64,16 @@ std::vector<char> of_columns(const CrsMatrix& matrix, const Vector& flags) {
   return taken;
 }
 
+/// The flags of the matrix' columns that some of its rows name; `rows` are counted from the number -first on.
+std::vector<char> named_columns(const CrsMatrix& matrix, const std::vector<LocalIndex>& rows, LocalIndex first) {
+  std::vector<char> named(matrix.getColMap()->getNodeNumElements(), 0);
+  const auto graph = matrix.getLocalMatrixHost().graph;
+  for (const LocalIndex row : rows)
+    if (row >= first && row - first < graph.numRows())
+      for (auto k = graph.row_map(row - first); k < graph.row_map(row - first + 1); ++k) named[graph.entries(k)] = 1;
+  return named;
+}
+
 View<LocalIndex*> on_device(const std::string& name, const std::vector<LocalIndex>& values) {
   View<LocalIndex*> view(name, values.size());
   Kokkos::deep_copy(view, Kokkos::View<const LocalIndex*, Kokkos::HostSpace>(values.data(), values.size()));
@@ -149,7 +159,7 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which)
   const auto map = rcp(new Map(invalid, unknowns.data(), unknowns.size(), 0, joined_->map()->getComm()));
   const auto domain = which == Columns::all ? joined_->map() : RCP<const Map>(map);
   RCP<const Map> columns;
-  const auto places = number_columns(chosen, which, *domain, columns);
+  const auto places = number_columns(chosen, rows, which, *domain, columns);
   std::vector<std::size_t> start;
   const auto of_entries = find_entries(rows, places, start);
   const Teuchos::ArrayRCP<std::size_t> row_start(start.size());
@@ -199,9 +209,10 @@ std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>
 }
 
 /// For each block the columns' places in the matrix, -1 for those that it does not have: of owned unknowns as in its
-/// domain, then of ghosts.
-JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen, Columns which,
-                                                  const Map& domain, RCP<const Map>& columns) const {
+/// domain, then of the ghosts that its rows name.
+JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen,
+                                                  const std::vector<LocalIndex>& rows, Columns which, const Map& domain,
+                                                  RCP<const Map>& columns) const {
   const int n = joined_->n_blocks();
   const auto owned = domain.getNodeElementList();
   std::vector<GlobalIndex> all(owned.begin(), owned.end());
@@ -210,10 +221,11 @@ JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
     const auto& of_block = *blocks_[k]->getColMap();
-    const auto taken = of_columns(*blocks_[k], *chosen[k % n]);
+    const auto taken = which == Columns::chosen ? of_columns(*blocks_[k], *chosen[k % n])
+                                                : named_columns(*blocks_[k], rows, joined_->first(k / n));
     places[k].assign(taken.size(), -1);
     for (std::size_t c = 0; c < taken.size(); ++c) {
-      if (which == Columns::chosen && !taken[c]) continue;
+      if (!taken[c]) continue;
       const GlobalIndex unknown = joined_->offset(k % n) + of_block.getGlobalElement(static_cast<LocalIndex>(c));
       places[k][c] = domain.getLocalElement(unknown);
       if (places[k][c] >= 0) continue;

@@ -66,8 +66,8 @@ class JoinedMatrix {
  private:
   void create(const std::vector<RCP<fields::Vector>>& chosen, Columns columns);
   using Places = std::vector<std::vector<LocalIndex>>;  // [r * n + s][column of the block]
-  Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, Columns which, const fields::Map& domain,
-                        RCP<const fields::Map>& columns) const;
+  Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, const std::vector<LocalIndex>& rows,
+                        Columns which, const fields::Map& domain, RCP<const fields::Map>& columns) const;
   std::vector<LocalIndex> find_entries(const std::vector<LocalIndex>& rows, const Places& places,
                                        std::vector<std::size_t>& start);
 

@@ -366,9 +366,13 @@ void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) con
 
 BlockVector LocalElimination::reduce(const BlockVector& b) const {
   auto lift = fields::create_like(b), s = fields::create_like(b);
-  for (int r = 0; r < n_remaining(); ++r)
+  Real most = 0;
+  for (int r = 0; r < n_remaining(); ++r) {
     lift[plan_.remaining[r]]->elementWiseMultiply(1, *constrained_[r], *b[plan_.remaining[r]], 0);
-  matrix_->apply(lift, s);
+    most += lift[plan_.remaining[r]]->normInf();
+  }
+  const bool lifts = most != 0;  // conditions are met after Newton's first iteration
+  if (lifts) matrix_->apply(lift, s);
   for (std::size_t i = 0; i < b.size(); ++i) s[i]->update(1, *b[i], -1);
   for (const auto& group : plan_.groups) {
     apply_inverse(group, s);

@@ -12,7 +12,8 @@ namespace sprekk::solve {
 /// singular. All members are collective unless they return stored data.
 class Multigrid : public fields::Operator {
  public:
-  static constexpr int coarse_size = 300;  ///< no further level below so many unknowns: a direct solve
+  static constexpr int coarse_size =
+      DirectInverse::most_dense;  ///< no further level below so many unknowns: a direct solve
 
   /// Whether there is code for that many unknowns of a node and motions.
   static bool can_solve(int n_components, int n_modes);

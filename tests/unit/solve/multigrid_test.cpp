@@ -305,12 +305,16 @@ TEST(Slices, HaveRoomForWhatTheyName) {
     for (std::size_t k = start(row); k < start(row + 1); ++k) held.at(at + k - start(row)) = row;
   };
   for (LocalIndex row = halo.n_owned(); row < halo.n_all(); ++row) put(row, slices.at(row));
-  for (std::size_t k = 0; k < slices.first_made.back(); ++k) {
-    const auto s = std::upper_bound(slices.first_made.begin(), slices.first_made.end(), k) - slices.first_made.begin();
-    put(slices.made(k), slices.to(k));
-    slices.at(slices.made(k)) = slices.to(k);
-    if (s < 2 || k + 1 < slices.first_made[s]) continue;
-    for (std::size_t e = R.start(slices.first[s - 2]); e < R.start(slices.first[s - 1]); ++e) {
+  const auto make = [&](int part) {
+    for (std::size_t k = slices.first_made[part]; k < slices.first_made[part + 1]; ++k) {
+      put(slices.made(k), slices.to(k));
+      slices.at(slices.made(k)) = slices.to(k);
+    }
+  };
+  make(0);
+  for (int s = 0; s < slices.n(); ++s) {
+    make(s + 1);
+    for (std::size_t e = R.start(slices.first[s]); e < R.start(slices.first[s + 1]); ++e) {
       const LocalIndex row = R.column(e);
       for (std::size_t c = start(row); c < start(row + 1); ++c)
         ASSERT_EQ(held.at(slices.at(row) + c - start(row)), row) << s;

@@ -127,14 +127,16 @@ TEST(FreeSides, GradedMesh) {
 }
 
 /// The push test of Wollmann (2024): jump 0.999999999984 at the centre, u_x on the side + from 1 at the centre to
-/// 1.000234676 at the end, N = 2000999.654 Pa.
+/// 1.000234676 at the end, N = 2000999.654 Pa. The joint is 1e11 times softer than the rock: a direct solver finds more
+/// digits of such jumps than the tolerance of Newton's method asks for.
 TEST(FreeSides, Push) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {
       SCOPED_TRACE(d.name());
       model::Model model(block(dim, d, 16,
                                {"Materials.rock.shear modulus=1e6", "Materials.rock.Lame's first parameter=1e3",
-                                "Materials.joint.tangential stiffness=1e-5", "Materials.joint.friction coefficient=1"}),
+                                "Materials.joint.tangential stiffness=1e-5", "Materials.joint.friction coefficient=1",
+                                "Solver.Linear solver.type=direct"}),
                          Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(2).converged);
       const Answer a = answer(model);
