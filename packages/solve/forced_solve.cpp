@@ -5,7 +5,7 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2, share_of_enough = 1e-3;
+constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);
@@ -45,7 +45,7 @@ Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
   for (const auto& measure : problem_.measures(x_, b)) error = std::max(error, measure.value);
   const Real ratio = error_ > 0 ? error / error_ : 0;
   error_ = error;
-  return std::max(safety * ratio * ratio, error > 0 ? share_of_enough * enough_ / error : 0);
+  return safety * std::max(ratio * ratio, error > 0 ? enough_ / error : 0);
 }
 
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {

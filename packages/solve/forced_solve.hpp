@@ -10,7 +10,7 @@ namespace sprekk::solve {
 /// that none is mistaken for what the exact step leads to; else it goes on to the tolerance. If no face changes,
 /// Newton's method converges about quadratically, and the solve ends well below what the next residual will be for that
 /// reason, 0.01 (e / e of the iteration before)^2 with e the largest measure of convergence (as Eisenstat and Walker
-/// 1996, choice 2), or well below what ends Newton's method, 0.001 tolerance / e (as Kelley 1995, 6.3); at the second
+/// 1996, choice 2), or well below what ends Newton's method, 0.01 tolerance / e (as Kelley 1995, 6.3); at the second
 /// accuracy or below. Refers to its arguments. All members are collective.
 class ForcedSolve {
  public:
