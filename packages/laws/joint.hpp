@@ -7,6 +7,7 @@
 #include "base/types.hpp"
 
 #include <cmath>
+#include <type_traits>
 
 namespace sprekk::laws {
 
@@ -19,6 +20,16 @@ KOKKOS_INLINE_FUNCTION T norm(const T (&v)[n]) {
   T square = v[0] * v[0];
   for (int i = 1; i < n; ++i) square += v[i] * v[i];
   return square > 0 ? T(sqrt(square)) : T(0);
+}
+
+/// x without derivatives.
+template <class T>
+KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return x;
+  } else {
+    return x.val();
+  }
 }
 
 /// Elastic part of the tangential jump (12): u_t^e = lambda_t / K_t.
@@ -105,6 +116,10 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
 /// until they move, c_t |p - p_old| > 1e-10 b: else rounding would say which of them slip. p_old is the plastic jump at
 /// the end of the last step. Where p is zero to rounding its direction is noise; |p| then grows along z, as it does
 /// when sliding begins.
+///
+/// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation would soften the face,
+/// by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as it is
+/// where p goes on from p_old along z.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1],
@@ -121,17 +136,30 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     distance = 0;
     for (int i = 0; i < dim - 1; ++i) distance += p[i] * z[i] / size;
   }
-  const T penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
-  const T y = lambda[0] + penetration;
+  T penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
+  T y = lambda[0] + penetration;
   if (y > 0) {
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
   R[0] = -penetration;
-  const T b = law.friction.bound(y);
+  T b = law.friction.bound(y);
   if (size <= b || (size <= (1 + 1e-10) * b && norm(step) <= 1e-10 * b)) {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -step[i];
     return ContactState::stick;
+  }
+  T along = 0;
+  Real old_along = 0;
+  for (int i = 0; i < dim - 1; ++i) {
+    along += p[i] * (value_of(z[i]) / value_of(size));
+    old_along += p_old[i] * value_of(z[i]);
+  }
+  if (along < 0 && old_along >= 0) {
+    distance = along + (value_of(distance) - value_of(along));
+    penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
+    y = lambda[0] + penetration;
+    b = law.friction.bound(y);
+    R[0] = -penetration;
   }
   for (int i = 0; i < dim - 1; ++i) R[i + 1] = lambda[i + 1] - b * z[i] / size;
   return ContactState::slip;

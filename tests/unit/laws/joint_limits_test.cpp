@@ -221,5 +221,45 @@ TEST(BartonBandisClosure, IsOnceContinuouslyDifferentiableAtZero) {
   EXPECT_EQ((BartonBandisClosure{0, 5}.initial_compliance()), 0);
 }
 
+/// Along the slip, by how much R_n changes with lambda_n, of c_n: the compliance B' + mu dp/K_t of the face, where dp
+/// is what dilation adds for slip along its traction. An iterate with p = -0.2 slides against it.
+template <int dim>
+Real compliance_of_iterate(Real p_old) {
+  using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+  Joint law = reference_joint();
+  law.elastic.compliance = 1;
+  law.gap.closure.maximum = 0;
+  const auto c = augmentation(law, 1);
+  const Real opening = law.gap.initial + law.gap.dilation(0.2), direction[] = {0.6, -0.8};
+  Real w[dim] = {opening}, lambda[dim] = {-0.5}, old[dim - 1], R_value[dim];
+  Fad jump[dim], traction[dim], R[dim];
+  for (int i = 0; i < dim - 1; ++i) {
+    const Real along = dim == 2 ? 1 : direction[i];
+    w[i + 1] = 0.5 * along;
+    lambda[i + 1] = 0.7 * along;
+    old[i] = p_old * along;
+  }
+  for (int i = 0; i < dim; ++i) {
+    jump[i] = Fad(2 * dim, i, w[i]);
+    traction[i] = Fad(2 * dim, dim + i, lambda[i]);
+  }
+  EXPECT_EQ(contact_residual<dim>(law, c, jump, traction, old, R), ContactState::slip);
+  contact_residual<dim>(law, c, w, lambda, old, R_value);
+  for (int i = 0; i < dim; ++i) EXPECT_EQ(R[i].val(), R_value[i]);
+  Real sum = R[0].dx(dim);
+  for (int i = 1; i < dim; ++i) sum -= law.friction.coefficient * (dim == 2 ? 1 : direction[i - 1]) * R[0].dx(dim + i);
+  return sum / c.normal;
+}
+
+TEST(JointLimits, SlipAgainstTheTractionDoesNotSoften) {
+  const Joint law = reference_joint();
+  const Real dilates = law.friction.coefficient * law.gap.dilation.tangent;
+  EXPECT_NEAR(compliance_of_iterate<2>(0), dilates, 1e-14);
+  EXPECT_NEAR(compliance_of_iterate<3>(0), dilates, 1e-14);
+  EXPECT_NEAR(compliance_of_iterate<2>(0.05), dilates, 1e-14);
+  EXPECT_NEAR(compliance_of_iterate<2>(-0.05), -dilates, 1e-14);  // slip that turns back
+  EXPECT_NEAR(compliance_of_iterate<3>(-0.05), -dilates, 1e-14);
+}
+
 }  // namespace
 }  // namespace sprekk::laws::testing
