@@ -7,6 +7,7 @@
 
 #include "assembly/jacobian_check.hpp"
 #include "model/model.hpp"
+#include "against_plastic_jump.hpp"
 #include "unit/assembly/dense.hpp"
 #include "unit/mesh/meshes.hpp"
 
@@ -111,6 +112,7 @@ TEST_P(Jacobian, OfEveryModuleIsItsDerivativeInEveryState) {
     int seed = 1;
     for (const auto& wanted : {open, stick, slip, mixed}) {
       const auto x = visit(system, wanted, ++seed);
+      against_plastic_jump(system, before, *x[2]);
       const auto visited = states(scene, before, x);
       ASSERT_EQ(static_cast<LocalIndex>(visited.size()), system.mesh().n_owned_fracture_faces);
       for (std::size_t f = 0; f < visited.size(); ++f)
