@@ -117,9 +117,9 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
 /// the end of the last step. Where p is zero to rounding its direction is noise; |p| then grows along z, as it does
 /// when sliding begins.
 ///
-/// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation would soften the face,
-/// by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as it is
-/// where p goes on from p_old along z.
+/// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
+/// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
+/// it is where p is along z.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1],
