@@ -4,8 +4,8 @@
 #include <Tpetra_Core.hpp>
 
 #include "assembly/jacobian_check.hpp"
+#include "jacobian/against_plastic_jump.hpp"
 #include "model/model.hpp"
-#include "against_plastic_jump.hpp"
 #include "unit/assembly/dense.hpp"
 #include "unit/mesh/meshes.hpp"
 
