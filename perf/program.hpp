@@ -1,6 +1,7 @@
 // What the programs of measurements share: NAME SCENE [PATH=VALUE...] measures something of a scene and prints JSON.
 #pragma once
 
+#include "base/heap.hpp"
 #include "model/scene.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -28,6 +29,7 @@ inline Real time_of(const Comm& comm, const std::function<void()>& work) {
 /// The main() of a program: its exit status, 1 after an Error.
 inline int run(const std::string& name, int argc, char** argv,
                const std::function<json(const model::Scene&, RCP<const Comm>)>& measure) {
+  base::keep_heap();  // as the main program does
   Tpetra::ScopeGuard guard(&argc, &argv);
   const auto comm = Tpetra::getDefaultComm();
   try {

@@ -1,5 +1,6 @@
 // The program: starts MPI and Kokkos, reads the command line, runs.
 #include "base/check.hpp"
+#include "base/heap.hpp"
 #include "model/material_library.hpp"
 #include "model/network.hpp"
 #include "model/point.hpp"
@@ -12,9 +13,6 @@
 #include <cstdlib>
 #include <iostream>
 #include <unistd.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #ifndef SPREKK_VERSION
 #define SPREKK_VERSION "unknown"
@@ -139,21 +137,10 @@ int run_command(int argc, char** argv, RCP<const Comm> comm) {
   }
 }
 
-/// The heap grows by many pages at once, and keeps what steps free and take again: the kernel need not clear them anew.
-/// Arrays above 32 MB are returned as ever.
-void keep_memory() {
-#ifdef __GLIBC__
-  constexpr int MB = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 * MB);
-  mallopt(M_TRIM_THRESHOLD, 64 * MB);
-  mallopt(M_TOP_PAD, 64 * MB);
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_memory();
+  base::keep_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
   int n_libraries_may_read = 1;   // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);

@@ -229,11 +229,22 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
+  /// Where it stands in each row is looked up once.
+  RCP<const Vector> diagonal_of(const CrsMatrix& matrix) {
+    if (graph_ != matrix.getCrsGraph()) {
+      graph_ = matrix.getCrsGraph();
+      places_ = View<std::size_t*>("places of the diagonal", matrix.getNodeNumRows());
+      graph_->getLocalDiagOffsets(places_);
+    }
+    const auto diagonal = rcp(new Vector(matrix.getRowMap()));
+    matrix.getLocalDiagCopy(*diagonal, places_);
+    return diagonal;
+  }
+
   /// How many rows have another diagonal than when multigrid was made.
-  GlobalIndex n_changed(const CrsMatrix& matrix) const {
-    Vector diagonal(matrix.getRowMap());
-    matrix.getLocalDiagCopy(diagonal);
-    const auto now = diagonal.getLocalViewHost(Tpetra::Access::ReadOnly),
+  GlobalIndex n_changed(const CrsMatrix& matrix) {
+    const auto diagonal = diagonal_of(matrix);
+    const auto now = diagonal->getLocalViewHost(Tpetra::Access::ReadOnly),
                then = diagonal_->getLocalViewHost(Tpetra::Access::ReadOnly);
     GlobalIndex here = 0, anywhere = 0;
     for (std::size_t i = 0; i < now.extent(0); ++i)
@@ -245,10 +256,8 @@ class IterativeSolver : public LinearSolver {
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
   void make_preconditioner() {
     failure_.clear();
-    if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null()) {
-      diagonal_ = rcp(new Vector(first->getRowMap()));
-      first->getLocalDiagCopy(*diagonal_);
-    }
+    if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null())
+      diagonal_ = diagonal_of(*first);
     if (!solver_.is_null() && !kept_)
       prepare(system_.diagonal.front().block.name, [&] { solver_->setup(system_.diagonal.front()); });
     for (int f = 0; families_ && f < families_->n() && failure_.empty(); ++f)
@@ -341,7 +350,9 @@ class IterativeSolver : public LinearSolver {
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   static constexpr int most_more = 4;      // iterations that it may then take more
   LinearSystem system_;
-  RCP<Vector> diagonal_;                                   // when multigrid was made
+  RCP<const Vector> diagonal_;                             // when multigrid was made
+  RCP<const fields::CrsGraph> graph_;                      // of the matrix that
+  View<std::size_t*> places_;                              // are for
   bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
   Real pace_ = 0;                                          // iterations for a digit, with new multigrid
   std::string failure_ = "the matrix was not set up";

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "solve/columns.hpp"
+#include "solve/node_kernels.hpp"
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
@@ -87,9 +88,12 @@ struct RowWalk {
 
   KOKKOS_INLINE_FUNCTION RowWalk(const Graph& graph_of_row, LocalIndex row)
       : graph(graph_of_row), begin(graph.row_map(row)), end(graph.row_map(row + 1)), at(begin) {}
+  KOKKOS_INLINE_FUNCTION std::size_t next() const { return at + 1 < end ? at + 1 : begin; }
   KOKKOS_INLINE_FUNCTION std::size_t find(LocalIndex column) {
-    while (graph.entries(at) != column) at = at + 1 < end ? at + 1 : begin;
-    return at;
+    while (graph.entries(at) != column) at = next();
+    const std::size_t found = at;
+    at = next();  // where the next column is looked for first
+    return found;
   }
 };
 
@@ -300,27 +304,28 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const auto column = group.column[r * n_remaining() + s];
   const auto coefficient = coupling.coefficient;
   const auto local = block(r, s).matrix->getLocalMatrixDevice();
-  Kokkos::parallel_for(
-      "condense", Policy(0, row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
-        constexpr int strip = 24;  // columns at a time
-        Real sum[strip];
-        RowWalk walk(local.graph, row);
-        for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
-          const auto first = column_start(slots(pair));
-          const auto n_columns = static_cast<LocalIndex>(column_start(slots(pair) + 1) - first);
-          const Real* const z = &value(m * first);
-          for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
-            const int n = n_columns - begin < strip ? n_columns - begin : strip;
-            for (int k = 0; k < n; ++k) sum[k] = 0;
-            for (int i = 0; i < m; ++i) {
-              const Real factor = coefficient(pair * m + i);
-              if (factor == 0) continue;
-              for (int k = 0; k < n; ++k) sum[k] += factor * z[i * n_columns + begin + k];
+  in_widest_instructions([=] {
+    Kokkos::parallel_for(
+        "condense", Policy(0, row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
+          constexpr int strip = Response::padding;  // columns at a time
+          RowWalk walk(local.graph, row);
+          for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
+            const auto first = column_start(slots(pair));
+            const auto n_columns = static_cast<LocalIndex>(column_start(slots(pair) + 1) - first);
+            for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
+              Numbers<strip> sum, z;
+              for (int i = 0; i < m; ++i) {
+                z.load(&value(m * first + i * n_columns + begin));
+                sum.add(coefficient(pair * m + i), z);
+              }
+              Real numbers[strip];
+              sum.store(numbers);
+              for (int k = 0; k < strip && begin + k < n_columns; ++k)
+                local.values(walk.find(column(first + begin + k))) -= numbers[k];
             }
-            for (int k = 0; k < n; ++k) local.values(walk.find(column(first + begin + k))) -= sum[k];
           }
-        }
-      });
+        });
+  });
 }
 
 RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }

@@ -36,17 +36,6 @@ struct Numbers {
     head += a * x.head;
     rest.add(a, x.rest);
   }
-  /// += x y, number by number.
-  KOKKOS_FORCEINLINE_FUNCTION void add(const Numbers& x, const Numbers& y) {
-    head += x.head * y.head;
-    rest.add(x.rest, y.rest);
-  }
-  KOKKOS_FORCEINLINE_FUNCTION Real sum() const {
-    Real numbers[n], result = 0;
-    store(numbers);
-    for (int k = 0; k < n; ++k) result += numbers[k];
-    return result;
-  }
 };
 
 template <>
@@ -55,7 +44,6 @@ struct Numbers<0> {
   KOKKOS_FORCEINLINE_FUNCTION void load(const float*) {}
   KOKKOS_FORCEINLINE_FUNCTION void store(Real*) const {}
   KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
-  KOKKOS_FORCEINLINE_FUNCTION void add(const Numbers&, const Numbers&) {}
 };
 
 /// work(height, width) with the sizes of a block as constants of compile time; false if there is no code for them.
@@ -89,16 +77,21 @@ void in_wide_instructions(const Work& work) {
 inline bool has_wide_instructions() { return false; }
 #endif
 
-/// The same where there must be code for them; compiled a second time for processors with wider instructions than every
-/// x86-64 has, and run in these where the present one has them.
+/// work(), compiled a second time for processors with wider instructions than every x86-64 has, and run in these where
+/// the present one has them.
+template <class Work>
+void in_widest_instructions(const Work& work) {
+  if (has_wide_instructions())
+    in_wide_instructions(work);
+  else
+    work();
+}
+
+/// The same as try_sizes() where there must be code for them, in the widest instructions.
 template <class Work>
 void with_sizes(int height, int width, const Work& work) {
   bool found = false;
-  const auto run = [&] { found = try_sizes(height, width, work); };
-  if (has_wide_instructions())
-    in_wide_instructions(run);
-  else
-    run();
+  in_widest_instructions([&] { found = try_sizes(height, width, work); });
   SPREKK_CHECK(found, "multigrid: no code for blocks of {} x {} numbers", height, width);
 }
 

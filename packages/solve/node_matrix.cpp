@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "solve/node_kernels.hpp"
+#include "solve/node_rows.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -106,37 +106,6 @@ NodeMatrix copied(const Local& A, const ColumnNodes& columns, const Map& map, in
     }
   }
   return result;
-}
-
-/// out(i, sums, height) for every row node i, with the numbers of (A x) there. Exchanges the ghosts of x first.
-/// Collective.
-template <class Number, class Out>
-void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& out) {
-  const auto& graph = A.graph;
-  graph.columns->exchange(x, A.width);
-  with_sizes(A.height, A.width, [&](auto height, auto width) {
-    constexpr int h = height(), w = width();
-    const auto start = graph.start;
-    const auto column = graph.column;
-    const auto value = A.value;
-    Kokkos::parallel_for(
-        "product of nodes", Kokkos::RangePolicy<Execution>(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
-          const std::size_t begin = start(i), n = start(i + 1) - begin;
-          const Number* row[h];
-          for (int r = 0; r < h; ++r) row[r] = &value(w * (h * begin + r * n));
-          Numbers<w> terms[h], from, a;
-          for (std::size_t k = 0; k < n; ++k) {
-            from.load(&x(static_cast<std::size_t>(column(begin + k)) * w));
-            for (int r = 0; r < h; ++r) {
-              a.load(row[r] + k * w);
-              terms[r].add(a, from);
-            }
-          }
-          Real sums[h];
-          for (int r = 0; r < h; ++r) sums[r] = terms[r].sum();
-          out(i, sums, height);
-        });
-  });
 }
 
 }  // namespace
