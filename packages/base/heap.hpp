@@ -9,7 +9,7 @@
 namespace sprekk::base {
 
 /// The heap of the process grows by many pages at once, and keeps what steps free and take again: the kernel need not
-/// clear them anew. Arrays above 32 MB are returned as ever. For main(), before anything is allocated; without glibc it
+/// clear them anew. Arrays above 32 MB are returned as ever. To be called first in main(); without glibc it
 /// does nothing.
 inline void keep_heap() {
 #ifdef __GLIBC__

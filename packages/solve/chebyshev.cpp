@@ -31,7 +31,8 @@ KOKKOS_INLINE_FUNCTION Real scattered(unsigned long long i) {
 template <int b, class Out>
 void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const View<Real*>& x, const Out& out) {
   constexpr int lanes = padded(b);
-  constexpr std::size_t ahead = 512;     // numbers that the memory is asked for before their turn
+  constexpr std::size_t ahead = 512;     // so many numbers before their turn the memory is asked for them,
+  constexpr int line = 16;               // and so many it brings at once
   constexpr int n_sums = b < 6 ? b : 3;  // of a row, so that an addition need not wait for the one before
   graph.columns->exchange(x, b);
   const auto start = graph.start;
@@ -41,7 +42,7 @@ void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const Vi
         Real sums[n_sums][lanes] = {};
         const float* a = &value(b * b * start(i));
         for (std::size_t k = start(i); k < start(i + 1); ++k, a += b * b) {
-          __builtin_prefetch(a + ahead);
+          for (int n = 0; n < b * b && b > 1; n += line) __builtin_prefetch(a + ahead + n);
           const Real* const from = &x(static_cast<std::size_t>(column(k)) * b);
           for (int c = 0; c < b; ++c)
             for (int r = 0; r < lanes; ++r) sums[c % n_sums][r] += a[c * b + r] * from[c];

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "base/check.hpp"
 #include "solve/linear_solver.hpp"
@@ -59,7 +60,6 @@ class DirectSolver : public LinearSolver {
     matrix_ = system.matrix;
     scalar_ = system.diagonal.size() == 1 && system.diagonal.front().block.n_components == 1 &&
               !system.diagonal.front().block.coordinates.is_null();
-    if (on_one_rank_) gather();
     failure_.clear();
     fill_values();
     if (!analysed_ && run(analyse) < 0) return failure_ = message(mumps_);
@@ -130,15 +130,25 @@ class DirectSolver : public LinearSolver {
     return mumps_.infog[0];
   }
 
-  /// All rows of the matrix on rank 0.
-  void gather() {
-    factored_ = matrix_;
-    if (comm_->getSize() > 1) factored_ = Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(matrix_, *to_root_);
+  MPI_Comm all_ranks() const { return Tpetra::Details::extractMpiCommFromTeuchos(*comm_); }
+
+  /// All rows of the matrix on rank 0; their values are the places of the matrix' values once these are gathered.
+  RCP<const CrsMatrix> places_on_root() {
+    const auto places = rcp(new CrsMatrix(*matrix_, Teuchos::Copy));
+    const auto values = places->getLocalMatrixHost().values;
+    const int n_here = static_cast<int>(values.extent(0)), n_ranks = comm_->getSize();
+    counts_.resize(n_ranks);
+    starts_.assign(n_ranks + 1, 0);
+    Teuchos::gatherAll(*comm_, 1, &n_here, n_ranks, counts_.data());
+    std::partial_sum(counts_.begin(), counts_.end(), starts_.begin() + 1);
+    gathered_.resize(comm_->getRank() == 0 ? starts_.back() : 0);
+    std::iota(values.data(), values.data() + n_here, static_cast<Real>(starts_[comm_->getRank()]));
+    return Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(RCP<const CrsMatrix>(places), *to_root_);
   }
 
   /// Starts MUMPS on its own communicator and tells it the graph.
   void start(const LinearSystem& system) {
-    matrix_ = factored_ = system.matrix;
+    matrix_ = system.matrix;
     const bool symmetric = system.symmetric;
     const auto& map = *matrix_->getRowMap();
     const GlobalIndex n = map.getGlobalNumElements();
@@ -151,9 +161,9 @@ class DirectSolver : public LinearSolver {
     to_root_ = rcp(new fields::Import(matrix_->getRowMap(), root_map));
     from_root_ = rcp(new fields::Import(root_map, matrix_->getRowMap()));
     at_root_ = rcp(new Vector(root_map));
-    if (on_one_rank_) gather();
-    MPI_Comm_split(Tpetra::Details::extractMpiCommFromTeuchos(*comm_), on_one_rank_ && !root ? MPI_UNDEFINED : 0,
-                   comm_->getRank(), &mpi_comm_);
+    gathers_ = on_one_rank_ && comm_->getSize() > 1;
+    const auto factored = gathers_ ? places_on_root() : matrix_;
+    MPI_Comm_split(all_ranks(), on_one_rank_ && !root ? MPI_UNDEFINED : 0, comm_->getRank(), &mpi_comm_);
     symmetric_ = symmetric;
     mumps_ = {};
     if (mpi_comm_ != MPI_COMM_NULL) mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);
@@ -165,8 +175,9 @@ class DirectSolver : public LinearSolver {
     for (const auto& [i, value] : icntl_) mumps_.icntl[i] = value;
     for (const auto& [i, value] : cntl_) mumps_.cntl[i] = value;
 
-    const auto graph = factored_->getLocalMatrixHost().graph;
-    const auto &rows = *factored_->getRowMap(), &columns = *factored_->getColMap();
+    const auto local = factored->getLocalMatrixHost();
+    const auto& graph = local.graph;
+    const auto &rows = *factored->getRowMap(), &columns = *factored->getColMap();
     rows_.clear();
     columns_.clear();
     positions_.clear();
@@ -176,7 +187,7 @@ class DirectSolver : public LinearSolver {
         if (symmetric && j > i) continue;
         rows_.push_back(i + 1);
         columns_.push_back(j + 1);
-        positions_.push_back(k);
+        positions_.push_back(gathers_ ? static_cast<std::size_t>(local.values(k)) : k);
       }
     values_.resize(positions_.size());
     for (auto* indices : {&rows_, &columns_}) indices->reserve(1);  // MUMPS wants a pointer also where nothing is
@@ -205,8 +216,14 @@ class DirectSolver : public LinearSolver {
   }
 
   void fill_values() {
-    const auto values = factored_->getLocalMatrixHost().values;
-    for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = values(positions_[k]);
+    const auto values = matrix_->getLocalMatrixHost().values;
+    const Real* from = values.data();
+    if (gathers_) {
+      MPI_Gatherv(from, static_cast<int>(values.extent(0)), MPI_DOUBLE, gathered_.data(), counts_.data(),
+                  starts_.data(), MPI_DOUBLE, 0, all_ranks());
+      from = gathered_.data();
+    }
+    for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = from[positions_[k]];
   }
 
   bool substitute_rhs(const Vector& b, Vector& x) {
@@ -236,11 +253,14 @@ class DirectSolver : public LinearSolver {
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false, scalar_ = false;
+  bool gathers_ = false;  // rank 0 gets all of the matrix
   static constexpr Real most_noise = 1e-2;
   std::string failure_ = "the matrix was not set up";
-  RCP<const CrsMatrix> matrix_, factored_;  // the one that MUMPS gets: the same, or all of it on rank 0
-  std::vector<int> rows_, columns_;         // 1-based
-  std::vector<std::size_t> positions_;      // of the entries handed over, in the matrix' values
+  RCP<const CrsMatrix> matrix_;
+  std::vector<int> counts_, starts_;    // of the ranks' values
+  std::vector<Real> gathered_;          // those of all ranks
+  std::vector<int> rows_, columns_;     // 1-based
+  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' or all ranks' values
   std::vector<double> values_;
   RCP<fields::Import> to_root_, from_root_;
   RCP<Vector> at_root_;  // all of a vector on rank 0

@@ -205,7 +205,7 @@ class Planner {
     response.column = View<GlobalIndex*>("response columns", response.column_start(n_slots));
     std::copy(columns.column.begin(), columns.column.end(), response.column.data());
     group.slots->exchange_rows(response.column_start, response.column, 1);
-    response.value = View<Real*>("responses", group.size * response.column.extent(0) + Response::padding);
+    response.value = View<Real*>("responses", group.size * response.column.extent(0) + Response::strip);
   }
 
   void plan_coupling(GroupPlan& group, int a) const {

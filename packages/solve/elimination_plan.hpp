@@ -33,7 +33,7 @@ struct Scatter {
 /// row by row; the columns are the union over the rows. Slots count entities: owned ones first, then the ghosts that
 /// rows owned here couple to.
 struct Response {
-  static constexpr int padding = 8;  ///< numbers after the last value, so that a kernel may read some too many
+  static constexpr int strip = 8;  ///< columns that a kernel reads at a time; so many numbers follow the last value
 
   std::vector<Scatter> fill;        ///< A_zb -> values of owned slots
   View<std::size_t*> column_start;  ///< [slot + 1] first column of a slot; its first value is m times that

@@ -229,7 +229,7 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  /// Where it stands in each row is looked up once.
+  /// Its places are looked up once for a graph.
   RCP<const Vector> diagonal_of(const CrsMatrix& matrix) {
     if (graph_ != matrix.getCrsGraph()) {
       graph_ = matrix.getCrsGraph();
@@ -351,8 +351,8 @@ class IterativeSolver : public LinearSolver {
   static constexpr int most_more = 4;      // iterations that it may then take more
   LinearSystem system_;
   RCP<const Vector> diagonal_;                             // when multigrid was made
-  RCP<const fields::CrsGraph> graph_;                      // of the matrix that
-  View<std::size_t*> places_;                              // are for
+  RCP<const fields::CrsGraph> graph_;                      // that they belong to:
+  View<std::size_t*> places_;                              // [row] of the diagonal, within the row
   bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
   Real pace_ = 0;                                          // iterations for a digit, with new multigrid
   std::string failure_ = "the matrix was not set up";

@@ -304,10 +304,10 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const auto column = group.column[r * n_remaining() + s];
   const auto coefficient = coupling.coefficient;
   const auto local = block(r, s).matrix->getLocalMatrixDevice();
-  in_widest_instructions([=] {
+  in_widest_instructions([&] {
     Kokkos::parallel_for(
         "condense", Policy(0, row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
-          constexpr int strip = Response::padding;  // columns at a time
+          constexpr int strip = Response::strip;
           RowWalk walk(local.graph, row);
           for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
             const auto first = column_start(slots(pair));

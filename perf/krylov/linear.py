@@ -145,10 +145,9 @@ def measured(options, scene, sets, ranks):
     return json.loads(done.stdout)
 
 
-def table(**values):
-    """Entries that let the sides move so far; xy, xz, yz as one number `shear`."""
-    shear = values.pop("shear")
-    return tuple(f"Tables.{name}.values={{0, {value}}}" for name, value in {**values, "xy": shear, "xz": shear, "yz": shear}.items())
+def table(shear, **values):
+    """Entries that let the sides move so far; xy, xz, yz are `shear` unless given."""
+    return tuple(f"Tables.{name}.values={{0, {value}}}" for name, value in {"xy": shear, "xz": shear, "yz": shear, **values}.items())
 
 
 def cells(x, y=None, z=None):
