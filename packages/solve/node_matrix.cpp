@@ -126,10 +126,9 @@ KOKKOS_FORCEINLINE_FUNCTION Real dot(const Number* a, const Real* x, std::size_t
   return sum;
 }
 
-/// out(i, sums, height) for every row node i, with the numbers of (A x) there. What a row needs of x is brought
-/// together first; then its numbers are read one after another, as they lie in memory, which makes the best of it:
-/// three or six rows side by side take up to four times as long. Exchanges the ghosts of x [all columns] first.
-/// Collective.
+/// out(i, sums, height) for every row node i, with the numbers of (A x) there. What its rows need of x is gathered, and
+/// then they are read one after another: one stream of memory is faster than three or six side by side. Exchanges the
+/// ghosts of x [all columns] first. Collective.
 template <class Number, class Out>
 void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& out) {
   const auto& graph = A.graph;

@@ -34,7 +34,7 @@ class Case:
     name: str
     sets: tuple
     beyond: bool = False  # of what is asked: counted in rows of its own
-    wedged: bool = False  # no state may be found: failures are counted apart
+    wedged: bool = False  # perhaps no state is found: that is counted apart
     quick: bool = False
     quick_cells: str = "tetrahedra"
 
