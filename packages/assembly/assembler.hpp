@@ -39,7 +39,8 @@ struct Slots {
 ///   using Columns = Slots<...>, Rows = Slots<...>;                 unknowns read, rows written, in local order
 ///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;       device, overwrites r
 ///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device,
-///   overwrites J
+///   overwrites J, and may have
+///   static constexpr bool couples(int row_slot, int column_slot);    false where J is always zero; these are not added
 template <class Op>
 class Assembler {
  public:
@@ -95,7 +96,7 @@ class Assembler {
       kernel.n_owned[i] = n_owned_[i];
       for (int k = 0; k < Columns::n; ++k) {
         const auto& block = J(row_fields_[i], column_fields_[k]);
-        if (block.is_null()) continue;
+        if (block.is_null() || !couples(i, k)) continue;
         const auto local = block->getLocalMatrixDevice();
         kernel.row_begin[i][k] = local.graph.row_map;
         kernel.values[i][k] = local.values;
@@ -107,6 +108,16 @@ class Assembler {
   }
 
  private:
+  template <class T>
+  static constexpr auto couples_in(int i, int k, int) -> decltype(T::couples(i, k)) {
+    return T::couples(i, k);
+  }
+  template <class T>
+  static constexpr bool couples_in(int, int, long) {
+    return true;
+  }
+  static constexpr bool couples(int i, int k) { return couples_in<Op>(i, k, 0); }
+
   using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
   template <class T>
   using PerRow = Kokkos::Array<T, OpRows::n>;
@@ -202,8 +213,8 @@ class Assembler {
     for (int i = 0; i < OpRows::n; ++i)
       for (int k = 0; k < Columns::n; ++k) {
         const auto& block = J(row_fields_[i], column_fields_[k]);
-        positions_.push_back(block.is_null() ? ConstView<LocalIndex***>()
-                                             : find_positions(*block, rows_[i], columns_[k]));
+        positions_.push_back(block.is_null() || !couples(i, k) ? ConstView<LocalIndex***>()
+                                                               : find_positions(*block, rows_[i], columns_[k]));
       }
   }
 

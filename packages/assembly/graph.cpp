@@ -33,6 +33,8 @@ class Writers {
     for_owned([&](LocalIndex row, const auto& entry) { entries_[start_[row + 1]++] = entry; });
   }
 
+  bool any(LocalIndex first_row) const { return start_[first_row] < start_[first_row + 1]; }
+
   /// Calls visit(entity, group of the entity) for all that write a group of rows.
   template <class Visit>
   void for_each(LocalIndex first_row, const Visit& visit) const {
@@ -99,6 +101,7 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
   Kokkos::deep_copy(host, -1);
   std::vector<LocalIndex> position_of(matrix.getColMap()->getNodeNumElements(), 0);  // in the row; else anything
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
+    if (!writers.any(row)) continue;
     const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;
     for (std::size_t k = 0; k < length; ++k) position_of[graph.entries(begin + k)] = static_cast<LocalIndex>(k);
     writers.for_each(row, [&](LocalIndex e, LocalIndex r) {

@@ -33,6 +33,7 @@ struct BalancedSide {
   using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
   using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
   static constexpr int beta = n * dim, lambda = beta + dim;  // where they start in x
+  static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
 
   View<Real***> coupling, frame;
   View<Real*> stiffness, bubble, pressure;

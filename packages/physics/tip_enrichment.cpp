@@ -25,6 +25,7 @@ struct EnrichedCell {
   static constexpr int dim = Cell::dim, n = Cell::n_nodes, q = n * dim;  // q: where it starts in x
   using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<n, dim>>;
   using Rows = Columns;
+  static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
 
   View<Real***> mixed, own;
 
@@ -62,6 +63,7 @@ struct EnrichedSide {
   static constexpr int dim = Cell::dim, n = Cell::n_nodes, beta = n * dim, lambda = beta + dim;
   using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
   using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
+  static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
 
   View<Real***> coupling, frame;
   View<Real**> push;

@@ -152,7 +152,7 @@ class NodeMultigrid : public BlockSolver {
       block.bulk ? block.bulk(look) : look(block.matrix);
       multigrid_ = rcp(new Multigrid(block.matrix, std::move(nodes), n, modes));
     }
-    multigrid_->setup(block.matrix, block.symmetric);
+    multigrid_->setup(block.matrix, block.symmetric, block.careful);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();
     cost.cycle_bytes = multigrid_->cycle_bytes();

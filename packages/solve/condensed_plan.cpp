@@ -22,8 +22,12 @@ class CondensedPlanner {
   /// Graph of J_ab = graph of A_ab and of all products; then the columns in it of A_ab and of the responses.
   void plan(int a, int b) {
     bool present = a == b || !matrix(a, b).is_null();
-    for (const auto& group : plan_.groups)
-      present = present || (!group.response[index(b)].fill.empty() && !group.coupling[index(a)].fill.empty());
+    for (const auto& group : plan_.groups) {
+      const auto some = [&](const auto& matrix_of) {
+        return std::any_of(group.blocks.begin(), group.blocks.end(), [&](int z) { return !matrix_of(z).is_null(); });
+      };
+      present = present || (some([&](int z) { return matrix(a, z); }) && some([&](int z) { return matrix(z, b); }));
+    }
     plan_.condensed.emplace_back();
     for (auto& group : plan_.groups) group.column.emplace_back();
     if (!present) return;

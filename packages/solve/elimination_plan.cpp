@@ -2,6 +2,7 @@
 
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
+#include <numeric>
 
 #include "base/check.hpp"
 #include "solve/small_lu.hpp"
@@ -209,28 +210,36 @@ class Planner {
   }
 
   void plan_coupling(GroupPlan& group, int a) const {
-    const int m = group.size;
-    std::vector<GlobalIndices> sets(blocks()[a].map->getNodeNumElements());
-    for (int z : group.blocks)
-      if (!matrix(a, z).is_null())
-        for_entries(*matrix(a, z), [&](LocalIndex row, LocalIndex, GlobalIndex column) {
-          sets[row].push_back(slot(group, column / blocks()[z].n_components));
+    const auto for_numbers = [&](const auto& visit) {  // visit(row, slot, component, place)
+      for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+        const int z = group.blocks[i], nz = blocks()[z].n_components;
+        if (matrix(a, z).is_null()) continue;
+        for_entries(*matrix(a, z), [&](LocalIndex row, LocalIndex k, GlobalIndex column) {
+          visit(row, slot(group, column / nz), group.offset[i] + static_cast<int>(column % nz), k);
         });
+      }
+    };
+    std::vector<GlobalIndices> sets(blocks()[a].map->getNodeNumElements());
+    for_numbers([&](LocalIndex row, LocalIndex slot, int, LocalIndex) { sets[row].push_back(slot); });
     const ColumnSets slots(sets);
+    const auto pair = [&](LocalIndex row, LocalIndex slot) {
+      return position_in(slots.column, slots.start[row], slots.start[row + 1], slot);
+    };
     group.coupling.emplace_back();
     Coupling& coupling = group.coupling.back();
-    for (std::size_t i = 0; i < group.blocks.size(); ++i) {
-      const int z = group.blocks[i], nz = blocks()[z].n_components;
-      if (matrix(a, z).is_null()) continue;
-      coupling.fill.push_back(make_scatter(matrix(a, z), [&](LocalIndex row, GlobalIndex column) {
-        const LocalIndex pair =
-            position_in(slots.column, slots.start[row], slots.start[row + 1], slot(group, column / nz));
-        return pair * m + group.offset[i] + LocalIndex(column % nz);
-      }));
-    }
     coupling.row_start = to_device(slots.start, "coupling row start");
     coupling.slot = to_device(LocalIndices(slots.column.begin(), slots.column.end()), "coupling slot");
-    coupling.coefficient = View<Real*>("coupling coefficient", slots.column.size() * m);
+    LocalIndices first(slots.column.size() + 1);
+    for_numbers([&](LocalIndex row, LocalIndex slot, int, LocalIndex) { ++first[pair(row, slot) + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    coupling.first = to_device(first, "coupling first");
+    coupling.source = View<LocalIndex*>("coupling source", first.back());
+    coupling.component = View<std::uint8_t*>("coupling component", first.back());
+    for_numbers([&](LocalIndex row, LocalIndex slot, int component, LocalIndex place) {
+      const LocalIndex at = first[pair(row, slot)]++;
+      coupling.source(at) = place;
+      coupling.component(at) = static_cast<std::uint8_t>(component);
+    });
   }
 
   const BlockProblem& problem_;

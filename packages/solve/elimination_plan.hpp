@@ -1,6 +1,7 @@
 // Where every number of a local elimination goes: found once from the graphs of the blocks, used at every update.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,13 @@ struct Response {
   View<Real*> value;
 };
 
-/// A_az of one remaining block a, packed: one row of m coefficients for each pair (owned row of a, slot) that couples.
+/// A_az of one remaining block a: where the numbers stand that couple a row with the unknowns of a slot.
 struct Coupling {
-  std::vector<Scatter> fill;    ///< A_az -> coefficient
-  View<LocalIndex*> row_start;  ///< [owned row + 1] first pair of a row
-  View<LocalIndex*> slot;       ///< [pair]
-  View<Real*> coefficient;      ///< [pair * m]
+  View<LocalIndex*> row_start;    ///< [owned row + 1] first pair of a row and a slot that couple
+  View<LocalIndex*> slot;         ///< [pair]
+  View<LocalIndex*> first;        ///< [pair + 1] first number of a pair
+  View<LocalIndex*> source;       ///< [number] where it stands in A_az
+  View<std::uint8_t*> component;  ///< [number] the unknown within the entity, of 0 ... m-1, which tells z as well
 };
 
 /// One local group. [r] counts remaining blocks.
@@ -74,6 +76,7 @@ struct CondensedBlock {
   View<LocalIndex*> bulk_column;           ///< [column of A_ab] its column in J_ab
   std::shared_ptr<fields::KeptRows> kept;  ///< of A_ab that stands in J_ab, or null
   View<LocalIndex*> rows;   ///< those that may be other ones than A_ab's, where it stands there; else all
+  View<LocalIndex*> held;   ///< rows with an unknown that is prescribed, or a column of one
   RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
 };
 

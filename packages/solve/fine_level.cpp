@@ -207,7 +207,7 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
     fill_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P, *product_);
     matrix = product_;
   }
-  order_one_->setup({first.block, matrix, bulk, system.symmetric});
+  order_one_->setup({first.block, matrix, bulk, system.symmetric, {}, first.careful});
 }
 
 void FineLevel::setup(const LinearSystem& system, bool keeps) {

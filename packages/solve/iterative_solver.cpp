@@ -40,7 +40,7 @@ void check_names(const ParameterList& given, const std::vector<ParameterList>& a
 
 /// What the Krylov methods that are used here, or the one that is asked for, know.
 std::vector<ParameterList> belos_parameters(const ParameterList& given) {
-  std::vector<std::string> methods = {"Pseudo Block CG", "Pseudo Block GMRES"};
+  std::vector<std::string> methods = {"Pseudo Block CG", "Flexible GMRES"};
   if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
   std::vector<ParameterList> lists(1);
   lists[0].set("Solver Type", "");
@@ -178,17 +178,22 @@ class IterativeSolver : public LinearSolver {
       return report;
     }
     const int expected = static_cast<int>(std::ceil(-pace_ * std::log10(tolerance)));
-    iterate(b, x, tolerance, kept_ ? expected + most_more : 0, report);
-    if (kept_ && !(report.reason.empty() && report.residual <= 2 * tolerance)) {
+    const bool kept = kept_, careful = is_careful();
+    iterate(b, x, tolerance, kept ? expected + most_more : careful ? 0 : most_careless, report);
+    const bool ended = report.reason.empty() && report.residual <= 2 * tolerance;
+    if (!ended && (kept || !careful)) {
+      const bool stays_careful = careful_ || !kept;
+      careful_ = true;
       kept_ = false;
       if (!report.reason.empty() || !std::isfinite(report.residual)) {  // what the library left is no start
         x.putScalar(0);
         report = {};
       }
       make_preconditioner();
+      careful_ = stays_careful;
       report.reason = failure_;
       if (failure_.empty()) iterate(b, x, tolerance, 0, report);
-    } else if (kept_) {
+    } else if (kept) {
       renew_ = report.iterations > expected + most_more / 2;
     } else if (report.residual < 0.1) {
       pace_ = -report.iterations / std::log10(std::max(report.residual, tolerance));
@@ -200,6 +205,9 @@ class IterativeSolver : public LinearSolver {
                                   report.residual, report.iterations, tolerance);
     return report;
   }
+
+  /// Whether multigrid's cycles are looked at, where that is of use: only once a solve has taken many iterations.
+  bool is_careful() const { return careful_ || symmetric_ || families_; }
 
   /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
   int describe_multigrid(const Block& block) {
@@ -256,6 +264,7 @@ class IterativeSolver : public LinearSolver {
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
   void make_preconditioner() {
     failure_.clear();
+    system_.diagonal.front().careful = is_careful();
     if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null())
       diagonal_ = diagonal_of(*first);
     if (!solver_.is_null() && !kept_)
@@ -321,7 +330,7 @@ class IterativeSolver : public LinearSolver {
     problem->setRightPrec(scale_.is_null() ? preconditioner_ : unscaled());
     problem->setProblem();
     const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
-    const std::string method = list->get("Solver Type", symmetric_ ? "Pseudo Block CG" : "Pseudo Block GMRES");
+    const std::string method = list->get("Solver Type", symmetric_ ? "Pseudo Block CG" : "Flexible GMRES");
     list->remove("Solver Type");
     if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
     list->get("Convergence Tolerance", tolerance);
@@ -353,6 +362,8 @@ class IterativeSolver : public LinearSolver {
   RCP<const Vector> diagonal_;                             // when multigrid was made
   RCP<const fields::CrsGraph> graph_;                      // that they belong to:
   View<std::size_t*> places_;                              // [row] of the diagonal, within the row
+  static constexpr int most_careless = 40;                 // iterations, after which multigrid is looked at
+  bool careful_ = false;                                   // it has been
   bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
   Real pace_ = 0;                                          // iterations for a digit, with new multigrid
   std::string failure_ = "the matrix was not set up";

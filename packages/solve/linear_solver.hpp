@@ -60,6 +60,7 @@ struct DiagonalBlock {
   Bulk bulk;                    ///< or empty
   bool symmetric = true;
   RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
+  bool careful = true;           ///< where it is not symmetric, a cycle of multigrid is looked at and mended if need be
 };
 
 /// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.

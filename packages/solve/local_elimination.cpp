@@ -5,7 +5,6 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "solve/columns.hpp"
@@ -29,10 +28,10 @@ void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool di
   const auto local = matrix.getLocalMatrixDevice();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
   const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
-  const auto changed = condensed.rows;
+  const auto held = condensed.held;
   Kokkos::parallel_for(
-      "constrain", Policy(0, changed.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-        const LocalIndex row = changed(i);
+      "constrain", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+        const LocalIndex row = held(i);
         for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
           const LocalIndex column = local.graph.entries(k);
           if (row_flag(row) == 0 && column_flag(column) == 0) continue;
@@ -58,27 +57,103 @@ void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed) {
       });
 }
 
-/// Changes, but for a chance of 2^-64, when any bit of any value does.
+/// Changes, but for a chance of about 2^-32, when any bit of any value does: halves of values, with keys that depend on
+/// the place, multiplied, and summed (NH of Black, Halevi, Krawczyk, Krovetz and Rogaway 1999).
 std::uint64_t checksum(const CondensedBlock& condensed) {
   const auto local = condensed.matrix->getLocalMatrixDevice();
   const auto rows = condensed.rows;
   std::uint64_t sum = 0;
-  Kokkos::parallel_reduce(
-      "checksum", Policy(0, rows.extent(0)),
-      KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {
-        for (auto k = local.graph.row_map(rows(i)); k < local.graph.row_map(rows(i) + 1); ++k) {
-          const Real value = local.values(k);
-          std::uint64_t hash;
-          memcpy(&hash, &value, sizeof hash);
-          hash += 0x9e3779b97f4a7c15ull * std::uint64_t(k + 1);
-          hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
-          hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
-          partial += hash ^ (hash >> 31);
-        }
-      },
-      sum);
+  in_widest_instructions([&] {
+    Kokkos::parallel_reduce(
+        "checksum", Policy(0, rows.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {
+          const auto begin = local.graph.row_map(rows(i));
+          const Real* const values = &local.values(begin);
+          const auto n = static_cast<std::uint32_t>(local.graph.row_map(rows(i) + 1) - begin);
+          for (std::uint32_t k = 0; k < n; ++k) {
+            const auto bits = __builtin_bit_cast(std::uint64_t, values[k]);
+            const std::uint32_t place = static_cast<std::uint32_t>(begin) + k;
+            const std::uint32_t low = static_cast<std::uint32_t>(bits) + place * 0x9e3779b1u + 0x7f4a7c15u,
+                                high = static_cast<std::uint32_t>(bits >> 32) + place * 0x85ebca6bu + 0x133111ebu;
+            partial += static_cast<std::uint64_t>(low) * high;
+          }
+        },
+        sum);
+  });
   return sum;
 }
+
+/// [row] whether it, or a column that it has, is of an unknown that is prescribed.
+View<char*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
+  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
+  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
+  const View<char*> held("held", graph.numRows());
+  Kokkos::parallel_for(
+      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
+        bool here = row_flag(row) != 0;
+        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
+          here = column_flag(graph.entries(k)) != 0;
+        held(row) = here;
+      });
+  return held;
+}
+
+View<LocalIndex*> numbers_of(const View<char*>& chosen) {
+  LocalIndex n = 0;
+  const Policy all(0, chosen.extent(0));
+  Kokkos::parallel_reduce(
+      "count", all, KOKKOS_LAMBDA(LocalIndex i, LocalIndex & sum) { sum += chosen(i) != 0; }, n);
+  const View<LocalIndex*> numbers("numbers", n);
+  Kokkos::parallel_scan(
+      "number", all, KOKKOS_LAMBDA(LocalIndex i, LocalIndex & sum, bool last) {
+        if (last && chosen(i)) numbers(sum) = i;
+        sum += chosen(i) != 0;
+      });
+  return numbers;
+}
+
+/// Values of some rows of a matrix, put aside.
+class RowValues {
+ public:
+  RowValues(const CrsMatrix& matrix, const View<LocalIndex*>& rows)
+      : local_(matrix.getLocalMatrixDevice()), rows_(rows), start_("start", rows.extent(0) + 1) {
+    const auto local = local_;
+    const auto start = start_;
+    std::size_t n = 0;
+    Kokkos::parallel_scan(
+        "count values", Policy(0, rows.extent(0)),
+        KOKKOS_LAMBDA(LocalIndex i, std::size_t & sum, bool last) {
+          sum += local.graph.row_map(rows(i) + 1) - local.graph.row_map(rows(i));
+          if (last) start(i + 1) = sum;
+        },
+        n);
+    value_ = View<Real*>(Kokkos::view_alloc("values put aside", Kokkos::WithoutInitializing), n);
+    each(KOKKOS_LAMBDA(const Real& in_matrix, Real& aside) { aside = in_matrix; });
+  }
+
+  void put_back() const {
+    each(KOKKOS_LAMBDA(Real & in_matrix, const Real& aside) { in_matrix = aside; });
+  }
+
+  template <class Move>
+  void each(const Move& move) const {
+    const auto local = local_;
+    const auto rows = rows_;
+    const auto start = start_;
+    const auto value = value_;
+    Kokkos::parallel_for(
+        "move values", Policy(0, rows.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+          const auto begin = local.graph.row_map(rows(i));
+          for (std::size_t k = start(i); k < start(i + 1); ++k) move(local.values(begin + k - start(i)), value(k));
+        });
+  }
+
+ private:
+  CrsMatrix::local_matrix_device_type local_;
+  View<LocalIndex*> rows_;
+  View<std::size_t*> start_;
+  View<Real*> value_;
+};
 
 /// Where columns stand in a row, which knows none twice: fast for those that come in its order, or nearly so.
 template <class Graph>
@@ -153,8 +228,11 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   for (int r = 0; r < n_remaining(); ++r) {
     const auto proximal = problem.proximal(plan_.remaining[r]);
     if (held_anew || fresh_ || !proximal.is_null()) keep_rows(r, proximal);
-    for (int s = 0; s < n_remaining(); ++s)
-      if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
+    for (int s = 0; s < n_remaining(); ++s) {
+      if (block(r, s).matrix.is_null()) continue;
+      if (held_anew || fresh_) block(r, s).held = numbers_of(find_held(block(r, s), *constrained_[r]));
+      start_from_bulk(block(r, s));
+    }
     if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
   }
   std::string failure;
@@ -207,17 +285,8 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
 void LocalElimination::keep_rows(int r, const RCP<const Vector>& proximal) {
   auto& condensed = block(r, r);
   if (!condensed.kept) return;
-  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
-  const View<char*> changes("changes", graph.numRows());
-  const Policy rows(0, graph.numRows());
-  const auto row_flag = read(*constrained_[r]), column_flag = read(*condensed.constrained);
-  Kokkos::parallel_for(
-      "constrained rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
-        bool here = row_flag(row) != 0;
-        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
-          here = column_flag(graph.entries(k)) != 0;
-        changes(row) = here;
-      });
+  const auto changes = find_held(condensed, *constrained_[r]);
+  const Policy rows(0, changes.extent(0));
   if (!proximal.is_null()) {
     const auto added = read(*proximal);
     Kokkos::parallel_for(
@@ -279,15 +348,13 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     Kokkos::deep_copy(z, 0.0);
     for (const auto& fill : response.fill) fill(z);
     const auto start = response.column_start;
-    Kokkos::parallel_for(
-        "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
-          lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
-        });
+    in_widest_instructions([&] {
+      Kokkos::parallel_for(
+          "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
+            lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
+          });
+    });
     group.slots->exchange_rows(start, z, m);
-  }
-  for (auto& coupling : group.coupling) {
-    Kokkos::deep_copy(coupling.coefficient, 0.0);
-    for (const auto& fill : coupling.fill) fill(coupling.coefficient);
   }
   return true;
 }
@@ -297,26 +364,29 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   if (block(r, s).matrix.is_null()) return;
   const int m = group.size;
   const auto& response = group.response[s];
-  const auto& coupling = group.coupling[r];
   const auto value = response.value;
   const auto column_start = response.column_start;
-  const auto row_start = coupling.row_start, slots = coupling.slot;
+  const auto coupling = group.coupling[r];
   const auto column = group.column[r * n_remaining() + s];
-  const auto coefficient = coupling.coefficient;
   const auto local = block(r, s).matrix->getLocalMatrixDevice();
+  const auto values_of_component = values_of_components(group, r);
   in_widest_instructions([&] {
     Kokkos::parallel_for(
-        "condense", Policy(0, row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
+        "condense", Policy(0, coupling.row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
           constexpr int strip = Response::strip;
+          Real factor[max_small_size];
           RowWalk walk(local.graph, row);
-          for (LocalIndex pair = row_start(row); pair < row_start(row + 1); ++pair) {
-            const auto first = column_start(slots(pair));
-            const auto n_columns = static_cast<LocalIndex>(column_start(slots(pair) + 1) - first);
+          for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair) {
+            for (int i = 0; i < m; ++i) factor[i] = 0;
+            for (LocalIndex k = coupling.first(pair); k < coupling.first(pair + 1); ++k)
+              factor[coupling.component(k)] = values_of_component[coupling.component(k)][coupling.source(k)];
+            const auto first = column_start(coupling.slot(pair)), end = column_start(coupling.slot(pair) + 1);
+            const auto n_columns = static_cast<LocalIndex>(end - first);
             for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
               Numbers<strip> sum, z;
               for (int i = 0; i < m; ++i) {
                 z.load(&value(m * first + i * n_columns + begin));
-                sum.add(coefficient(pair * m + i), z);
+                sum.add(factor[i], z);
               }
               Real numbers[strip];
               sum.store(numbers);
@@ -328,17 +398,26 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   });
 }
 
+/// [component of an entity] the values of A_rz, null where there is none.
+Kokkos::Array<const Real*, max_small_size> LocalElimination::values_of_components(const GroupPlan& group, int r) const {
+  Kokkos::Array<const Real*, max_small_size> values = {};
+  for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+    const int end = i + 1 < group.offset.size() ? group.offset[i + 1] : group.size;
+    if (const auto& A = (*matrix_)(plan_.remaining[r], group.blocks[i]); !A.is_null())
+      for (int component = group.offset[i]; component < end; ++component) values[component] = values_of(*A).data();
+  }
+  return values;
+}
+
 RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
 
 void LocalElimination::with_bulk(int r, const std::function<void(const RCP<CrsMatrix>& A)>& work) const {
   const auto& condensed = block(r, r);
-  const auto values = values_of(*condensed.matrix);
-  const View<Real*> of_J(Kokkos::view_alloc("values of J", Kokkos::WithoutInitializing), values.extent(0));
-  Kokkos::deep_copy(of_J, values);
+  const RowValues of_J(*condensed.matrix, condensed.rows);
   start_from_bulk(condensed);
   constrain(condensed, *constrained_[r], true);
   work(condensed.matrix);
-  Kokkos::deep_copy(values, of_J);
+  of_J.put_back();
 }
 
 /// z <- A_zz^-1 z for the blocks of one group.

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "solve/elimination_plan.hpp"
+#include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
 
@@ -47,6 +48,7 @@ class LocalElimination {
   static void set_scales(const BlockProblem& problem, GroupPlan& group);
   bool factor(GroupPlan& group, std::string& failure) const;
   void condense(GroupPlan& group, int r, int s) const;
+  Kokkos::Array<const Real*, max_small_size> values_of_components(const GroupPlan& group, int r) const;
   void apply_inverse(const GroupPlan& group, BlockVector& z) const;
   int n_remaining() const { return static_cast<int>(plan_.remaining.size()); }
   CondensedBlock& block(int r, int s) { return plan_.condensed[r * n_remaining() + s]; }

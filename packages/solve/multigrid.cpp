@@ -90,7 +90,7 @@ void Multigrid::add_level(const NodeMatrix& A) {
   levels_.push_back({A, {}, {}, vector(halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
 }
 
-void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
+void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric, bool careful) {
   if (matrix != finest_ || !shares_) {
     const auto values = node_matrix(*matrix, size_).value;
     base::collectively(*map_->getComm(), [&] {
@@ -107,7 +107,8 @@ void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric) {
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);
-  for (int widenings = 0; !symmetric && !(growth() <= most_growth) && widenings < most_widenings; ++widenings)
+  for (int widenings = 0; careful && !symmetric && !(growth() <= most_growth) && widenings < most_widenings;
+       ++widenings)
     for (auto& level : levels_)
       if (level.smoother) level.smoother->widen();
 }

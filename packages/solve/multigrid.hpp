@@ -27,8 +27,9 @@ class Multigrid : public fields::Operator {
             const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null)
       : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
-  /// Makes ready for the values of a matrix with the graph of the first.
-  void setup(const RCP<const CrsMatrix>& matrix, bool symmetric);
+  /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
+  /// cycle, and smooths less where that enlarges the residual.
+  void setup(const RCP<const CrsMatrix>& matrix, bool symmetric, bool careful = true);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }

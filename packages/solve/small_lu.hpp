@@ -59,6 +59,7 @@ KOKKOS_INLINE_FUNCTION bool lu_factor(int m, Real* a, int* pivot, const Real* co
 /// b <- A^-1 b for n columns. [m, n]
 KOKKOS_INLINE_FUNCTION void lu_solve(int m, const Real* lu, const int* pivot, Real* b, int n = 1) {
   const auto subtract = [=](int i, int j) {
+    if (lu[i * m + j] == 0) return;
     for (int c = 0; c < n; ++c) b[i * n + c] -= lu[i * m + j] * b[j * n + c];
   };
   for (int k = 0; k < m; ++k)

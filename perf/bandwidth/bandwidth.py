@@ -41,7 +41,10 @@ class Measured:
         """name, count, seconds, share of the triad's bandwidth, share of the step's time, key of the last line."""
         found, phases = self.found, self.phases
         assembly, cycle, contact = phases["assembly of the linear part"], found["V-cycle"], phases[CONTACT]
-        return [("triad", None, found["medians"]["triad"], 1, None, None),
+        touch = found["first touch"]
+        return [("2 GiB touched for the first time", None, touch["first"], None, None, None),
+                ("2 GiB touched again", None, touch["again"], None, None, None),
+                ("triad", None, found["medians"]["triad"], 1, None, None),
                 ("SpMV", None, self.spmv, self.share(found["spmv_bytes"], self.spmv), None, "spmv_share"),
                 ("assembly of the bulk", assembly["count"], assembly["seconds"], None, None, "assembly_spmv"),
                 ("structure of the matrices", None, phases["structure of the matrices"]["seconds"], None, None, None),
@@ -79,11 +82,11 @@ def run(options, cells, edge):
 def draw(measured, file):
     """The parts in products, with what is asked of them."""
     import style
-    names = [name for name, *_ in next(iter(measured.values())).parts()][2:]
+    names = [name for name, *_ in next(iter(measured.values())).parts()][4:]
     figure, ax = style.plt.subplots(figsize=(7.5, 4.2))
     height = 0.8 / len(measured)
     for k, (cells, one) in enumerate(measured.items()):
-        for i, (name, _, seconds, _, _, key) in enumerate(one.parts()[2:]):
+        for i, (name, _, seconds, _, _, key) in enumerate(one.parts()[4:]):
             y = i + height * (k - (len(measured) - 1) / 2)
             ax.barh(y, seconds / one.spmv, 0.9 * height, color=style.LINES[k], label=cells if i == 0 else None)
             times = seconds / one.spmv

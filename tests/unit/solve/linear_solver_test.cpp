@@ -6,6 +6,7 @@
 #include "dense.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/direct_inverse.hpp"
+#include "truss.hpp"
 
 namespace sprekk::test {
 namespace {
@@ -207,6 +208,33 @@ int setups_after(LocalIndex n_changed) {
 TEST(IterativeSolver, KeepsMultigridWhileFewRowsChange) {
   EXPECT_EQ(setups_after(4), 1);
   EXPECT_EQ(setups_after(40), 2);
+}
+
+/// Of matrices that are not symmetric, multigrid is made again, with a look at its cycles, only where a solve is long.
+TEST(IterativeSolver, LooksAtMultigridOnceASolveIsLong) {
+  for (const Real skew : {0.0, 0.3}) {
+    const Truss truss(11, true, skew);
+    std::vector<GlobalIndex> nodes;
+    for (std::size_t i = 0; i < truss.map->getNodeNumElements(); i += 3)
+      nodes.push_back(truss.map->getGlobalElement(static_cast<LocalIndex>(i)) / 3);
+    const GlobalIndex n_nodes = truss.map->getGlobalNumElements() / 3;
+    const auto node_map = rcp(new Map(n_nodes, Teuchos::arrayViewFromVector(nodes), 0, truss.map->getComm()));
+    const auto places = rcp(new fields::MultiVector(node_map, 3));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int k = 0; k < 3; ++k) places->replaceLocalValue(static_cast<LocalIndex>(i), k, truss.place(nodes[i])[k]);
+    const Block block{"u", truss.map, 3, 1, 1, places, truss.modes};
+    const auto solver = solve::make_iterative_solver({}, {block});
+    ASSERT_EQ(solver->setup(system_of(truss.matrix, block, false)), "");
+    Vector b(truss.map), x(truss.map);
+    for (std::size_t i = 0; i < b.getLocalLength(); ++i)
+      b.replaceLocalValue(i, std::sin(1.0 * truss.map->getGlobalElement(i)));
+    for (int again = 0; again < 2; ++again) {
+      const auto report = solver->solve(b, x, 1e-8);
+      EXPECT_TRUE(report.converged) << report.reason;
+      EXPECT_EQ(report.iterations > 40, skew != 0) << report.iterations;
+      EXPECT_EQ(solver->costs().front().n_setups, skew == 0 ? 1 : 2);
+    }
+  }
 }
 
 TEST(IterativeSolver, SolvesLessThanACoarseLevel) {
