@@ -34,7 +34,10 @@ RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
 DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name)
     : name_(name), map_(A->getRowMap()), A_(renumbered(A)), from_(A_->getRowMap()), to_(A_->getRowMap()) {
   if (A_->getGlobalNumRows() > most_dense)
-    solver_ = make_direct_solver(Teuchos::ParameterList().set("ICNTL(8)", 1, "scaling: by the diagonal"), true);
+    solver_ = make_direct_solver(Teuchos::ParameterList()
+                                     .set("ICNTL(7)", 2, "ordering: approximate minimum fill, soon found")
+                                     .set("ICNTL(8)", 1, "scaling: by the diagonal"),
+                                 true);
 }
 
 void DirectInverse::setup(bool symmetric) {

@@ -76,7 +76,7 @@ struct CondensedBlock {
   View<LocalIndex*> bulk_column;           ///< [column of A_ab] its column in J_ab
   std::shared_ptr<fields::KeptRows> kept;  ///< of A_ab that stands in J_ab, or null
   View<LocalIndex*> rows;   ///< those that may be other ones than A_ab's, where it stands there; else all
-  View<LocalIndex*> held;   ///< rows with an unknown that is prescribed, or a column of one
+  View<LocalIndex*> held;   ///< rows of unknowns that are prescribed, and those with a column of one
   RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
 };
 

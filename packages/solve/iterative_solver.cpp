@@ -125,7 +125,7 @@ class IterativeSolver : public LinearSolver {
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
     set_scale();
-    make_preconditioner();
+    make_preconditioner(is_careful());
     return failure_;
   }
 
@@ -178,25 +178,27 @@ class IterativeSolver : public LinearSolver {
       return report;
     }
     const int expected = static_cast<int>(std::ceil(-pace_ * std::log10(tolerance)));
-    const bool kept = kept_, careful = is_careful();
-    iterate(b, x, tolerance, kept ? expected + most_more : careful ? 0 : most_careless, report);
+    const bool kept = kept_, looks = !kept && !looked_at_;
+    iterate(b, x, tolerance, kept ? expected + most_more : looks ? most_careless : 0, report);
     const bool ended = report.reason.empty() && report.residual <= 2 * tolerance;
-    if (!ended && (kept || !careful)) {
-      const bool stays_careful = careful_ || !kept;
-      careful_ = true;
+    const bool too_long = looks && report.iterations >= most_careless;
+    if (!ended && (kept || too_long)) {
+      careful_ = careful_ || too_long;
       kept_ = false;
       if (!report.reason.empty() || !std::isfinite(report.residual)) {  // what the library left is no start
         x.putScalar(0);
         report = {};
       }
-      make_preconditioner();
-      careful_ = stays_careful;
+      make_preconditioner(true);
       report.reason = failure_;
+      const int before = report.iterations;
+      const Real from = before > 0 ? report.residual : 1;
       if (failure_.empty()) iterate(b, x, tolerance, 0, report);
+      take_pace(report.iterations - before, report.residual / from, tolerance / from);
     } else if (kept) {
       renew_ = report.iterations > expected + most_more / 2;
-    } else if (report.residual < 0.1) {
-      pace_ = -report.iterations / std::log10(std::max(report.residual, tolerance));
+    } else {
+      take_pace(report.iterations, report.residual, tolerance);
     }
     if (!report.reason.empty()) return report;
     report.converged = report.residual <= std::max(10 * tolerance, acceptable_linear_residual);
@@ -206,8 +208,13 @@ class IterativeSolver : public LinearSolver {
     return report;
   }
 
-  /// Whether multigrid's cycles are looked at, where that is of use: only once a solve has taken many iterations.
-  bool is_careful() const { return careful_ || symmetric_ || families_; }
+  /// Of new multigrid, which made the residual smaller by this factor.
+  void take_pace(int iterations, Real factor, Real wanted) {
+    if (const Real gained = std::max(factor, wanted); gained < 0.1) pace_ = -iterations / std::log10(gained);
+  }
+
+  /// Whether multigrid's cycles are looked at, or need not be: else only once a solve has taken many iterations.
+  bool is_careful() const { return careful_ || symmetric_ || families_ || !has_cycles_; }
 
   /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
   int describe_multigrid(const Block& block) {
@@ -223,6 +230,7 @@ class IterativeSolver : public LinearSolver {
 
   void make_solvers(const std::vector<Block>& blocks) {
     blocks_ = blocks;
+    has_cycles_ = !blocks.front().coordinates.is_null() && !takes_muelu(muelu_, blocks.front());
     solver_.reset();
     fine_level_.reset();
     families_.reset();
@@ -262,9 +270,10 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
-  void make_preconditioner() {
+  void make_preconditioner(bool careful) {
     failure_.clear();
-    system_.diagonal.front().careful = is_careful();
+    system_.diagonal.front().careful = careful;
+    if (!kept_) looked_at_ = careful;
     if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null())
       diagonal_ = diagonal_of(*first);
     if (!solver_.is_null() && !kept_)
@@ -363,7 +372,8 @@ class IterativeSolver : public LinearSolver {
   RCP<const fields::CrsGraph> graph_;                      // that they belong to:
   View<std::size_t*> places_;                              // [row] of the diagonal, within the row
   static constexpr int most_careless = 40;                 // iterations, after which multigrid is looked at
-  bool careful_ = false;                                   // it has been
+  bool has_cycles_ = false;                                // of our own multigrid, which can be looked at
+  bool careful_ = false, looked_at_ = false;               // multigrid is always looked at from now on; this one was
   bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
   Real pace_ = 0;                                          // iterations for a digit, with new multigrid
   std::string failure_ = "the matrix was not set up";

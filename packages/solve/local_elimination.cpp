@@ -57,8 +57,8 @@ void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed) {
       });
 }
 
-/// Changes, but for a chance of about 2^-32, when any bit of any value does: halves of values, with keys that depend on
-/// the place, multiplied, and summed (NH of Black, Halevi, Krawczyk, Krovetz and Rogaway 1999).
+/// Changes, but for a chance of about 2^-32, when any bit of any value does: halves of values, plus keys that scatter
+/// the places, multiplied and summed (as NH of Black, Halevi, Krawczyk, Krovetz and Rogaway 1999).
 std::uint64_t checksum(const CondensedBlock& condensed) {
   const auto local = condensed.matrix->getLocalMatrixDevice();
   const auto rows = condensed.rows;
@@ -68,13 +68,13 @@ std::uint64_t checksum(const CondensedBlock& condensed) {
         "checksum", Policy(0, rows.extent(0)),
         KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {
           const auto begin = local.graph.row_map(rows(i));
-          const Real* const values = &local.values(begin);
           const auto n = static_cast<std::uint32_t>(local.graph.row_map(rows(i) + 1) - begin);
           for (std::uint32_t k = 0; k < n; ++k) {
-            const auto bits = __builtin_bit_cast(std::uint64_t, values[k]);
-            const std::uint32_t place = static_cast<std::uint32_t>(begin) + k;
-            const std::uint32_t low = static_cast<std::uint32_t>(bits) + place * 0x9e3779b1u + 0x7f4a7c15u,
-                                high = static_cast<std::uint32_t>(bits >> 32) + place * 0x85ebca6bu + 0x133111ebu;
+            const auto bits = __builtin_bit_cast(std::uint64_t, local.values(begin + k));
+            std::uint32_t key = (static_cast<std::uint32_t>(begin) + k) * 0x9e3779b1u;
+            key = (key ^ (key >> 15)) * 0x85ebca6bu;
+            const std::uint32_t low = static_cast<std::uint32_t>(bits) + key;
+            const std::uint32_t high = static_cast<std::uint32_t>(bits >> 32) + (key ^ (key >> 13)) * 0xc2b2ae35u;
             partial += static_cast<std::uint64_t>(low) * high;
           }
         },

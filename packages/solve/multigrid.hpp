@@ -28,7 +28,7 @@ class Multigrid : public fields::Operator {
       : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
   /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
-  /// cycle, and smooths less where that enlarges the residual.
+  /// cycle, and smooths less if the residual grows much in it.
   void setup(const RCP<const CrsMatrix>& matrix, bool symmetric, bool careful = true);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }

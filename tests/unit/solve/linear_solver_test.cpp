@@ -210,6 +210,28 @@ TEST(IterativeSolver, KeepsMultigridWhileFewRowsChange) {
   EXPECT_EQ(setups_after(40), 2);
 }
 
+/// Krylov's space then has a single vector.
+TEST(IterativeSolver, SolvesWhatItsPreconditionerInverts) {
+  const int n = 2000;
+  const auto map = rcp(new Map(n, 0, Tpetra::getDefaultComm()));
+  const auto matrix = rcp(new CrsMatrix(map, 1));
+  for (const GlobalIndex row : map->getNodeElementList()) {
+    const Real two = 2;
+    matrix->insertGlobalValues(row, 1, &two, &row);
+  }
+  matrix->fillComplete();
+  for (const bool symmetric : {true, false}) {
+    const Block block{"u", map, 1, 1, 1, Teuchos::null, Teuchos::null};
+    const auto solver = solve::make_iterative_solver({}, {block});
+    ASSERT_EQ(solver->setup(system_of(matrix, block, symmetric)), "");
+    Vector b(map), x(map);
+    b.putScalar(1);
+    const auto report = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(report.converged) << report.reason;
+    EXPECT_LT(report.residual, 1e-8);
+  }
+}
+
 /// Of matrices that are not symmetric, multigrid is made again, with a look at its cycles, only where a solve is long.
 TEST(IterativeSolver, LooksAtMultigridOnceASolveIsLong) {
   for (const Real skew : {0.0, 0.3}) {
