@@ -83,21 +83,6 @@ std::uint64_t checksum(const CondensedBlock& condensed) {
   return sum;
 }
 
-/// [row] whether it, or a column that it has, is of an unknown that is prescribed.
-View<char*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
-  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
-  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
-  const View<char*> held("held", graph.numRows());
-  Kokkos::parallel_for(
-      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
-        bool here = row_flag(row) != 0;
-        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
-          here = column_flag(graph.entries(k)) != 0;
-        held(row) = here;
-      });
-  return held;
-}
-
 View<LocalIndex*> numbers_of(const View<char*>& chosen) {
   LocalIndex n = 0;
   const Policy all(0, chosen.extent(0));
@@ -110,6 +95,21 @@ View<LocalIndex*> numbers_of(const View<char*>& chosen) {
         sum += chosen(i) != 0;
       });
   return numbers;
+}
+
+/// Rows of unknowns that are prescribed, and those with a column of one.
+View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
+  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
+  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
+  const View<char*> held("held", graph.numRows());
+  Kokkos::parallel_for(
+      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
+        bool here = row_flag(row) != 0;
+        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
+          here = column_flag(graph.entries(k)) != 0;
+        held(row) = here;
+      });
+  return numbers_of(held);
 }
 
 /// Values of some rows of a matrix, put aside.
@@ -227,12 +227,11 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   const bool held_anew = take_constraints(problem);
   for (int r = 0; r < n_remaining(); ++r) {
     const auto proximal = problem.proximal(plan_.remaining[r]);
+    for (int s = 0; s < n_remaining() && (held_anew || fresh_); ++s)
+      if (!block(r, s).matrix.is_null()) block(r, s).held = find_held(block(r, s), *constrained_[r]);
     if (held_anew || fresh_ || !proximal.is_null()) keep_rows(r, proximal);
-    for (int s = 0; s < n_remaining(); ++s) {
-      if (block(r, s).matrix.is_null()) continue;
-      if (held_anew || fresh_) block(r, s).held = numbers_of(find_held(block(r, s), *constrained_[r]));
-      start_from_bulk(block(r, s));
-    }
+    for (int s = 0; s < n_remaining(); ++s)
+      if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
     if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
   }
   std::string failure;
@@ -285,8 +284,11 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
 void LocalElimination::keep_rows(int r, const RCP<const Vector>& proximal) {
   auto& condensed = block(r, r);
   if (!condensed.kept) return;
-  const auto changes = find_held(condensed, *constrained_[r]);
+  const View<char*> changes("changes", condensed.matrix->getNodeNumRows());
   const Policy rows(0, changes.extent(0));
+  const auto held = condensed.held;
+  Kokkos::parallel_for(
+      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { changes(held(i)) = 1; });
   if (!proximal.is_null()) {
     const auto added = read(*proximal);
     Kokkos::parallel_for(
