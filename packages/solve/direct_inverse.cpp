@@ -31,13 +31,14 @@ RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
 
 }  // namespace
 
-DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name)
+DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int most_ranks)
     : name_(name), map_(A->getRowMap()), A_(renumbered(A)), from_(A_->getRowMap()), to_(A_->getRowMap()) {
-  if (A_->getGlobalNumRows() > most_dense)
+  const auto n = static_cast<int>(A_->getGlobalNumRows());
+  if (n > most_dense)
     solver_ = make_direct_solver(Teuchos::ParameterList()
                                      .set("ICNTL(7)", 2, "ordering: approximate minimum fill, soon found")
                                      .set("ICNTL(8)", 1, "scaling: by the diagonal"),
-                                 true);
+                                 std::clamp(n / least_of_a_rank, 1, most_ranks));
 }
 
 void DirectInverse::setup(bool symmetric) {

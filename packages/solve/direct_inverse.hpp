@@ -1,4 +1,4 @@
-// The inverse of a matrix that is small enough for one rank.
+// The inverse of a matrix that is small enough for one rank, or a few.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,16 @@
 
 namespace sprekk::solve {
 
-/// By factors, for multigrid's last level and the rows around crack tips: those of MUMPS on rank 0; of few unknowns,
-/// for which calls of MUMPS take longer than the work, dense ones on every rank. The graph must stay as it is.
+/// By factors, for multigrid's last level and the rows around crack tips: those of MUMPS on the first ranks, as many as
+/// gain from it; of few unknowns, for which calls of MUMPS take longer than the work, dense ones on every rank. The
+/// graph must stay as it is.
 class DirectInverse : public fields::Operator {
  public:
-  static constexpr int most_dense = 300;  ///< unknowns
+  static constexpr int most_dense = 300;        ///< unknowns
+  static constexpr int least_of_a_rank = 2000;  ///< unknowns: two ranks gain little from sharing twice as many
 
-  /// `name` begins the messages of errors. Collective.
-  DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name);
+  /// `name` begins the messages of errors. Of several ranks, the last bits vary. Collective.
+  DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int most_ranks = 1);
 
   /// Factors the present values. Throws where they are singular. Collective.
   void setup(bool symmetric);

@@ -38,8 +38,8 @@ std::string message(const DMUMPS_STRUC_C& mumps) {
 
 class DirectSolver : public LinearSolver {
  public:
-  DirectSolver(const Teuchos::ParameterList& overrides, bool on_one_rank)
-      : parameters_("MUMPS"), on_one_rank_(on_one_rank) {
+  DirectSolver(const Teuchos::ParameterList& overrides, int most_ranks)
+      : parameters_("MUMPS"), most_ranks_(most_ranks) {
     parameters_.set("ICNTL(7)", 7, "ordering: automatic");
     parameters_.set("ICNTL(14)", 40, "extra work space, percent");
     parameters_.setParameters(overrides);
@@ -126,7 +126,7 @@ class DirectSolver : public LinearSolver {
   int run(Job job) {
     mumps_.job = job;
     if (mpi_comm_ != MPI_COMM_NULL) dmumps_c(&mumps_);
-    if (on_one_rank_) Teuchos::broadcast(*comm_, 0, 2, mumps_.infog);
+    if (gathers_) Teuchos::broadcast(*comm_, 0, 2, mumps_.infog);
     return mumps_.infog[0];
   }
 
@@ -161,9 +161,9 @@ class DirectSolver : public LinearSolver {
     to_root_ = rcp(new fields::Import(matrix_->getRowMap(), root_map));
     from_root_ = rcp(new fields::Import(root_map, matrix_->getRowMap()));
     at_root_ = rcp(new Vector(root_map));
-    gathers_ = on_one_rank_ && comm_->getSize() > 1;
+    gathers_ = most_ranks_ < comm_->getSize();
     const auto factored = gathers_ ? places_on_root() : matrix_;
-    MPI_Comm_split(all_ranks(), on_one_rank_ && !root ? MPI_UNDEFINED : 0, comm_->getRank(), &mpi_comm_);
+    MPI_Comm_split(all_ranks(), comm_->getRank() < most_ranks_ ? 0 : MPI_UNDEFINED, comm_->getRank(), &mpi_comm_);
     symmetric_ = symmetric;
     mumps_ = {};
     if (mpi_comm_ != MPI_COMM_NULL) mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);
@@ -246,7 +246,7 @@ class DirectSolver : public LinearSolver {
   }
 
   Teuchos::ParameterList parameters_;
-  const bool on_one_rank_;
+  const int most_ranks_;  // that share the factors
   RCP<const Comm> comm_;
   std::map<int, int> icntl_;    // from 0
   std::map<int, double> cntl_;  // from 0
@@ -268,8 +268,8 @@ class DirectSolver : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, bool on_one_rank) {
-  return std::make_unique<DirectSolver>(mumps, on_one_rank);
+std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, int most_ranks) {
+  return std::make_unique<DirectSolver>(mumps, most_ranks);
 }
 
 }  // namespace sprekk::solve

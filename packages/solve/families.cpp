@@ -251,7 +251,7 @@ Families::Families(const ParameterList& muelu, const std::vector<Block>& blocks)
 
 void Families::setup(int family, const LinearSystem& system) {
   std::vector<Real> scales;
-  LinearSystem part{joined_[family], {}, true, {}, {}};
+  LinearSystem part{joined_[family], {}, true, {}, {}, system.reproducible};
   for (int r : members_[family]) {
     scales.push_back(system.joined->scale(r));
     part.diagonal.push_back(system.diagonal[r]);

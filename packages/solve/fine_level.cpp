@@ -223,7 +223,8 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   const auto& P = system.diagonal.front().block.interpolation;
   RCP<const Operator> smoother;
   if (P.is_null()) {
-    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips"));
+    const int most_ranks = system.reproducible ? 1 : system.joined->map()->getComm()->getSize();
+    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips", most_ranks));
     direct_->setup(system.symmetric);
     smoother = direct_;
   } else {

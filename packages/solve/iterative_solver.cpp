@@ -96,7 +96,7 @@ RCP<const Vector> root_of_diagonal(const CrsMatrix& A, bool inverse) {
 class IterativeSolver : public LinearSolver {
  public:
   IterativeSolver(const LinearSolverOptions& options, const std::vector<Block>& blocks)
-      : muelu_(options.muelu), parameters_("iterative") {
+      : muelu_(options.muelu), reproducible_(options.reproducible.value_or(false)), parameters_("iterative") {
     check_names(ParameterList(options.muelu).setName("MueLu"), {*MueLu::MasterList::List()});
     check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
     const int coarse_size = describe_multigrid(blocks.front());
@@ -106,7 +106,7 @@ class IterativeSolver : public LinearSolver {
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
     // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
     if (n <= coarse_size) {
-      coarse_ = make_direct_solver(options.mumps, true);
+      coarse_ = make_direct_solver(options.mumps, 1);
       parameters_.sublist("MUMPS") = coarse_->parameters();
     } else {
       make_solvers(blocks);
@@ -121,6 +121,7 @@ class IterativeSolver : public LinearSolver {
     kept_ = !renew_ && !preconditioner_.is_null() && !families_ && system.symmetric == system_.symmetric &&
             !system.diagonal.front().matrix.is_null() && n_changed(*system.diagonal.front().matrix) <= most_changed;
     system_ = system;
+    system_.reproducible = reproducible_;
     symmetric_ = system.symmetric && !families_;  // a sweep over families is not symmetric
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
@@ -352,7 +353,9 @@ class IterativeSolver : public LinearSolver {
     return converged || solver->isLOADetected();
   }
 
-  ParameterList muelu_, parameters_;
+  ParameterList muelu_;
+  bool reproducible_;
+  ParameterList parameters_;
   std::unique_ptr<LinearSolver> coarse_;
   std::vector<Block> blocks_;
   RCP<BlockSolver> solver_;                // of the only block, or

@@ -23,9 +23,10 @@ void LinearSolverOptions::describe(base::Section& section) {
       "the same states, and after that where Newton's method gains nothing from more");
   section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
-  section.entry(reproducible, "reproducible", "-",
-                "direct: factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary; "
-                "absent: true if checkpoints are asked for");
+  section.entry(
+      reproducible, "reproducible", "-",
+      "factor on rank 0 alone, with the iterative solver around crack tips; on several, MUMPS adds what comes "
+      "first, and the last bits vary; absent: true if checkpoints are asked for");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
   section.passthrough(muelu, "MueLu", "parameters of MueLu; with any, it takes the place of Sprekk's own multigrid");
@@ -51,10 +52,11 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
                            ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
                                          is_3d ? "3D" : "2D", n, limit)
                            : fmt::format("{}: asked for; {} unknowns", options.type, n);
-  const bool on_one_rank =
-      direct && options.reproducible.value_or(false) && blocks.front().map->getComm()->getSize() > 1;
+  if (!direct) return {make_iterative_solver(options, blocks), reason};
+  const int n_ranks = blocks.front().map->getComm()->getSize();
+  const bool on_one_rank = options.reproducible.value_or(false) && n_ranks > 1;
   if (on_one_rank) reason += "; reproducible: factored on rank 0";
-  return {direct ? make_direct_solver(options.mumps, on_one_rank) : make_iterative_solver(options, blocks), reason};
+  return {make_direct_solver(options.mumps, on_one_rank ? 1 : n_ranks), reason};
 }
 
 Real relative_residual(const fields::Operator& matrix, const Vector& b, const Vector& x, Vector& r) {

@@ -3,6 +3,7 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +29,7 @@ struct LinearSolverOptions {
   bool forcing = true;                 ///< less is asked for while faces still change state
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
   long long direct_limit_3d = 3000;    ///< auto: the same in 3D
-  std::optional<bool> reproducible;    ///< the direct solver factors on one rank; absent: no
+  std::optional<bool> reproducible;    ///< ranks do not share the factors of a matrix; absent: they may
   Teuchos::ParameterList mumps, belos, muelu;
 
   void describe(base::Section& section);
@@ -70,6 +71,7 @@ struct LinearSystem {
   bool symmetric = false;
   std::vector<DiagonalBlock> diagonal;
   RCP<const CrsMatrix> matrix;  ///< of all blocks, scaled; null unless the solver reads it
+  bool reproducible = false;    ///< whether a set-up must leave the same bits every time
 
   RCP<const fields::Operator> joined_operator() const { return solve::joined_operator(joined, blocks); }
 };
@@ -110,7 +112,9 @@ struct ChosenSolver {
 /// The solver for systems of these blocks. Stored data only.
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::vector<Block>& blocks);
 
-std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, bool on_one_rank = false);
+/// Ranks 0 to most_ranks - 1 share the factors; one alone adds in the same order every time.
+std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps,
+                                                 int most_ranks = std::numeric_limits<int>::max());
 std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options,
                                                     const std::vector<Block>& blocks);
 

@@ -51,7 +51,7 @@ struct Grid {
 };
 
 TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
-  for (const auto& [symmetric, on_one_rank] : {std::pair{true, false}, {false, false}, {true, true}, {false, true}}) {
+  for (const auto& [symmetric, most_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
     Grid grid(12);
     if (!symmetric) {
       Vector scale(grid.matrix->getRowMap());
@@ -59,7 +59,7 @@ TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
         scale.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
       grid.matrix->leftScale(scale);
     }
-    const auto solver = solve::make_direct_solver({}, on_one_rank);
+    const auto solver = solve::make_direct_solver({}, most_ranks);
     expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
   }
 }
@@ -76,7 +76,7 @@ TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
 }
 
 TEST(DirectSolver, ReportsASingularMatrix) {
-  for (const auto& [structural, on_one_rank] : {std::pair{true, false}, {false, false}, {true, true}, {false, true}}) {
+  for (const auto& [structural, most_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
     const auto comm = Tpetra::getDefaultComm();
     std::vector<GlobalIndex> mine;
     for (int i = comm->getRank(); i < 6; i += comm->getSize()) mine.push_back(i);
@@ -85,7 +85,7 @@ TEST(DirectSolver, ReportsASingularMatrix) {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) fill.add(i, j, structural ? (j < 3) : i * 6 + j);  // rank 1 or 2
     const auto matrix = fill.done();
-    const auto solver = solve::make_direct_solver({}, on_one_rank);
+    const auto solver = solve::make_direct_solver({}, most_ranks);
     const std::string failure =
         solver->setup(system_of(matrix, {"s", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false));
     Vector b(map), x(map);
@@ -102,8 +102,8 @@ TEST(DirectSolver, RefusesUnknownParameters) {
   EXPECT_THROW(solve::make_direct_solver(list), Error);
 }
 
-/// Grids whose unknowns are few enough for dense factors, and too many.
-constexpr int few = 8, many = 20;
+/// Grids whose unknowns are few enough for dense factors, too many, and enough for several ranks.
+constexpr int few = 8, many = 20, shared = 70;
 
 /// Distance of A^-1 A x from x, over the largest of x.
 Real error_of(const solve::DirectInverse& inverse, const CrsMatrix& A) {
@@ -123,14 +123,16 @@ void scale(CrsMatrix& A, Real factor) {
 }
 
 TEST(DirectInverse, InvertsFewAndManyUnknowns) {
-  for (const int n : {few, many}) {
+  for (const int n : {few, many, shared}) {
     Grid grid(n);
-    ASSERT_EQ(grid.matrix->getGlobalNumRows() <= solve::DirectInverse::most_dense, n == few);
+    const int n_rows = grid.matrix->getGlobalNumRows(), n_ranks = grid.matrix->getComm()->getSize();
+    ASSERT_EQ(n_rows <= solve::DirectInverse::most_dense, n == few);
+    ASSERT_EQ(n_rows >= 2 * solve::DirectInverse::least_of_a_rank, n == shared);
     Vector factors(grid.matrix->getRowMap());  // not symmetric
     for (std::size_t i = 0; i < factors.getLocalLength(); ++i)
       factors.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
     grid.matrix->leftScale(factors);
-    solve::DirectInverse inverse(grid.matrix, "test");
+    solve::DirectInverse inverse(grid.matrix, "test", n_ranks);
     for (const Real factor : {1, 3}) {
       scale(*grid.matrix, factor);
       inverse.setup(false);
@@ -140,10 +142,10 @@ TEST(DirectInverse, InvertsFewAndManyUnknowns) {
 }
 
 TEST(DirectInverse, ThrowsWhereTheMatrixIsSingular) {
-  for (const int n : {few, many}) {
+  for (const int n : {few, many, shared}) {
     Grid grid(n);
     scale(*grid.matrix, 0);
-    solve::DirectInverse inverse(grid.matrix, "test");
+    solve::DirectInverse inverse(grid.matrix, "test", grid.matrix->getComm()->getSize());
     try {
       inverse.setup(false);
       ADD_FAILURE() << n;
