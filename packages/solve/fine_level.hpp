@@ -15,10 +15,9 @@ class Cycle;
 ///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
 /// with K multigrid on the part of order 1, and P its interpolation: that of the first block, zero in blocks that
 /// enrich it. S works on the unknowns that order 1 does not have, and on those that couple to them: of order 2 on all,
-/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a direct solve on
-/// rank 0 or, of few unknowns, on every rank (in flat cells with the next nodes, too). This one leaves no residual in
-/// its rows, so the next cycle would find none there: a Krylov method that starts from S b does without the first of
-/// the two, and finds the same.
+/// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a DirectInverse (in flat cells
+/// with the next nodes, too). This one leaves no residual in its rows, so the next cycle would find none there: a
+/// Krylov method that starts from S b does without the first of the two, and finds the same.
 class FineLevel {
  public:
   FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);

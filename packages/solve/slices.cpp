@@ -8,7 +8,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr int most_slices = 32;
-constexpr Real most_repeated = 0.05;  // of the entries of A P
+constexpr Real most_repeated = 0.15;  // of the entries of A P
 
 std::vector<LocalIndex> cut(LocalIndex n_rows, int n_slices) {
   std::vector<LocalIndex> first;
