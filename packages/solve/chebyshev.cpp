@@ -30,8 +30,7 @@ KOKKOS_INLINE_FUNCTION Real scattered(unsigned long long i) {
 /// numbers at a time, of which the last may be the next column's: these sums are not used. Collective.
 template <int b, class Out>
 void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const View<Real*>& x, const Out& out) {
-  constexpr int lanes = padded(b);
-  constexpr std::size_t ahead = 512;     // so many numbers before their turn the memory is asked for them,
+  constexpr std::size_t ahead = 2048;    // so many numbers before their turn the memory is asked for them,
   constexpr int line = 16;               // and so many it brings at once
   constexpr int n_sums = b < 6 ? b : 3;  // of a row, so that an addition need not wait for the one before
   graph.columns->exchange(x, b);
@@ -39,17 +38,21 @@ void for_scaled_rows(const NodeGraph& graph, const View<float*>& value, const Vi
   const auto column = graph.column;
   Kokkos::parallel_for(
       "product of nodes", Policy(0, graph.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
-        Real sums[n_sums][lanes] = {};
+        Numbers<padded(b)> sums[n_sums];
         const float* a = &value(b * b * start(i));
         for (std::size_t k = start(i); k < start(i + 1); ++k, a += b * b) {
           for (int n = 0; n < b * b && b > 1; n += line) __builtin_prefetch(a + ahead + n);
           const Real* const from = &x(static_cast<std::size_t>(column(k)) * b);
-          for (int c = 0; c < b; ++c)
-            for (int r = 0; r < lanes; ++r) sums[c % n_sums][r] += a[c * b + r] * from[c];
+          for (int c = 0; c < b; ++c) {
+            Numbers<padded(b)> of_column;
+            of_column.load(a + c * b);
+            sums[c % n_sums].add(from[c], of_column);
+          }
         }
-        for (int k = 1; k < n_sums; ++k)
-          for (int r = 0; r < lanes; ++r) sums[0][r] += sums[k][r];
-        out(i, sums[0]);
+        for (int k = 1; k < n_sums; ++k) sums[0].add(1, sums[k]);
+        Real sum[padded(b)];
+        sums[0].store(sum);
+        out(i, sum);
       });
 }
 

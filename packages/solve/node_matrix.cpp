@@ -108,22 +108,37 @@ NodeMatrix copied(const Local& A, const ColumnNodes& columns, const Map& map, in
   return result;
 }
 
-/// The sum of a_k x_k over n numbers, in double precision.
-template <class Number>
-KOKKOS_FORCEINLINE_FUNCTION Real dot(const Number* a, const Real* x, std::size_t n) {
-  constexpr int lanes = 4;
-  Real sums[2][lanes] = {};  // so that an addition need not wait for the one before
+/// sums_r += a_rk x_k over n numbers of h rows that begin so far apart.
+template <int h, class Number>
+KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart, const Real* x, std::size_t n,
+                                              Real* sums) {
+  constexpr int lanes = 4, n_sums = h < 6 ? 2 : 1;  // so that an addition need not wait for the one before
+  constexpr std::size_t ahead = 8192, line = 64;    // bytes: the memory is asked for them so long before their turn
+  Numbers<lanes> wide[n_sums][h];
+  const auto add = [&](std::size_t k, int to) {
+    Numbers<lanes> of_x;
+    of_x.load(x + k);
+    for (int r = 0; r < h; ++r) {
+      Numbers<lanes> of_a;
+      of_a.load(a + r * apart + k);
+      wide[to][r].head += of_a.head * of_x.head;
+    }
+  };
   std::size_t k = 0;
-  for (; k + 2 * lanes <= n; k += 2 * lanes) {
-    for (int l = 0; l < lanes; ++l) sums[0][l] += a[k + l] * x[k + l];
-    for (int l = 0; l < lanes; ++l) sums[1][l] += a[k + lanes + l] * x[k + lanes + l];
+  for (; k + n_sums * lanes <= n; k += n_sums * lanes) {
+    const char* const next = reinterpret_cast<const char*>(a + h * k) + ahead;
+    for (std::size_t l = 0; l < h * n_sums * lanes * sizeof(Number); l += line) __builtin_prefetch(next + l);
+    for (int l = 0; l < n_sums; ++l) add(k + l * lanes, l);
   }
-  for (; k + lanes <= n; k += lanes)
-    for (int l = 0; l < lanes; ++l) sums[0][l] += a[k + l] * x[k + l];
-  for (int l = 0; l < lanes; ++l) sums[0][l] += sums[1][l];
-  Real sum = (sums[0][0] + sums[0][1]) + (sums[0][2] + sums[0][3]);
-  for (; k < n; ++k) sum += a[k] * x[k];
-  return sum;
+  for (; k + lanes <= n; k += lanes) add(k, 0);
+  for (; k < n; ++k)
+    for (int r = 0; r < h; ++r) sums[r] += a[r * apart + k] * x[k];
+  for (int r = 0; r < h; ++r) {
+    for (int l = 1; l < n_sums; ++l) wide[0][r].head += wide[l][r].head;
+    Real sum[lanes];
+    wide[0][r].store(sum);
+    sums[r] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
 }
 
 /// out(i, sums, height) for every row node i, with the numbers of (A x) there. What its rows need of x is gathered, and
@@ -135,7 +150,7 @@ void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& ou
   graph.columns->exchange(x, A.width);
   with_sizes(A.height, A.width, [&](auto height, auto width) {
     constexpr int h = height(), w = width();
-    constexpr std::size_t at_once = 64;  // blocks
+    constexpr std::size_t at_once = 128;  // blocks
     const auto start = graph.start;
     const auto column = graph.column;
     const auto value = A.value;
@@ -148,7 +163,7 @@ void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& ou
             for (std::size_t k = first; k < end; ++k)
               for (int c = 0; c < w; ++c)
                 from[w * (k - first) + c] = x(static_cast<std::size_t>(column(begin + k)) * w + c);
-            for (int r = 0; r < h; ++r) sums[r] += dot(&value(w * (h * begin + r * n + first)), from, length);
+            add_products<h>(&value(w * (h * begin + first)), w * n, from, length, sums);
           }
           out(i, sums, height);
         });
