@@ -29,7 +29,9 @@ class Chebyshev {
   /// w D^-1 with w = 4/3 over the largest eigenvalue of D^-1 A, [all nodes, unknown]: what smooths prolongators.
   View<Real*> damped_inverse_diagonal() const;
   int degree() const { return degree_; }
-  std::size_t bytes() const { return sizeof(float) * value_.extent(0) + 5 * sizeof(Real) * root_.extent(0); }
+  std::size_t bytes() const {
+    return sizeof(std::int16_t) * value_.extent(0) + (5 * sizeof(Real) + sizeof(float)) * root_.extent(0);
+  }
 
  private:
   void find_largest_eigenvalue();
@@ -37,8 +39,9 @@ class Chebyshev {
 
   int size_, degree_ = usual_degree;
   NodeGraph graph_;
-  View<float*> value_;  // of D^-1/2 A D^-1/2: [entry, column, row], and a few numbers more
-  View<Real*> root_;    // D^-1/2 [all]
+  View<std::int16_t*> value_;  // of D^-1/2 A D^-1/2 in units of its rows: [entry, column, row], and a few more
+  View<float*> unit_;          // [owned]
+  View<Real*> root_;           // D^-1/2 [all]
   Real largest_ = 1, widening_ = 1;
   mutable View<Real*> b_, step_, x_, next_;  // times D^1/2 or D^-1/2
 };

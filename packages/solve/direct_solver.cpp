@@ -178,25 +178,28 @@ class DirectSolver : public LinearSolver {
     const auto local = factored->getLocalMatrixHost();
     const auto& graph = local.graph;
     const auto &rows = *factored->getRowMap(), &columns = *factored->getColMap();
-    rows_.clear();
-    columns_.clear();
+    const bool chosen = symmetric || gathers_;
+    const std::size_t n_entries = graph.entries.extent(0);
+    const std::size_t n_handed = symmetric ? (n_entries + graph.numRows()) / 2 : n_entries;  // if its graph is, too
+    for (auto* indices : {&rows_, &columns_}) {
+      indices->clear();
+      indices->reserve(std::max<std::size_t>(1, n_handed));  // MUMPS wants a pointer also where nothing is
+    }
     positions_.clear();
+    positions_.reserve(chosen ? n_handed : 0);
     for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; ++row)
       for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k) {
         const GlobalIndex i = rows.getGlobalElement(row), j = columns.getGlobalElement(graph.entries(k));
         if (symmetric && j > i) continue;
         rows_.push_back(i + 1);
         columns_.push_back(j + 1);
-        positions_.push_back(gathers_ ? static_cast<std::size_t>(local.values(k)) : k);
+        if (chosen) positions_.push_back(gathers_ ? static_cast<std::size_t>(local.values(k)) : k);
       }
-    values_.resize(positions_.size());
-    for (auto* indices : {&rows_, &columns_}) indices->reserve(1);  // MUMPS wants a pointer also where nothing is
-    values_.reserve(1);
+    values_.resize(std::max<std::size_t>(1, positions_.size()));
     mumps_.n = n;
     mumps_.nnz_loc = rows_.size();
     mumps_.irn_loc = rows_.data();
     mumps_.jcn_loc = columns_.data();
-    mumps_.a_loc = values_.data();
     ready_ = true;
     analysed_ = false;
   }
@@ -224,6 +227,8 @@ class DirectSolver : public LinearSolver {
       from = gathered_.data();
     }
     for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = from[positions_[k]];
+    const bool all = positions_.empty() && !rows_.empty();
+    mumps_.a_loc = all ? const_cast<Real*>(from) : values_.data();  // MUMPS leaves them as they are
   }
 
   bool substitute_rhs(const Vector& b, Vector& x) {
@@ -260,8 +265,8 @@ class DirectSolver : public LinearSolver {
   std::vector<int> counts_, starts_;    // of the ranks' values
   std::vector<Real> gathered_;          // those of all ranks
   std::vector<int> rows_, columns_;     // 1-based
-  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' or all ranks' values
-  std::vector<double> values_;
+  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' or all ranks' values; none: all
+  std::vector<double> values_;          // of these
   RCP<fields::Import> to_root_, from_root_;
   RCP<Vector> at_root_;  // all of a vector on rank 0
 };

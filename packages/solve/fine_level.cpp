@@ -101,11 +101,11 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system, bool flat
 
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, const JoinedMatrix& rows, RCP<const Operator> smoother, bool exact,
-        RCP<const Operator> order_one)
+  Cycle(const LinearSystem& system, std::shared_ptr<const JoinedRows> rows_of_A, const View<LocalIndex*>& rows,
+        RCP<const Operator> smoother, bool exact, RCP<const Operator> order_one)
       : A_(system.joined_operator()),
-        rows_of_A_(rows.matrix()),
-        rows_(rows.rows()),
+        rows_of_A_(std::move(rows_of_A)),
+        rows_(rows),
         smoother_(smoother),
         exact_(exact),
         order_one_(order_one),
@@ -139,7 +139,7 @@ class Cycle : public Operator {
   void smooth(const MultiVector& b, MultiVector& x, bool moved = false) const {
     using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
     const auto n = static_cast<LocalIndex>(rows_.extent(0)), n_vectors = static_cast<LocalIndex>(b.getNumVectors());
-    MultiVector r(rows_of_A_->getRangeMap(), n_vectors), z(rows_of_A_->getRangeMap(), n_vectors);
+    MultiVector r(smoother_->getDomainMap(), n_vectors), z(smoother_->getRangeMap(), n_vectors);
     const auto rows = rows_;
     {
       const auto all = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
@@ -148,7 +148,7 @@ class Cycle : public Operator {
           "restrict", Policy({0, 0}, {n, n_vectors}),
           KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { some(i, v) = all(rows(i), v); });
     }
-    if (moved) rows_of_A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    if (moved) rows_of_A_->subtract_product(x, r);
     smoother_->apply(r, z);
     const auto some = z.getLocalViewDevice(Tpetra::Access::ReadOnly);
     const auto all = x.getLocalViewDevice(Tpetra::Access::ReadWrite);
@@ -175,7 +175,7 @@ class Cycle : public Operator {
   }
 
   RCP<const Operator> A_;
-  RCP<const CrsMatrix> rows_of_A_;  // those of S
+  std::shared_ptr<const JoinedRows> rows_of_A_;  // those of S
   View<LocalIndex*> rows_;
   RCP<const Operator> smoother_;
   bool exact_;  // the smoother leaves no residual in its rows
@@ -214,12 +214,10 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   if (!keeps) set_up_order_one(system);
   if (!smoothed_) {
     const auto chosen = smoothed_unknowns(system, order_one_->flat());
-    smoothed_ = rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
-    if (!chosen.empty())
-      rows_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen, JoinedMatrix::Columns::all);
+    smoothed_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
+    rows_ = std::make_shared<JoinedRows>(system.joined, system.blocks, smoothed_->rows());
   }
   smoothed_->update();
-  if (rows_ != smoothed_) rows_->update();
   const auto& P = system.diagonal.front().block.interpolation;
   RCP<const Operator> smoother;
   if (P.is_null()) {
@@ -230,7 +228,7 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   } else {
     smoother = gauss_seidel(smoothed_->matrix());
   }
-  cycle_ = rcp(new Cycle(system, *rows_, smoother, P.is_null(), order_one_->inverse()));
+  cycle_ = rcp(new Cycle(system, rows_, smoothed_->rows(), smoother, P.is_null(), order_one_->inverse()));
 }
 
 RCP<const Operator> FineLevel::inverse() const { return cycle_; }

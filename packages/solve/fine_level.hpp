@@ -35,7 +35,7 @@ class FineLevel {
   RCP<BlockSolver> order_one_;
   RCP<CrsMatrix> product_;                  // P^T A P
   std::shared_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
-  std::shared_ptr<JoinedMatrix> rows_;      // the rows of S with all columns
+  std::shared_ptr<JoinedRows> rows_;        // the rows of S with all columns
   RCP<DirectInverse> direct_;               // the inverse of the former, of blocks that enrich
   RCP<const Cycle> cycle_;
 };

@@ -64,16 +64,6 @@ std::vector<char> of_columns(const CrsMatrix& matrix, const Vector& flags) {
   return taken;
 }
 
-/// The flags of the matrix' columns that some of its rows name; `rows` are counted from the number -first on.
-std::vector<char> named_columns(const CrsMatrix& matrix, const std::vector<LocalIndex>& rows, LocalIndex first) {
-  std::vector<char> named(matrix.getColMap()->getNodeNumElements(), 0);
-  const auto graph = matrix.getLocalMatrixHost().graph;
-  for (const LocalIndex row : rows)
-    if (row >= first && row - first < graph.numRows())
-      for (auto k = graph.row_map(row - first); k < graph.row_map(row - first + 1); ++k) named[graph.entries(k)] = 1;
-  return named;
-}
-
 View<LocalIndex*> on_device(const std::string& name, const std::vector<LocalIndex>& values) {
   View<LocalIndex*> view(name, values.size());
   Kokkos::deep_copy(view, Kokkos::View<const LocalIndex*, Kokkos::HostSpace>(values.data(), values.size()));
@@ -125,8 +115,53 @@ RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined
   return rcp(new JoinedOperator(std::move(joined), std::move(blocks)));
 }
 
-JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<Vector>> chosen,
-                           Columns columns)
+JoinedRows::JoinedRows(std::shared_ptr<const Joined> joined, Blocks blocks, const View<LocalIndex*>& rows)
+    : joined_(std::move(joined)), blocks_(std::move(blocks)), rows_(rows), columns_(blocks_.size()) {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows);
+  for (int r = 0; r < joined_->n_blocks(); ++r)
+    first_row_.push_back(static_cast<LocalIndex>(
+        std::lower_bound(host.data(), host.data() + host.extent(0), joined_->first(r)) - host.data()));
+  first_row_.push_back(static_cast<LocalIndex>(rows.extent(0)));
+}
+
+void JoinedRows::subtract_product(const MultiVector& x, MultiVector& y) const {
+  const int n = joined_->n_blocks();
+  const std::size_t n_vectors = x.getNumVectors();
+  const auto rows = rows_;
+  for (int k = 0; k < n * n; ++k) {
+    if (blocks_[k].is_null()) continue;
+    RCP<const MultiVector> from = x.offsetView(joined_->map(k % n), joined_->first(k % n));
+    if (const auto import = blocks_[k]->getGraph()->getImporter(); !import.is_null()) {
+      auto& columns = columns_[k];
+      if (columns.is_null() || columns->getNumVectors() != n_vectors)
+        columns = rcp(new MultiVector(blocks_[k]->getColMap(), n_vectors));
+      columns->doImport(*from, *import, Tpetra::INSERT);
+      from = columns;
+    }
+    const auto A = blocks_[k]->getLocalMatrixDevice();
+    const auto values = from->getLocalViewDevice(Tpetra::Access::ReadOnly);
+    const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    const Real scale = joined_->scale(k / n) * joined_->scale(k % n);
+    const LocalIndex first = joined_->first(k / n);
+    Kokkos::parallel_for(
+        "subtract rows", Policy(first_row_[k / n], first_row_[k / n + 1]), KOKKOS_LAMBDA(LocalIndex i) {
+          const LocalIndex row = rows(i) - first;
+          for (std::size_t v = 0; v < n_vectors; ++v) {
+            constexpr int n_sums = 4;  // so that an addition need not wait for the one before
+            Real sums[n_sums] = {};
+            const auto begin = A.graph.row_map(row), n_entries = A.graph.row_map(row + 1) - begin;
+            for (std::size_t j = 0; j + n_sums <= n_entries; j += n_sums)
+              for (int m = 0; m < n_sums; ++m)
+                sums[m] += A.values(begin + j + m) * values(A.graph.entries(begin + j + m), v);
+            for (std::size_t j = n_entries / n_sums * n_sums; j < n_entries; ++j)
+              sums[0] += A.values(begin + j) * values(A.graph.entries(begin + j), v);
+            to(i, v) -= scale * ((sums[0] + sums[1]) + (sums[2] + sums[3]));
+          }
+        });
+  }
+}
+
+JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<Vector>> chosen)
     : joined_(std::move(joined)), blocks_(std::move(blocks)) {
   if (chosen.empty() && joined_->n_blocks() == 1) {
     matrix_ = blocks_.front();
@@ -140,10 +175,10 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, 
       chosen.push_back(rcp(new Vector(joined_->map(r))));
       chosen.back()->putScalar(1);
     }
-  create(chosen, columns);
+  create(chosen);
 }
 
-void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which) {
+void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
   std::vector<GlobalIndex> unknowns;
   std::vector<LocalIndex> rows;
   for (int r = 0; r < joined_->n_blocks(); ++r) {
@@ -157,9 +192,8 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which)
   rows_ = on_device("rows", rows);
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const auto map = rcp(new Map(invalid, unknowns.data(), unknowns.size(), 0, joined_->map()->getComm()));
-  const auto domain = which == Columns::all ? joined_->map() : RCP<const Map>(map);
   RCP<const Map> columns;
-  const auto places = number_columns(chosen, rows, which, *domain, columns);
+  const auto places = number_columns(chosen, *map, columns);
   std::vector<std::size_t> start;
   const auto of_entries = find_entries(rows, places, start);
   const Teuchos::ArrayRCP<std::size_t> row_start(start.size());
@@ -168,7 +202,7 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen, Columns which)
   std::copy(of_entries.begin(), of_entries.end(), column.begin());
   matrix_ = own_ = rcp(new CrsMatrix(map, columns, 0));
   own_->setAllValues(row_start, column, Teuchos::ArrayRCP<Real>(of_entries.size(), 0));
-  own_->expertStaticFillComplete(domain, map);
+  own_->expertStaticFillComplete(map, map);
 }
 
 /// The columns of all entries, and where those of each row start; and which entry of which block goes where.
@@ -209,9 +243,8 @@ std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>
 }
 
 /// For each block the columns' places in the matrix, -1 for those that it does not have: of owned unknowns as in its
-/// domain, then of the ghosts that its rows name.
-JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen,
-                                                  const std::vector<LocalIndex>& rows, Columns which, const Map& domain,
+/// domain, then of ghosts.
+JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen, const Map& domain,
                                                   RCP<const Map>& columns) const {
   const int n = joined_->n_blocks();
   const auto owned = domain.getNodeElementList();
@@ -221,8 +254,7 @@ JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
     const auto& of_block = *blocks_[k]->getColMap();
-    const auto taken = which == Columns::chosen ? of_columns(*blocks_[k], *chosen[k % n])
-                                                : named_columns(*blocks_[k], rows, joined_->first(k / n));
+    const auto taken = of_columns(*blocks_[k], *chosen[k % n]);
     places[k].assign(taken.size(), -1);
     for (std::size_t c = 0; c < taken.size(); ++c) {
       if (!taken[c]) continue;

@@ -46,15 +46,29 @@ using Blocks = std::vector<RCP<const fields::CrsMatrix>>;
 /// S A S without storing it; of a single block, A itself.
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks);
 
-/// S A S as one matrix, or the part of it that rows of chosen unknowns make, with their columns or all; of a single
-/// block, all chosen, A itself. Collective.
+/// Some rows of S A S, read where they are stored. All members are collective.
+class JoinedRows {
+ public:
+  /// `rows`: places of owned unknowns in joined vectors, ascending.
+  JoinedRows(std::shared_ptr<const Joined> joined, Blocks blocks, const View<LocalIndex*>& rows);
+
+  /// y -= (S A S x) in these rows; y [row].
+  void subtract_product(const fields::MultiVector& x, fields::MultiVector& y) const;
+
+ private:
+  std::shared_ptr<const Joined> joined_;
+  Blocks blocks_;
+  View<LocalIndex*> rows_;
+  std::vector<LocalIndex> first_row_;                      // [r], and one more: which rows are those of a block
+  mutable std::vector<RCP<fields::MultiVector>> columns_;  // [r * n + s] x with ghosts; null: there are none
+};
+
+/// S A S as one matrix, or the part of it that rows and columns of chosen unknowns make; of a single block, all chosen,
+/// A itself. Collective.
 class JoinedMatrix {
  public:
-  enum class Columns { chosen, all };
-
   /// `chosen` [r](owned unknown of the block): 1 for those to take, else 0; empty: all.
-  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<fields::Vector>> chosen = {},
-               Columns columns = Columns::chosen);
+  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<fields::Vector>> chosen = {});
 
   /// Takes over the present values of the blocks, and the scales.
   void update();
@@ -64,10 +78,10 @@ class JoinedMatrix {
   const View<LocalIndex*>& rows() const { return rows_; }
 
  private:
-  void create(const std::vector<RCP<fields::Vector>>& chosen, Columns columns);
+  void create(const std::vector<RCP<fields::Vector>>& chosen);
   using Places = std::vector<std::vector<LocalIndex>>;  // [r * n + s][column of the block]
-  Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, const std::vector<LocalIndex>& rows,
-                        Columns which, const fields::Map& domain, RCP<const fields::Map>& columns) const;
+  Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, const fields::Map& domain,
+                        RCP<const fields::Map>& columns) const;
   std::vector<LocalIndex> find_entries(const std::vector<LocalIndex>& rows, const Places& places,
                                        std::vector<std::size_t>& start);
 

@@ -63,6 +63,7 @@ bool try_sizes(int height, int width, const Work& work) {
 }
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+#define SPREKK_WIDE_INSTRUCTIONS
 /// work() with all that it calls, in instructions on four numbers at a time.
 template <class Work>
 __attribute__((target("avx2,fma"), flatten)) void in_wide_instructions(const Work& work) {
