@@ -16,35 +16,10 @@ auto to_host(const ConstView<LocalIndex**>& table) {
 }
 using HostTable = decltype(to_host({}));
 
-/// Which entities of a stencil write an owned row, by the first row of a group.
-class Writers {
- public:
-  Writers(const Stencil& rows, LocalIndex n_rows) : start_(n_rows + 2, 0) {
-    const auto first = to_host(rows.first);
-    const auto for_owned = [&](const auto& visit) {
-      for (std::size_t e = 0; e < first.extent(0); ++e)
-        for (std::size_t r = 0; r < first.extent(1); ++r)
-          if (const LocalIndex row = first(e, r); row >= 0 && row < n_rows)
-            visit(row, std::array<LocalIndex, 2>{static_cast<LocalIndex>(e), static_cast<LocalIndex>(r)});
-    };
-    for_owned([&](LocalIndex row, const auto&) { ++start_[row + 2]; });
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    entries_.resize(start_.back());
-    for_owned([&](LocalIndex row, const auto& entry) { entries_[start_[row + 1]++] = entry; });
-  }
-
-  bool any(LocalIndex first_row) const { return start_[first_row] < start_[first_row + 1]; }
-
-  /// Calls visit(entity, group of the entity) for all that write a group of rows.
-  template <class Visit>
-  void for_each(LocalIndex first_row, const Visit& visit) const {
-    for (LocalIndex k = start_[first_row]; k < start_[first_row + 1]; ++k) visit(entries_[k][0], entries_[k][1]);
-  }
-
- private:
-  std::vector<LocalIndex> start_;  // [row + 1]
-  std::vector<std::array<LocalIndex, 2>> entries_;
-};
+const Writers& writers_of(const Stencil& rows, LocalIndex n_rows) {
+  if (!*rows.writers) rows.writers->emplace(rows.first, n_rows);
+  return **rows.writers;
+}
 
 using Couplings = std::vector<std::pair<Stencil, Stencil>>;
 
@@ -55,12 +30,12 @@ struct Columns {
   Columns(LocalIndex n_rows, LocalIndex n_columns, const Couplings& couplings)
       : counts(n_rows, 0), end_of_(n_columns, 0) {
     for (const auto& [rows, row_columns] : couplings) {
-      writers_.emplace_back(rows, n_rows);
+      writers_.push_back(&writers_of(rows, n_rows));
       first_.push_back(to_host(row_columns.first));
     }
     for (LocalIndex row = 0; row < n_rows; row += couplings.front().first.width) {
       for (std::size_t k = 0; k < couplings.size(); ++k)
-        writers_[k].for_each(row, [&](LocalIndex e, LocalIndex) {
+        writers_[k]->for_each(row, [&](LocalIndex e, LocalIndex) {
           for (std::size_t c = 0; c < first_[k].extent(1); ++c) add(first_[k](e, c), couplings[k].second.width);
         });
       const std::size_t before = columns.size();
@@ -85,16 +60,30 @@ struct Columns {
     groups_.clear();
   }
 
-  std::vector<Writers> writers_;             // [coupling]
+  std::vector<const Writers*> writers_;      // [coupling]
   std::vector<HostTable> first_;             // [coupling](entity, group)
   std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group that the row in work has, else 0; those
 };
 
 }  // namespace
 
+Writers::Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows) : start_(n_rows + 2, 0) {
+  const auto host = to_host(first);
+  const auto for_owned = [&](const auto& visit) {
+    for (std::size_t e = 0; e < host.extent(0); ++e)
+      for (std::size_t r = 0; r < host.extent(1); ++r)
+        if (const LocalIndex row = host(e, r); row >= 0 && row < n_rows)
+          visit(row, std::array<LocalIndex, 2>{static_cast<LocalIndex>(e), static_cast<LocalIndex>(r)});
+  };
+  for_owned([&](LocalIndex row, const auto&) { ++start_[row + 2]; });
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  entries_.resize(start_.back());
+  for_owned([&](LocalIndex row, const auto& entry) { entries_[start_[row + 1]++] = entry; });
+}
+
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns) {
   const auto graph = matrix.getCrsGraph()->getLocalGraphHost();
-  const Writers writers(rows, graph.numRows());
+  const Writers& writers = writers_of(rows, graph.numRows());
   const auto column_first = to_host(columns.first);
   View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
   auto host = Kokkos::create_mirror_view(positions);

@@ -225,4 +225,14 @@ Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
   }
 }
 
+const Stencil& Stencils::of(Loop loop, int field) {
+  const std::pair key(loop, field);
+  if (const auto found = made_.find(key); found != made_.end()) return found->second;
+  return made_.emplace(key, make_stencil(*mesh_, loop, (*layouts_)[field])).first->second;
+}
+
+void Stencils::forget_writers() {
+  for (const auto& [_, stencil] : made_) stencil.writers->reset();
+}
+
 }  // namespace sprekk::assembly

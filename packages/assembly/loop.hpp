@@ -6,6 +6,10 @@
 #include "mesh/mesh.hpp"
 
 #include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -31,6 +35,24 @@ std::vector<LocalIndex> tip_cells(const mesh::Mesh& mesh);
 std::vector<LocalIndex> tip_sides(const mesh::Mesh& mesh);
 bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 
+/// Which entities of a stencil write an owned row, by the first row of a group.
+class Writers {
+ public:
+  Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows);
+
+  bool any(LocalIndex first_row) const { return start_[first_row] < start_[first_row + 1]; }
+
+  /// Calls visit(entity, group of the entity) for all that write a group of rows.
+  template <class Visit>
+  void for_each(LocalIndex first_row, const Visit& visit) const {
+    for (LocalIndex k = start_[first_row]; k < start_[first_row + 1]; ++k) visit(entries_[k][0], entries_[k][1]);
+  }
+
+ private:
+  std::vector<LocalIndex> start_;  // [row + 1]
+  std::vector<std::array<LocalIndex, 2>> entries_;
+};
+
 /// The unknowns of one field that each entity of a loop touches, as groups of `width` adjacent unknowns:
 /// first(entity, group) is the local index (owned first, then ghosts) of the group's first unknown.
 ///
@@ -50,9 +72,24 @@ bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 struct Stencil {
   ConstView<LocalIndex**> first;
   int width = 0;
+  std::shared_ptr<std::optional<Writers>> writers = std::make_shared<std::optional<Writers>>();  ///< once looked for
 };
 
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
+
+/// The stencils of a mesh's fields. Each is made when first asked for; copies share their tables.
+class Stencils {
+ public:
+  Stencils(RCP<const mesh::Mesh> mesh, const std::vector<fields::Layout>& layouts) : mesh_(mesh), layouts_(&layouts) {}
+  const Stencil& of(Loop loop, int field);
+  /// Gives back what only graphs and positions are found with.
+  void forget_writers();
+
+ private:
+  RCP<const mesh::Mesh> mesh_;
+  const std::vector<fields::Layout>* layouts_;
+  std::map<std::pair<Loop, int>, Stencil> made_;
+};
 
 /// Where a pair of groups stands in the matrix: the entry of (row first_r + i, column first_c + j) is the value number
 /// row_begin(first_r + i) + positions(entity, r, c) + j; -1 where the row belongs to another rank or one of them is

@@ -85,18 +85,20 @@ struct Declaration {
 /// What modules are bound to once: the mesh, and the stencil of every field they named. Unknown names throw.
 class Context {
  public:
-  Context(RCP<const mesh::Mesh> mesh, const Geometry& geometry, const std::vector<fields::Layout>& layouts)
-      : mesh_(mesh), geometry_(geometry), layouts_(&layouts) {}
+  Context(RCP<const mesh::Mesh> mesh, const Geometry& geometry, const std::vector<fields::Layout>& layouts,
+          std::shared_ptr<Stencils> stencils)
+      : mesh_(mesh), geometry_(geometry), layouts_(&layouts), stencils_(std::move(stencils)) {}
   RCP<const mesh::Mesh> mesh() const { return mesh_; }
   const Geometry& geometry() const { return geometry_; }
   int field(const std::string& name) const;  ///< number of the field's block
   const fields::Layout& layout(int field) const { return (*layouts_)[field]; }
-  Stencil stencil(Loop loop, int field) const { return make_stencil(*mesh_, loop, layout(field)); }
+  const Stencil& stencil(Loop loop, int field) const { return stencils_->of(loop, field); }
 
  private:
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
   const std::vector<fields::Layout>* layouts_;
+  std::shared_ptr<Stencils> stencils_;
 };
 
 /// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity,

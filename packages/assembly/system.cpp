@@ -32,6 +32,7 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
     : mesh_(mesh),
       geometry_(*mesh),
       modules_(std::move(modules)),
+      stencils_(std::make_shared<Stencils>(mesh, layouts_)),
       reference_(reference),
       timers_(timers),
       scheme_(scheme) {
@@ -45,6 +46,7 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   find_exchanges();
   create_matrices();
   assemble_linear();
+  stencils_->forget_writers();
   set_merit_weights();
   watch_pieces();
 }
@@ -158,8 +160,8 @@ void System::declare_fields() {
   }
   for (const auto& declaration : declarations_)
     for (const auto& name : declaration.schur)
-      if (auto& schur = schur_[Context(mesh_, geometry_, layouts_).field(name)]; schur.is_null())
-        schur = rcp(new Vector(layouts_[Context(mesh_, geometry_, layouts_).field(name)].owned()));
+      if (auto& schur = schur_[context().field(name)]; schur.is_null())
+        schur = rcp(new Vector(layouts_[context().field(name)].owned()));
   const auto has = [&](Quantity value) {
     return std::any_of(unknowns_.begin(), unknowns_.end(), [&](const auto& u) { return u.value == value; });
   };
@@ -190,7 +192,7 @@ void System::declare_groups() {
 }
 
 BlockMatrix System::create_matrix() const {
-  const Context context(mesh_, geometry_, layouts_);
+  const auto context = this->context();
   const int n = static_cast<int>(blocks_.size());
   std::vector<std::vector<std::pair<Stencil, Stencil>>> couplings(n * n);
   for (const auto& declaration : declarations_)
@@ -211,7 +213,7 @@ BlockMatrix System::create_matrix() const {
 
 void System::create_matrices() {
   const auto scope = timers_->scope("structure of the matrices");
-  const Context context(mesh_, geometry_, layouts_);
+  const auto context = this->context();
   const int n = static_cast<int>(blocks_.size());
   std::vector<char> linear(n * n, 0), nonlinear(n * n, 0);
   for (const auto& declaration : declarations_)
@@ -231,7 +233,7 @@ void System::create_matrices() {
 }
 
 void System::bind_modules() {
-  const Context context(mesh_, geometry_, layouts_);
+  const auto context = this->context();
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     base::collectively(*comm(), [&] { modules_[m]->bind(context); });
     history_.emplace_back();
@@ -250,7 +252,7 @@ void System::declare_gains() {
 }
 
 void System::find_exchanges() {
-  const Context context(mesh_, geometry_, layouts_);
+  const auto context = this->context();
   std::vector<int> here(blocks_.size(), 0), anywhere(blocks_.size(), 0);
   for (const auto& declaration : declarations_) {
     for (const auto& coupling : declaration.couplings)
@@ -304,7 +306,7 @@ std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<fields::Crs
 /// Rows of flow at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
 /// where no module of them is linear.
 void System::assemble_flow() {
-  const Context context(mesh_, geometry_, layouts_);
+  const auto context = this->context();
   start_matrix();
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     const auto& couplings = declarations_[m].couplings;

@@ -100,6 +100,7 @@ class System : public fields::BlockProblem {
   void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
 
  private:
+  Context context() const { return {mesh_, geometry_, layouts_, stencils_}; }
   void declare_fields();
   std::vector<DirichletCondition> conditions_on(std::size_t block,
                                                 const std::vector<DirichletCondition>& conditions) const;
@@ -143,6 +144,7 @@ class System : public fields::BlockProblem {
   std::vector<Declaration> declarations_;  // [module]
   std::vector<Unknown> unknowns_;          // [block]
   std::vector<fields::Layout> layouts_;    // [block]
+  std::shared_ptr<Stencils> stencils_;
   std::vector<fields::Block> blocks_;
   std::vector<fields::LocalGroup> groups_;
   std::vector<Constraints> constraints_;            // [block]
