@@ -16,9 +16,15 @@ auto to_host(const ConstView<LocalIndex**>& table) {
 }
 using HostTable = decltype(to_host({}));
 
-const Writers& writers_of(const Stencil& rows, LocalIndex n_rows) {
-  if (!*rows.writers) rows.writers->emplace(rows.first, n_rows);
-  return **rows.writers;
+std::shared_ptr<const Writers> writers_of(const Stencil& rows, LocalIndex n_rows) {
+  const auto kept = rows.writers.lock();
+  if (kept && *kept) {
+    SPREKK_CHECK((*kept)->n_rows() == n_rows, "writers of {} rows are asked for {}", (*kept)->n_rows(), n_rows);
+    return *kept;
+  }
+  const auto writers = std::make_shared<const Writers>(rows.first, n_rows);
+  if (kept) *kept = writers;
+  return writers;
 }
 
 using Couplings = std::vector<std::pair<Stencil, Stencil>>;
@@ -30,7 +36,7 @@ struct Columns {
   Columns(LocalIndex n_rows, LocalIndex n_columns, const Couplings& couplings)
       : counts(n_rows, 0), end_of_(n_columns, 0) {
     for (const auto& [rows, row_columns] : couplings) {
-      writers_.push_back(&writers_of(rows, n_rows));
+      writers_.push_back(writers_of(rows, n_rows));
       first_.push_back(to_host(row_columns.first));
     }
     for (LocalIndex row = 0; row < n_rows; row += couplings.front().first.width) {
@@ -60,8 +66,8 @@ struct Columns {
     groups_.clear();
   }
 
-  std::vector<const Writers*> writers_;      // [coupling]
-  std::vector<HostTable> first_;             // [coupling](entity, group)
+  std::vector<std::shared_ptr<const Writers>> writers_;  // [coupling]
+  std::vector<HostTable> first_;                         // [coupling](entity, group)
   std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group that the row in work has, else 0; those
 };
 
@@ -83,17 +89,17 @@ Writers::Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows) : star
 
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns) {
   const auto graph = matrix.getCrsGraph()->getLocalGraphHost();
-  const Writers& writers = writers_of(rows, graph.numRows());
+  const auto writers = writers_of(rows, graph.numRows());
   const auto column_first = to_host(columns.first);
   View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
   auto host = Kokkos::create_mirror_view(positions);
   Kokkos::deep_copy(host, -1);
   std::vector<LocalIndex> position_of(matrix.getColMap()->getNodeNumElements(), 0);  // in the row; else anything
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
-    if (!writers.any(row)) continue;
+    if (!writers->any(row)) continue;
     const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;
     for (std::size_t k = 0; k < length; ++k) position_of[graph.entries(begin + k)] = static_cast<LocalIndex>(k);
-    writers.for_each(row, [&](LocalIndex e, LocalIndex r) {
+    writers->for_each(row, [&](LocalIndex e, LocalIndex r) {
       for (std::size_t c = 0; c < host.extent(2); ++c) {
         const LocalIndex column = column_first(e, c);
         if (column < 0) continue;

@@ -228,11 +228,14 @@ Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const Layout& layout) {
 const Stencil& Stencils::of(Loop loop, int field) {
   const std::pair key(loop, field);
   if (const auto found = made_.find(key); found != made_.end()) return found->second;
-  return made_.emplace(key, make_stencil(*mesh_, loop, (*layouts_)[field])).first->second;
+  auto& stencil = made_.emplace(key, make_stencil(*mesh_, loop, (*layouts_)[field])).first->second;
+  if (keeps_writers_) stencil.writers = writers_.emplace_back(std::make_shared<std::shared_ptr<const Writers>>());
+  return stencil;
 }
 
 void Stencils::forget_writers() {
-  for (const auto& [_, stencil] : made_) stencil.writers->reset();
+  writers_.clear();
+  keeps_writers_ = false;
 }
 
 }  // namespace sprekk::assembly

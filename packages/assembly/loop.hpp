@@ -8,7 +8,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -40,6 +39,7 @@ class Writers {
  public:
   Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows);
 
+  LocalIndex n_rows() const { return static_cast<LocalIndex>(start_.size()) - 2; }
   bool any(LocalIndex first_row) const { return start_[first_row] < start_[first_row + 1]; }
 
   /// Calls visit(entity, group of the entity) for all that write a group of rows.
@@ -72,23 +72,25 @@ class Writers {
 struct Stencil {
   ConstView<LocalIndex**> first;
   int width = 0;
-  std::shared_ptr<std::optional<Writers>> writers = std::make_shared<std::optional<Writers>>();  ///< once looked for
+  std::weak_ptr<std::shared_ptr<const Writers>> writers = {};  ///< where they are kept, if they are
 };
 
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
 
-/// The stencils of a mesh's fields. Each is made when first asked for; copies share their tables.
+/// The stencils of a mesh's fields. Each is made when first asked for; copies share their tables, and their writers.
 class Stencils {
  public:
   Stencils(RCP<const mesh::Mesh> mesh, const std::vector<fields::Layout>& layouts) : mesh_(mesh), layouts_(&layouts) {}
   const Stencil& of(Loop loop, int field);
-  /// Gives back what only graphs and positions are found with.
+  /// From now on writers are looked for whenever they are needed, and not kept.
   void forget_writers();
 
  private:
   RCP<const mesh::Mesh> mesh_;
   const std::vector<fields::Layout>* layouts_;
   std::map<std::pair<Loop, int>, Stencil> made_;
+  std::vector<std::shared_ptr<std::shared_ptr<const Writers>>> writers_;
+  bool keeps_writers_ = true;
 };
 
 /// Where a pair of groups stands in the matrix: the entry of (row first_r + i, column first_c + j) is the value number

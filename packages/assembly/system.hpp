@@ -35,6 +35,8 @@ class System : public fields::BlockProblem {
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
          const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
+  System(const System&) = delete;  // modules and stencils know where its parts are
+  System& operator=(const System&) = delete;
 
   RCP<const Comm> comm() const override { return mesh_->comm; }
   const std::vector<fields::Block>& blocks() const override { return blocks_; }

@@ -1,15 +1,15 @@
 // Chebyshev's iteration as a smoother.
 #pragma once
 
-#include "solve/node_matrix.hpp"
+#include "solve/rounded_matrix.hpp"
 
 namespace sprekk::solve {
 
 /// About A^-1 for the upper part of A's spectrum: the polynomial of D^-1 A whose residual is smallest over
 /// [1/15, 1.1] times the largest eigenvalue, D the diagonal (Adams, Brezina, Hu and Tuminaro 2003); of degree n the
 /// interval begins at (4/n)^2 of that, so that the residual is about as small. It works with
-/// D^-1/2 A D^-1/2 stored in single precision, half of the bytes: a smoother is not exact anyway, and residuals are
-/// computed with A itself. It is linear to double precision. Of a symmetric A it is symmetric. All members are
+/// D^-1/2 A D^-1/2 as a RoundedMatrix, a quarter of the bytes: a smoother is not exact anyway, and residuals are
+/// computed with A itself. It is linear to double precision, and symmetric of a positive definite A. All members are
 /// collective unless they return stored data.
 class Chebyshev {
  public:
@@ -29,9 +29,7 @@ class Chebyshev {
   /// w D^-1 with w = 4/3 over the largest eigenvalue of D^-1 A, [all nodes, unknown]: what smooths prolongators.
   View<Real*> damped_inverse_diagonal() const;
   int degree() const { return degree_; }
-  std::size_t bytes() const {
-    return sizeof(std::int16_t) * value_.extent(0) + (5 * sizeof(Real) + sizeof(float)) * root_.extent(0);
-  }
+  std::size_t bytes() const { return matrix_.bytes() + 5 * sizeof(Real) * root_.extent(0); }
 
  private:
   void find_largest_eigenvalue();
@@ -39,9 +37,8 @@ class Chebyshev {
 
   int size_, degree_ = usual_degree;
   NodeGraph graph_;
-  View<std::int16_t*> value_;  // of D^-1/2 A D^-1/2 in units of its rows: [entry, column, row], and a few more
-  View<float*> unit_;          // [owned]
-  View<Real*> root_;           // D^-1/2 [all]
+  RoundedMatrix matrix_;  // D^-1/2 A D^-1/2
+  View<Real*> root_;      // D^-1/2 [all]
   Real largest_ = 1, widening_ = 1;
   mutable View<Real*> b_, step_, x_, next_;  // times D^1/2 or D^-1/2
 };

@@ -191,8 +191,7 @@ double Multigrid::bytes() const {
   return sum;
 }
 
-/// Of each level: its matrix twice for residuals, its copy in single precision for the smoother, interpolation and
-/// restriction.
+/// Of each level: its matrix twice for residuals, its copy for the smoother, interpolation and restriction.
 double Multigrid::cycle_bytes() const {
   double sum = 0;
   for (const auto& level : levels_) {
@@ -200,7 +199,8 @@ double Multigrid::cycle_bytes() const {
     const auto matrix = [](const auto& A, std::size_t number) {
       return static_cast<double>(A.value.extent(0) * number + A.graph.n_entries() * sizeof(LocalIndex));
     };
-    sum += 2 * matrix(level.A, sizeof(Real)) + 2 * (level.smoother->degree() - 1) * matrix(level.A, sizeof(float));
+    sum += 2 * matrix(level.A, sizeof(Real)) +
+           2 * (level.smoother->degree() - 1) * matrix(level.A, sizeof(RoundedMatrix::Number));
     sum +=
         matrix(level.to_coarse->prolongation(), sizeof(float)) + matrix(level.to_coarse->restriction(), sizeof(float));
   }

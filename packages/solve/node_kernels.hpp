@@ -62,7 +62,8 @@ bool try_sizes(int height, int width, const Work& work) {
          is(three, six) || is(six, three);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && \
+    !defined(KOKKOS_ENABLE_SYCL)
 #define SPREKK_WIDE_INSTRUCTIONS
 /// work() with all that it calls, in instructions on four numbers at a time.
 template <class Work>

@@ -141,9 +141,9 @@ KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart
   }
 }
 
-/// out(i, sums, height) for every row node i, with the numbers of (A x) there. What its rows need of x is gathered, and
-/// then they are read one after another: one stream of memory is faster than three or six side by side. Exchanges the
-/// ghosts of x [all columns] first. Collective.
+/// out(i, sums, height) for every row node i, with the numbers of (A x) there. What its rows need of x is gathered
+/// first; they are read side by side, each ahead of time, since the processor does not foresee so many streams.
+/// Exchanges the ghosts of x [all columns] first. Collective.
 template <class Number, class Out>
 void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& out) {
   const auto& graph = A.graph;

@@ -35,8 +35,13 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
   const auto transposed = Tpetra::RowMatrixTransposer<Real, LocalIndex, GlobalIndex>(truss.matrix).createTranspose();
   const auto square = rcp(new CrsMatrix(truss.map, 0));  // its columns are in another order
   Tpetra::MatrixMatrix::Multiply(*truss.matrix, false, *truss.matrix, false, *square);
-  for (const RCP<const CrsMatrix>& matrix :
-       {RCP<const CrsMatrix>(truss.matrix), RCP<const CrsMatrix>(transposed), RCP<const CrsMatrix>(square)}) {
+  const auto cube = rcp(new CrsMatrix(truss.map, 0));  // with rows of 216 blocks
+  Tpetra::MatrixMatrix::Multiply(*square, false, *truss.matrix, false, *cube);
+  cube->resumeFill();
+  cube->scale(1.0 / 64);  // numbers are then about as large as those of the others
+  cube->fillComplete();
+  for (const RCP<const CrsMatrix>& matrix : {RCP<const CrsMatrix>(truss.matrix), RCP<const CrsMatrix>(transposed),
+                                             RCP<const CrsMatrix>(square), RCP<const CrsMatrix>(cube)}) {
     const auto A = solve::node_matrix(*matrix, 3);
     const auto again = solve::crs_matrix(A);
     const auto& halo = *A.graph.columns;
@@ -46,6 +51,7 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
     matrix->apply(from, to);
     again->apply(from, as_before);
     solve::product(A, x, y);
+    Kokkos::deep_copy(r, 1);
     solve::residual(A, x, y, r);
     for (std::size_t i = 0; i < from.getLocalLength(); ++i) {
       EXPECT_NEAR(y(i), to.getData()[i], 1e-12);

@@ -4,6 +4,7 @@
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -28,12 +29,13 @@ struct Pair {
   }
 
   RCP<CrsMatrix> block(int r, int s) const {
-    const auto matrix = rcp(new CrsMatrix(maps[r], 5));
+    const auto matrix = rcp(new CrsMatrix(maps[r], 9));
     const GlobalIndex n = maps[s]->getGlobalNumElements();
     for (std::size_t i = 0; i < maps[r]->getNodeNumElements(); ++i) {
       const GlobalIndex row = maps[r]->getGlobalElement(i);
-      for (GlobalIndex k = -1; k <= 1; ++k) {
-        const GlobalIndex column = (row + 3 * k + n) % n;
+      const GlobalIndex reach = r == 0 && s == 0 ? 4 : 1;  // rows of nine entries, or of three
+      for (GlobalIndex k = -reach; k <= reach; ++k) {
+        const GlobalIndex column = (row + (reach > 1 ? 1 : 3) * k + 3 * n) % n;
         const Real value = std::cos(1.0 + row + 7 * column + 100 * r + 1000 * s);
         matrix->insertGlobalValues(row, 1, &value, &column);
       }
