@@ -101,11 +101,10 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system, bool flat
 
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, std::shared_ptr<const JoinedRows> rows_of_A, const View<LocalIndex*>& rows,
-        RCP<const Operator> smoother, bool exact, RCP<const Operator> order_one)
+  Cycle(const LinearSystem& system, std::shared_ptr<const JoinedRows> rows, RCP<const Operator> smoother, bool exact,
+        RCP<const Operator> order_one)
       : A_(system.joined_operator()),
-        rows_of_A_(std::move(rows_of_A)),
-        rows_(rows),
+        rows_of_A_(std::move(rows)),
         smoother_(smoother),
         exact_(exact),
         order_one_(order_one),
@@ -138,9 +137,9 @@ class Cycle : public Operator {
   /// x += S (b - A x), of which S reads its rows only; `moved`: x is not zero.
   void smooth(const MultiVector& b, MultiVector& x, bool moved = false) const {
     using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
-    const auto n = static_cast<LocalIndex>(rows_.extent(0)), n_vectors = static_cast<LocalIndex>(b.getNumVectors());
+    const auto rows = rows_of_A_->rows();
+    const auto n = static_cast<LocalIndex>(rows.extent(0)), n_vectors = static_cast<LocalIndex>(b.getNumVectors());
     MultiVector r(smoother_->getDomainMap(), n_vectors), z(smoother_->getRangeMap(), n_vectors);
-    const auto rows = rows_;
     {
       const auto all = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
       const auto some = r.getLocalViewDevice(Tpetra::Access::OverwriteAll);
@@ -176,7 +175,6 @@ class Cycle : public Operator {
 
   RCP<const Operator> A_;
   std::shared_ptr<const JoinedRows> rows_of_A_;  // those of S
-  View<LocalIndex*> rows_;
   RCP<const Operator> smoother_;
   bool exact_;  // the smoother leaves no residual in its rows
   RCP<const Operator> order_one_;
@@ -228,7 +226,7 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   } else {
     smoother = gauss_seidel(smoothed_->matrix());
   }
-  cycle_ = rcp(new Cycle(system, rows_, smoothed_->rows(), smoother, P.is_null(), order_one_->inverse()));
+  cycle_ = rcp(new Cycle(system, rows_, smoother, P.is_null(), order_one_->inverse()));
 }
 
 RCP<const Operator> FineLevel::inverse() const { return cycle_; }

@@ -52,6 +52,8 @@ class JoinedRows {
   /// `rows`: places of owned unknowns in joined vectors, ascending.
   JoinedRows(std::shared_ptr<const Joined> joined, Blocks blocks, const View<LocalIndex*>& rows);
 
+  const View<LocalIndex*>& rows() const { return rows_; }
+
   /// y -= (S A S x) in these rows; y [row].
   void subtract_product(const fields::MultiVector& x, fields::MultiVector& y) const;
 

@@ -56,7 +56,7 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
     for (std::size_t i = 0; i < from.getLocalLength(); ++i) {
       EXPECT_NEAR(y(i), to.getData()[i], 1e-12);
       EXPECT_NEAR(as_before.getData()[i], to.getData()[i], 1e-12);
-      EXPECT_NEAR(r(i), 0, 1e-12);
+      EXPECT_NEAR(r(i), 0, 1e-13);  // two kernels may contract differently
     }
   }
 }

@@ -19,7 +19,7 @@ constexpr LocalIndex n = 41;  // nodes of a rank
 
 Real number(std::size_t i, std::size_t j) { return std::cos(1.0 + 7 * i + 13 * j + i * j); }
 
-/// Without ghosts; row i couples to i % 7 nodes, so some to none, and the last to six.
+/// Without ghosts; row i couples to (i + 1) % 7 nodes, so some to none, and the last to six.
 template <int b>
 NodeMatrix some_matrix() {
   const auto map = rcp(new Map(n * Tpetra::getDefaultComm()->getSize(), n, 0, Tpetra::getDefaultComm()));
