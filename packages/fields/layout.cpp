@@ -54,27 +54,26 @@ GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
   }
 }
 
-RCP<const Map> make_map(const Field& field, const mesh::Mesh& mesh, LocalIndex n) {
+RCP<const Map> map_of(const Field& field, const mesh::Mesh& mesh, LocalIndex n) {
   std::vector<GlobalIndex> ids;
   ids.reserve(static_cast<std::size_t>(n) * field.n_components);
   for (LocalIndex i = 0; i < n; ++i)
     for (int c = 0; c < field.n_components; ++c)
       ids.push_back(global_id(mesh, field.entity, i) * field.n_components + c);
-  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return rcp(new const Map(unknown, Teuchos::ArrayView<const GlobalIndex>(ids.data(), ids.size()), 0, mesh.comm));
+  return make_map(ids, mesh.comm);
 }
 
 }  // namespace
 
 RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh) {
-  return make_map(field, mesh, n_entities(mesh, field.entity, false));
+  return map_of(field, mesh, n_entities(mesh, field.entity, false));
 }
 
 Layout::Layout(const Field& field, const mesh::Mesh& mesh)
     : field_(field),
       n_owned_entities_(n_entities(mesh, field.entity, false)),
-      owned_(make_map(field, mesh, n_owned_entities_)),
-      ghosted_(make_map(field, mesh, n_entities(mesh, field.entity, true))),
+      owned_(map_of(field, mesh, n_owned_entities_)),
+      ghosted_(map_of(field, mesh, n_entities(mesh, field.entity, true))),
       import_(rcp(new const Import(owned_, ghosted_))) {}
 
 std::size_t Layout::halo_messages() const { return import_->getDistributor().getNumReceives(); }

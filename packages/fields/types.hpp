@@ -30,6 +30,9 @@ inline BlockVector create_like(const BlockVector& x) {
   return y;
 }
 
+/// The map with these numbers on this rank. It stores none where they are 0, 1, ... over all ranks. Collective.
+RCP<const Map> make_map(const std::vector<GlobalIndex>& numbers, const RCP<const Comm>& comm);
+
 inline void copy(const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < from.size(); ++b) Tpetra::deep_copy(*to[b], *from[b]);
 }

@@ -37,9 +37,7 @@ class CondensedPlanner {
       for (std::size_t c = 0; c < product.column.size(); ++c)
         if (product.column[c] == 0) product.column[c] = columns->getLocalElement(product.global(c));
     LocalIndices of_matrix;  // [column of A_ab]
-    if (!matrix(a, b).is_null())
-      for (auto column : matrix(a, b)->getColMap()->getNodeElementList())
-        of_matrix.push_back(columns->getLocalElement(column));
+    for_columns(matrix(a, b), [&](GlobalIndex column) { of_matrix.push_back(columns->getLocalElement(column)); });
     make_graph(a, b, columns, of_matrix, products);
     auto& condensed = plan_.condensed.back();
     condensed.bulk = matrix(a, b);
@@ -51,6 +49,14 @@ class CondensedPlanner {
  private:
   const std::vector<Block>& blocks() const { return problem_.blocks(); }
   RCP<const CrsMatrix> matrix(int i, int j) const { return problem_.matrix()(i, j); }
+
+  /// visit(global column) for those that a matrix, if there is one, has here.
+  template <class Visit>
+  static void for_columns(const RCP<const CrsMatrix>& matrix, const Visit& visit) {
+    if (matrix.is_null()) return;
+    const auto& columns = *matrix->getColMap();
+    for (LocalIndex i = 0, n = columns.getNodeNumElements(); i < n; ++i) visit(columns.getGlobalElement(i));
+  }
 
   int index(int block) const {
     return std::find(plan_.remaining.begin(), plan_.remaining.end(), block) - plan_.remaining.begin();
@@ -94,8 +100,7 @@ class CondensedPlanner {
       else
         not_owned.push_back(column);
     };
-    if (!matrix(a, b).is_null())
-      for (auto column : matrix(a, b)->getColMap()->getNodeElementList()) add(column, of_bulk);
+    for_columns(matrix(a, b), [&](GlobalIndex column) { add(column, of_bulk); });
     for (auto& product : products)
       for (std::size_t pair = 0; pair < product.slot.extent(0); ++pair)
         for (std::size_t c = product.start(product.slot(pair)), end = product.start(product.slot(pair) + 1);
@@ -108,8 +113,7 @@ class CondensedPlanner {
       if (wanted[i]) all.push_back(domain.getGlobalElement(i));
     all.insert(all.end(), of_bulk.begin(), of_bulk.end());
     for (auto column : by_rank(others, of_bulk, domain)) all.push_back(column);
-    const auto count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-    return rcp(new Map(count_them, Teuchos::arrayView(all.data(), all.size()), 0, problem_.comm()));
+    return fields::make_map(all, problem_.comm());
   }
 
   /// Without those that are known, each once. Collective.
