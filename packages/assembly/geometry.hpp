@@ -11,7 +11,7 @@
 
 namespace sprekk::assembly {
 
-/// What a kernel over cells reads of the mesh.
+/// What a kernel over cells reads of the mesh, which must stay.
 struct Geometry {
   ConstView<Real**> coordinates;  ///< [node, component], m
   ConstView<LocalIndex**> cells;  ///< [cell, local node]

@@ -180,6 +180,7 @@ class Distributor {
         mesh_.tied_to.push_back(nodes_.local_of[global_.free_node(id)]);
     }
     mesh_.node_id = nodes_.ids;
+    mesh_.coordinates.reserve(dim * nodes_.ids.size());
     for (GlobalIndex id : nodes_.ids)
       mesh_.coordinates.insert(mesh_.coordinates.end(), &global_.coordinates[id * dim],
                                &global_.coordinates[id * dim] + dim);
@@ -219,6 +220,9 @@ class Distributor {
   void fill_cells() {
     mesh_.n_owned_cells = cells_.n_owned;
     mesh_.cell_id = cells_.ids;
+    for (auto* of_cell : {&mesh_.cell_owner, &mesh_.cell_region, &mesh_.cell_piece})
+      of_cell->reserve(cells_.ids.size());
+    mesh_.cells.reserve(nodes_per_cell_ * cells_.ids.size());
     for (GlobalIndex id : cells_.ids) {
       mesh_.cell_owner.push_back(part_[id]);
       mesh_.cell_region.push_back(global_.cell_region[id]);
