@@ -177,7 +177,8 @@ void System::set_multigrid(const Unknown& unknown, const fields::Layout& layout,
     block.coordinates = at_corners(*mesh_, *block.coordinates);
   }
   const auto map = block.interpolation.is_null() ? layout.owned() : block.interpolation->getDomainMap();
-  block.near_null_space = rigid_body_modes(map, *block.coordinates);
+  block.near_null_space = {static_cast<int>(rigid_modes(mesh_->dim()).size()),
+                           [map, places = block.coordinates] { return rigid_body_modes(map, *places); }};
 }
 
 void System::declare_groups() {
@@ -291,7 +292,7 @@ void System::start_matrix() {
 std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<fields::CrsMatrix>& J) {
   const auto& A = linear_(block, block);
   const bool constant = !A.is_null() && matrix_(block, block) == A && unknowns_[block].row != Quantity::flow;
-  if (!constant || J->getGlobalMaxNumRowEntries() > fields::KeptRows::longest_row) return nullptr;
+  if (!constant) return nullptr;
   auto kept = linear_.kept(block);
   if (kept) {
     kept->restore(*J);

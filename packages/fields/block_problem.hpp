@@ -4,22 +4,37 @@
 #include "fields/block_matrix.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace sprekk::fields {
 
+/// Vectors that a matrix makes small, [owned unknown, mode], which are made when they are asked for.
+class Modes {
+ public:
+  Modes() = default;
+  Modes(int n, std::function<RCP<const MultiVector>()> make) : n_(n), make_(std::move(make)) {}
+
+  int n() const { return n_; }  ///< 0: there are none
+  RCP<const MultiVector> make() const { return n_ > 0 ? make_() : Teuchos::null; }
+
+ private:
+  int n_ = 0;
+  std::function<RCP<const MultiVector>()> make_;
+};
+
 /// A block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components +
 /// component, in local and in global numbering.
 struct Block {
   std::string name;
-  RCP<const Map> map;                      ///< owned unknowns
-  int n_components;                        ///< unknowns per entity
-  Real kinematic_scale;                    ///< typical size of an unknown of this block under the present loads
-  Real residual_scale;                     ///< typical size of a row of this block under the present loads
-  RCP<const MultiVector> coordinates;      ///< [owned entity, dim], metre; null where multigrid has no use for it
-  RCP<const MultiVector> near_null_space;  ///< [owned unknown, modes]; null likewise
+  RCP<const Map> map;                  ///< owned unknowns
+  int n_components;                    ///< unknowns per entity
+  Real kinematic_scale;                ///< typical size of an unknown of this block under the present loads
+  Real residual_scale;                 ///< typical size of a row of this block under the present loads
+  RCP<const MultiVector> coordinates;  ///< [owned entity, dim], metre; null where multigrid has no use for it
+  Modes near_null_space;               ///< none likewise
   /// Of order 2: from the unknowns of order 1 that multigrid starts from, and that coordinates and near_null_space
   /// belong to, to those of the block. Null: multigrid starts from the block itself.
   RCP<const CrsMatrix> interpolation = {};

@@ -121,8 +121,8 @@ class MueLuMultigrid : public BlockSolver {
     list.get("problem: symmetric", symmetric_);
     list.get("transpose: use implicit", symmetric_);
     auto& user_data = list.sublist("user data");
-    if (!block.near_null_space.is_null())
-      user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space, Teuchos::Copy)));
+    if (block.near_null_space.n() > 0)
+      user_data.set("Nullspace", rcp(new MultiVector(*block.near_null_space.make(), Teuchos::Copy)));
     user_data.set("Coordinates", rcp(new MultiVector(*block.coordinates, Teuchos::Copy)));
     const RCP<Operator> from = bulk;
     hierarchy_ = MueLu::CreateTpetraPreconditioner(from, list);
@@ -143,8 +143,9 @@ class NodeMultigrid : public BlockSolver {
  private:
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     if (multigrid_.is_null()) {
-      const auto& [n, modes, places] =
-          std::tie(block.block.n_components, block.block.near_null_space, block.block.coordinates);
+      const int n = block.block.n_components;
+      const auto modes = block.block.near_null_space.make();
+      const auto& places = block.block.coordinates;
       Nodes nodes;
       const auto look = [&](const RCP<const CrsMatrix>& bulk) {
         nodes = nodes_of(node_matrix(*bulk, n), modes, places);
@@ -221,8 +222,7 @@ class Relaxation : public BlockSolver {
 }  // namespace
 
 bool takes_muelu(const ParameterList& muelu, const Block& block) {
-  const auto& modes = block.near_null_space;
-  const int n_modes = modes.is_null() ? block.n_components : static_cast<int>(modes->getNumVectors());
+  const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
   return muelu.numParams() > 0 || !Multigrid::can_solve(block.n_components, n_modes);
 }
 

@@ -53,7 +53,7 @@ LinearSystem CondensedSolve::system() {
                                problem_.symmetric_blocks(),
                                problem_.schur(elimination_.remaining()[r])});
     // of displacements, whose aggregates must not cross fractures; other fields couple by what was eliminated
-    if (with_bulk && !blocks[r].near_null_space.is_null())
+    if (with_bulk && blocks[r].near_null_space.n() > 0)
       system.diagonal.back().bulk = [this, r](const auto& work) { elimination_.with_bulk(r, work); };
   }
   return system;
@@ -80,13 +80,10 @@ LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real t
   report.reason = failure_;
   if (!failure_.empty()) return report;
   const auto scope = timers_->scope("linear solve");
-  const auto c = elimination_.reduce(b);
-  auto y = fields::create_like(c);
-  const auto rhs = joined_->gather(c), solution = joined_->gather(y);
+  const auto rhs = joined_->gather(elimination_.reduce(b)), solution = rcp(new Vector(joined_->map()));
   report = chosen_.solver->solve(*rhs, *solution, tolerance);
   if (!report.converged) return report;
-  joined_->scatter(*solution, y);
-  elimination_.expand(b, y, dx);
+  elimination_.expand(b, joined_->scatter(solution), dx);
   return report;
 }
 

@@ -22,8 +22,7 @@ RCP<const Map> one_after_another(const std::vector<RCP<const Map>>& maps, const 
   for (std::size_t r = 0; r < maps.size(); ++r)
     for (LocalIndex i = 0, n = maps[r]->getNodeNumElements(); i < n; ++i)
       unknowns.push_back(offsets[r] + maps[r]->getGlobalElement(i));
-  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return rcp(new Map(invalid, unknowns.data(), unknowns.size(), 0, maps.front()->getComm()));
+  return fields::make_map(unknowns, maps.front()->getComm());
 }
 
 class JoinedOperator : public fields::Operator {
@@ -98,16 +97,19 @@ RCP<Vector> Joined::gather(const BlockVector& b) const {
   return all;
 }
 
-void Joined::scatter(const Vector& y, BlockVector& x) const {
-  if (n_blocks() == 1 && x.front().get() == &y) return;
-  const auto from = y.getLocalViewDevice(Tpetra::Access::ReadOnly);
+BlockVector Joined::scatter(const RCP<Vector>& y) const {
+  if (n_blocks() == 1) return {y};
+  BlockVector x;
+  const auto from = y->getLocalViewDevice(Tpetra::Access::ReadOnly);
   for (int r = 0; r < n_blocks(); ++r) {
+    x.push_back(rcp(new Vector(maps_[r])));
     const auto to = x[r]->getLocalViewDevice(Tpetra::Access::OverwriteAll);
     const Real scale = scales_[r];
     const LocalIndex offset = firsts_[r];
     Kokkos::parallel_for(
         "scatter", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { to(i, 0) = scale * from(offset + i, 0); });
   }
+  return x;
 }
 
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks) {

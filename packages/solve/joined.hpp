@@ -29,8 +29,8 @@ class Joined {
 
   /// S b; of a single block, b itself.
   RCP<fields::Vector> gather(const fields::BlockVector& b) const;
-  /// x <- S y.
-  void scatter(const fields::Vector& y, fields::BlockVector& x) const;
+  /// S y; of a single block, y itself.
+  fields::BlockVector scatter(const RCP<fields::Vector>& y) const;
 
  private:
   std::vector<RCP<const fields::Map>> maps_;  // [r]

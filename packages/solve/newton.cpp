@@ -129,10 +129,9 @@ NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
   model_->start(options_.tolerance);
   problem_.damp(0, {});
-  const auto start = model_->make_vector(x);
   // NOX holds references by RCP; the model outlives the solver here
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
-  const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model));
+  const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
   SearchReport search;
   const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, search, report));
   const auto parameters = nox_parameters(options_, problem_, *model_, search);

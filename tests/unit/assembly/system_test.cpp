@@ -153,10 +153,10 @@ TEST(System, BlocksAndGroupsFollowTheDeclarations) {
   const auto &u = system->blocks()[0], &q = system->blocks()[1];
   EXPECT_EQ(u.name, "displacement");
   EXPECT_EQ(u.n_components, 2);
-  EXPECT_EQ(u.near_null_space->getNumVectors(), 3u);
+  EXPECT_EQ(u.near_null_space.make()->getNumVectors(), 3u);
   EXPECT_EQ(u.coordinates->getNumVectors(), 2u);
   EXPECT_EQ(q.name, "glue");
-  EXPECT_TRUE(q.near_null_space.is_null());
+  EXPECT_TRUE(q.near_null_space.make().is_null());
   EXPECT_EQ(static_cast<GlobalIndex>(q.map->getGlobalNumElements()), 2 * mesh->n_global_fracture_faces);
   ASSERT_EQ(system->local_groups().size(), 1u);
   EXPECT_EQ(system->local_groups()[0].name, "face");

@@ -76,8 +76,8 @@ class GridProblem : public BlockProblem {
     const auto u = make_map(unknowns, comm), z = make_map(face_unknowns, comm);
     add_node_block(u);
     if (o_.faces) {
-      blocks_.push_back({"bubble", z, d, 1, 1, Teuchos::null, Teuchos::null});
-      blocks_.push_back({"traction", z, d, 1, 1, Teuchos::null, Teuchos::null});
+      blocks_.push_back({"bubble", z, d, 1, 1, Teuchos::null, {}});
+      blocks_.push_back({"traction", z, d, 1, 1, Teuchos::null, {}});
       if (o_.eliminate) groups_.push_back({"contact", {1, 2}});
     }
     constrained_ = View<char*>("constrained", unknowns.size());
@@ -206,7 +206,9 @@ class GridProblem : public BlockProblem {
       coordinates->replaceLocalValue(i, 1, Real(nodes[i] / o_.nx));
       for (int j = 0; j < d; ++j) modes->replaceLocalValue(i * d + j, j, 1.0);
     }
-    blocks_.push_back({"displacement", u, d, 1, 1, coordinates, modes});
+    blocks_.push_back({"displacement", u, d, 1, 1, coordinates, {static_cast<int>(modes->getNumVectors()), [modes] {
+                                                                   return modes;
+                                                                 }}});
   }
 
   void fill_matrices() {
@@ -281,7 +283,7 @@ class ScalarProblem : public BlockProblem {
     std::vector<GlobalIndex> mine;
     for (int i = comm->getRank(); i < n; i += comm->getSize()) mine.push_back(i);
     const auto map = make_map(mine, comm);
-    blocks_.push_back({"x", map, 1, 1, 1, Teuchos::null, Teuchos::null});
+    blocks_.push_back({"x", map, 1, 1, 1, Teuchos::null, {}});
     Filler diagonal(map, map);
     for (auto i : mine) diagonal.add(i, i, 1);
     matrix_(0, 0) = diagonal.done();

@@ -72,7 +72,7 @@ TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) fill.add(i, j, i == j ? 4 : i + 0.5 * j);
   const auto solver = solve::make_direct_solver({});
-  expect_solved(fill.done(), {"few", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false, *solver);
+  expect_solved(fill.done(), {"few", map, 1, 1, 1, Teuchos::null, {}}, false, *solver);
 }
 
 TEST(DirectSolver, ReportsASingularMatrix) {
@@ -86,8 +86,7 @@ TEST(DirectSolver, ReportsASingularMatrix) {
       for (int j = 0; j < 6; ++j) fill.add(i, j, structural ? (j < 3) : i * 6 + j);  // rank 1 or 2
     const auto matrix = fill.done();
     const auto solver = solve::make_direct_solver({}, most_ranks);
-    const std::string failure =
-        solver->setup(system_of(matrix, {"s", map, 1, 1, 1, Teuchos::null, Teuchos::null}, false));
+    const std::string failure = solver->setup(system_of(matrix, {"s", map, 1, 1, 1, Teuchos::null, {}}, false));
     Vector b(map), x(map);
     for (std::size_t i = 0; i < b.getLocalLength(); ++i) b.replaceLocalValue(i, std::cos(map->getGlobalElement(i)));
     const auto report = solver->solve(b, x, 1e-10);
@@ -223,7 +222,7 @@ TEST(IterativeSolver, SolvesWhatItsPreconditionerInverts) {
   }
   matrix->fillComplete();
   for (const bool symmetric : {true, false}) {
-    const Block block{"u", map, 1, 1, 1, Teuchos::null, Teuchos::null};
+    const Block block{"u", map, 1, 1, 1, Teuchos::null, {}};
     const auto solver = solve::make_iterative_solver({}, {block});
     ASSERT_EQ(solver->setup(system_of(matrix, block, symmetric)), "");
     Vector b(map), x(map);
@@ -246,7 +245,7 @@ TEST(IterativeSolver, LooksAtMultigridOnceASolveIsLong) {
     const auto places = rcp(new fields::MultiVector(node_map, 3));
     for (std::size_t i = 0; i < nodes.size(); ++i)
       for (int k = 0; k < 3; ++k) places->replaceLocalValue(static_cast<LocalIndex>(i), k, truss.place(nodes[i])[k]);
-    const Block block{"u", truss.map, 3, 1, 1, places, truss.modes};
+    const Block block{"u", truss.map, 3, 1, 1, places, {6, [&] { return truss.modes; }}};
     const auto solver = solve::make_iterative_solver({}, {block});
     ASSERT_EQ(solver->setup(system_of(truss.matrix, block, false)), "");
     Vector b(truss.map), x(truss.map);
