@@ -30,7 +30,7 @@ void KeptRows::keep(const View<char*>& rows) {
       n_kept);
   if (n_kept == static_cast<LocalIndex>(before.row.extent(0))) return;
   Rows now{View<LocalIndex*>("number of a row", number.extent(0)), View<LocalIndex*>("kept rows", n_kept),
-           View<std::size_t*>("kept values", n_kept + 1)};
+           View<std::size_t*>("kept values", n_kept + 1), View<std::size_t*>("words", n_kept + 1)};
   Kokkos::parallel_scan(
       "number rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum, bool last) {
         const bool keeps = number(row) >= 0 || rows(row) != 0;
@@ -40,29 +40,35 @@ void KeptRows::keep(const View<char*>& rows) {
       });
   // visit(place, value) for values of A in a row that are not 0
   const auto for_values = KOKKOS_LAMBDA(LocalIndex row, const auto& visit) {
-    if (const LocalIndex k = number(row); k >= 0) {
-      for (auto i = before.start(k); i < before.start(k + 1); ++i) visit(before.place(i), before.value(i));
-      return;
-    }
+    if (const LocalIndex k = number(row); k >= 0) return before.for_values(k, visit);
     const auto begin = J.graph.row_map(row);
     for (auto i = begin; i < J.graph.row_map(row + 1); ++i)
-      if (J.values(i) != 0) visit(static_cast<Place>(i - begin), J.values(i));
+      if (J.values(i) != 0) visit(i - begin, J.values(i));
   };
   std::size_t n_values = 0;
   Kokkos::parallel_scan(
       "count values", Policy(0, n_kept),
       KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
-        for_values(now.row(k), [&](Place, Real) { ++sum; });
+        for_values(now.row(k), [&](std::size_t, Real) { ++sum; });
         if (last) now.start(k + 1) = sum;
       },
       n_values);
-  now.place = View<Place*>("kept places", n_values);
+  std::size_t n_words = 0;
+  Kokkos::parallel_scan(
+      "count words", Policy(0, n_kept),
+      KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
+        const std::size_t length = J.graph.row_map(now.row(k) + 1) - J.graph.row_map(now.row(k));
+        sum += (length + Rows::word - 1) / Rows::word;
+        if (last) now.first(k + 1) = sum;
+      },
+      n_words);
+  now.present = View<std::uint64_t*>("present", n_words);
   now.value = View<Real*>("kept values", n_values);
   Kokkos::parallel_for(
       "keep values", Policy(0, n_kept), KOKKOS_LAMBDA(LocalIndex k) {
         auto to = now.start(k);
-        for_values(now.row(k), [&](Place at, Real a) {
-          now.place(to) = at;
+        for_values(now.row(k), [&](std::size_t at, Real a) {
+          now.present(now.first(k) + at / Rows::word) |= std::uint64_t(1) << at % Rows::word;
           now.value(to++) = a;
         });
       });
@@ -76,7 +82,7 @@ void KeptRows::restore(const CrsMatrix& matrix) const {
       "restore", Policy(0, kept.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
         const auto begin = to.graph.row_map(kept.row(k)), end = to.graph.row_map(kept.row(k) + 1);
         for (auto i = begin; i < end; ++i) to.values(i) = 0;
-        for (auto i = kept.start(k); i < kept.start(k + 1); ++i) to.values(begin + kept.place(i)) = kept.value(i);
+        kept.for_values(k, [&](std::size_t at, Real a) { to.values(begin + at) = a; });
       });
 }
 
@@ -90,8 +96,8 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
         const auto begin = J.graph.row_map(row), end = J.graph.row_map(row + 1);
         Real sums[n_sums] = {};
         if (const LocalIndex k = kept.number(row); k >= 0) {
-          for (auto i = kept.start(k); i < kept.start(k + 1); ++i)
-            sums[kept.place(i) % n_sums] += kept.value(i) * from(J.graph.entries(begin + kept.place(i)), 0);
+          kept.for_values(
+              k, [&](std::size_t at, Real a) { sums[at % n_sums] += a * from(J.graph.entries(begin + at), 0); });
         } else {
           auto i = begin;
           for (; i + n_sums <= end; i += n_sums)

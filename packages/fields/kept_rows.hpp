@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "fields/types.hpp"
 
@@ -13,9 +12,6 @@ namespace sprekk::fields {
 /// kept J has no others. All members are local unless they say otherwise.
 class KeptRows {
  public:
-  using Place = std::uint16_t;  ///< in a row; no row may have more
-  static constexpr std::size_t longest_row = std::numeric_limits<Place>::max();
-
   /// The values of J are those of A, in all rows so far.
   explicit KeptRows(RCP<const CrsMatrix> J);
 
@@ -36,11 +32,23 @@ class KeptRows {
 
  private:
   struct Rows {
-    View<LocalIndex*> number;  // [owned row] -1: it is J's
-    View<LocalIndex*> row;     // [number]
-    View<std::size_t*> start;  // [number + 1] of values that are not 0
-    View<Place*> place;        // of a value in its row of J
+    static constexpr std::size_t word = 64;
+
+    View<LocalIndex*> number;      // [owned row] -1: it is J's
+    View<LocalIndex*> row;         // [number]
+    View<std::size_t*> start;      // [number + 1] of values that are not 0
+    View<std::size_t*> first;      // [number + 1] of words
+    View<std::uint64_t*> present;  // bit k % 64 of word k / 64 of a row: it has a value in place k of its row of J
     View<Real*> value;
+
+    /// visit(place, value) for the values of a row that is kept, in their order.
+    template <class Visit>
+    KOKKOS_FORCEINLINE_FUNCTION void for_values(LocalIndex number, const Visit& visit) const {
+      std::size_t i = start(number), place = 0;
+      for (std::size_t w = first(number); w < first(number + 1); ++w, place += word)
+        for (std::uint64_t left = present(w); left != 0; left &= left - 1) visit(place + lowest(left), value(i++));
+    }
+    KOKKOS_FORCEINLINE_FUNCTION static std::size_t lowest(std::uint64_t bits) { return __builtin_ctzll(bits); }
   };
 
   RCP<const CrsMatrix> J_;
