@@ -3,6 +3,7 @@
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "base/check.hpp"
 #include "solve/small_lu.hpp"
@@ -20,12 +21,6 @@ View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
 namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;
-
-const GlobalIndex count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-
-RCP<const Map> make_map(const GlobalIndices& indices, const RCP<const Comm>& comm) {
-  return rcp(new Map(count_them, Teuchos::arrayView(indices.data(), indices.size()), 0, comm));
-}
 
 /// Calls visit(row, position of the value, global column) for the stored entries owned here.
 template <class Visit>
@@ -109,29 +104,31 @@ class Planner {
     base::collectively(*comm_, [&] {
       for (int z : group.blocks) {
         const int n = blocks()[z].n_components;
-        const auto indices = blocks()[z].map->getNodeElementList();
+        const auto& map = *blocks()[z].map;
         GlobalIndices entities;
-        for (int i = 0; i < indices.size(); i += n) entities.push_back(indices[i] / n);
+        for (LocalIndex i = 0, end = map.getNodeNumElements(); i < end; i += n)
+          entities.push_back(map.getGlobalElement(i) / n);
         SPREKK_CHECK(z == group.blocks[0] || entities == owned,
                      "local group '{}': block '{}' does not hold the same entities as the first block", group.name,
                      blocks()[z].name);
         owned = entities;
       }
     });
-    const auto entities = make_map(owned, comm_);
+    const auto entities = fields::make_map(owned, comm_);
     GlobalIndices ghosts;
     for (int a : plan_.remaining)
       for (int z : group.blocks) {
         if (matrix(a, z).is_null()) continue;
-        for (auto index : matrix(a, z)->getColMap()->getNodeElementList()) {
-          const GlobalIndex entity = index / blocks()[z].n_components;
+        const auto& columns = *matrix(a, z)->getColMap();
+        for (LocalIndex i = 0, n = columns.getNodeNumElements(); i < n; ++i) {
+          const GlobalIndex entity = columns.getGlobalElement(i) / blocks()[z].n_components;
           if (!entities->isNodeGlobalElement(entity)) ghosts.push_back(entity);
         }
       }
     std::sort(ghosts.begin(), ghosts.end());
     ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
     owned.insert(owned.end(), ghosts.begin(), ghosts.end());
-    group.slots = std::make_shared<Halo>(entities, make_map(owned, comm_));
+    group.slots = std::make_shared<Halo>(entities, fields::make_map(owned, comm_));
   }
 
   static LocalIndex slot(const GroupPlan& group, GlobalIndex entity) {
@@ -140,11 +137,25 @@ class Planner {
 
   static LocalIndex n_owned(const GroupPlan& group) { return group.slots->n_owned(); }
 
+  /// The most targets of which so many always follow one another.
+  static int common_width(const LocalIndices& target) {
+    for (int width = max_small_size; width > 1; --width) {
+      bool together = target.size() % width == 0;
+      for (std::size_t k = 0; k < target.size() && together; ++k)
+        together = target[k] == target[k - k % width] + static_cast<LocalIndex>(k % width);
+      if (together) return width;
+    }
+    return 1;
+  }
+
   template <class Find>
   static Scatter make_scatter(const RCP<const CrsMatrix>& matrix, const Find& find) {
     LocalIndices target(matrix->getNodeNumEntries());
     for_entries(*matrix, [&](LocalIndex row, LocalIndex k, GlobalIndex column) { target[k] = find(row, column); });
-    return {matrix, to_device(target, "scatter target")};
+    const int width = common_width(target);
+    for (std::size_t k = 0; k < target.size(); k += width) target[k / width] = target[k];
+    target.resize(target.size() / width);
+    return {matrix, width, to_device(target, "scatter target")};
   }
 
   void plan_dense(GroupPlan& group) const {
@@ -206,7 +217,6 @@ class Planner {
     response.column = View<GlobalIndex*>("response columns", response.column_start(n_slots));
     std::copy(columns.column.begin(), columns.column.end(), response.column.data());
     group.slots->exchange_rows(response.column_start, response.column, 1);
-    response.value = View<Real*>("responses", group.size * response.column.extent(0) + Response::strip);
   }
 
   void plan_coupling(GroupPlan& group, int a) const {
@@ -229,17 +239,32 @@ class Planner {
     Coupling& coupling = group.coupling.back();
     coupling.row_start = to_device(slots.start, "coupling row start");
     coupling.slot = to_device(LocalIndices(slots.column.begin(), slots.column.end()), "coupling slot");
+    const auto for_runs = [&](const auto& begin, const auto& go_on) {
+      LocalIndex last_pair = -1, last_place = -1;
+      int last_component = -1;
+      for_numbers([&](LocalIndex row, LocalIndex slot, int component, LocalIndex place) {
+        const LocalIndex p = pair(row, slot);
+        const bool new_block = std::count(group.offset.begin(), group.offset.end(), component) > 0;
+        const bool follows = !new_block && p == last_pair && place == last_place + 1 && component == last_component + 1;
+        std::tie(last_pair, last_place, last_component) = std::tuple(p, place, component);
+        follows ? go_on(p) : begin(p, component, place);
+      });
+    };
     LocalIndices first(slots.column.size() + 1);
-    for_numbers([&](LocalIndex row, LocalIndex slot, int, LocalIndex) { ++first[pair(row, slot) + 1]; });
+    for_runs([&](LocalIndex pair, int, LocalIndex) { ++first[pair + 1]; }, [](LocalIndex) {});
     std::partial_sum(first.begin(), first.end(), first.begin());
     coupling.first = to_device(first, "coupling first");
     coupling.source = View<LocalIndex*>("coupling source", first.back());
     coupling.component = View<std::uint8_t*>("coupling component", first.back());
-    for_numbers([&](LocalIndex row, LocalIndex slot, int component, LocalIndex place) {
-      const LocalIndex at = first[pair(row, slot)]++;
-      coupling.source(at) = place;
-      coupling.component(at) = static_cast<std::uint8_t>(component);
-    });
+    coupling.length = View<std::uint8_t*>("coupling length", first.back());
+    for_runs(
+        [&](LocalIndex pair, int component, LocalIndex place) {
+          const LocalIndex at = first[pair]++;
+          coupling.source(at) = place;
+          coupling.component(at) = static_cast<std::uint8_t>(component);
+          coupling.length(at) = 1;
+        },
+        [&](LocalIndex pair) { ++coupling.length(first[pair] - 1); });
   }
 
   const BlockProblem& problem_;

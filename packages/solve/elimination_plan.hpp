@@ -22,9 +22,10 @@ using LocalIndices = std::vector<LocalIndex>;
 
 View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name);
 
-/// out(target(k)) = value k of the matrix.
+/// out(target(k) + i) = value k * width + i of the matrix, i < width.
 struct Scatter {
   RCP<const CrsMatrix> matrix;
+  int width;  ///< so many values always stay together
   View<LocalIndex*> target;
 
   void operator()(const View<Real*>& out) const;
@@ -39,16 +40,18 @@ struct Response {
   std::vector<Scatter> fill;        ///< A_zb -> values of owned slots
   View<std::size_t*> column_start;  ///< [slot + 1] first column of a slot; its first value is m times that
   View<GlobalIndex*> column;        ///< [all columns] global unknown of b; only while graphs are made
-  View<Real*> value;
+  View<Real*> value;                ///< only in an update
 };
 
-/// A_az of one remaining block a: where the numbers stand that couple a row with the unknowns of a slot.
+/// A_az of one remaining block a: where the numbers stand that couple a row with the unknowns of a slot, in runs of
+/// numbers that follow one another there and in the entity.
 struct Coupling {
   View<LocalIndex*> row_start;    ///< [owned row + 1] first pair of a row and a slot that couple
   View<LocalIndex*> slot;         ///< [pair]
-  View<LocalIndex*> first;        ///< [pair + 1] first number of a pair
-  View<LocalIndex*> source;       ///< [number] where it stands in A_az
-  View<std::uint8_t*> component;  ///< [number] the unknown within the entity, of 0 ... m-1, which tells z as well
+  View<LocalIndex*> first;        ///< [pair + 1] first run of a pair
+  View<LocalIndex*> source;       ///< [run] where it starts in A_az
+  View<std::uint8_t*> component;  ///< [run] its first unknown within the entity, of 0 ... m-1, which tells z as well
+  View<std::uint8_t*> length;     ///< [run]
 };
 
 /// One local group. [r] counts remaining blocks.

@@ -208,8 +208,11 @@ View<LocalIndex*> all_rows(const CrsMatrix& matrix) {
 void Scatter::operator()(const View<Real*>& out) const {
   const auto values = values_of(*matrix);
   const auto to = target;
+  const int n = width;
   Kokkos::parallel_for(
-      "scatter values", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) { out(to(k)) = values(k); });
+      "scatter values", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        for (int i = 0; i < n; ++i) out(to(k) + i) = values(static_cast<std::size_t>(k) * n + i);
+      });
 }
 
 LocalElimination::LocalElimination(BlockProblem& problem)
@@ -236,10 +239,12 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
   }
   std::string failure;
   for (auto& group : plan_.groups) set_scales(problem, group);
-  for (auto& group : plan_.groups)
+  for (auto& group : plan_.groups) {
     if (factor(group, failure))
       for (int r = 0; r < n_remaining(); ++r)
         for (int s = 0; s < n_remaining(); ++s) condense(group, r, s);
+    for (auto& response : group.response) response.value = {};
+  }
 
   std::uint64_t sum = 0;
   for (int r = 0; r < n_remaining(); ++r)
@@ -346,10 +351,10 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     return false;
   }
   for (auto& response : group.response) {
-    const auto z = response.value;
-    Kokkos::deep_copy(z, 0.0);
-    for (const auto& fill : response.fill) fill(z);
     const auto start = response.column_start;
+    const View<Real*> z("responses", m * start(start.extent(0) - 1) + Response::strip);
+    response.value = z;
+    for (const auto& fill : response.fill) fill(z);
     in_widest_instructions([&] {
       Kokkos::parallel_for(
           "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
@@ -380,8 +385,11 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
           RowWalk walk(local.graph, row);
           for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair) {
             for (int i = 0; i < m; ++i) factor[i] = 0;
-            for (LocalIndex k = coupling.first(pair); k < coupling.first(pair + 1); ++k)
-              factor[coupling.component(k)] = values_of_component[coupling.component(k)][coupling.source(k)];
+            for (LocalIndex run = coupling.first(pair); run < coupling.first(pair + 1); ++run) {
+              const int component = coupling.component(run);
+              for (int i = 0; i < coupling.length(run); ++i)
+                factor[component + i] = values_of_component[component][coupling.source(run) + i];
+            }
             const auto first = column_start(coupling.slot(pair)), end = column_start(coupling.slot(pair) + 1);
             const auto n_columns = static_cast<LocalIndex>(end - first);
             for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
