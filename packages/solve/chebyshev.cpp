@@ -32,7 +32,6 @@ Chebyshev::Chebyshev(const NodeMatrix& A) : size_(A.height), graph_(A.graph), ma
   root_ = View<Real*>("roots", static_cast<std::size_t>(halo.n_all()) * size_);
   x_ = vector(halo.n_all());
   next_ = vector(halo.n_all());
-  b_ = vector(halo.n_owned());
   step_ = vector(halo.n_owned());
 }
 
@@ -117,14 +116,11 @@ void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) cons
   const Real high = margin * widest, low = usual_smallest * shorter * shorter * widest;
   const Real middle = (high + low) / 2, half = (high - low) / 2, sigma = middle / half;
   const auto root = root_;
-  const auto scaled = b_, step = step_;
+  const auto step = step_;
   auto from = x_, to = next_;
   const Policy rows(0, graph_.n_rows() * size_);
   Kokkos::parallel_for(
-      "first step", rows, KOKKOS_LAMBDA(LocalIndex i) {
-        scaled(i) = root(i) * b(i);
-        from(i) = step(i) = scaled(i) / middle;
-      });
+      "first step", rows, KOKKOS_LAMBDA(LocalIndex i) { from(i) = step(i) = root(i) * b(i) / middle; });
   Real rho = 1 / sigma;
   for (int k = 1; k < degree_; ++k) {
     const Real next_rho = 1 / (2 * sigma - rho), keep = next_rho * rho, gain = 2 * next_rho / half;
@@ -133,7 +129,7 @@ void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) cons
       matrix_.multiply<m>(from, [=](LocalIndex i, const Real* sum) {
         for (int r = 0; r < m; ++r) {
           const LocalIndex row = i * m + r;
-          step(row) = keep * step(row) + gain * (scaled(row) - sum[r]);
+          step(row) = keep * step(row) + gain * (root(row) * b(row) - sum[r]);
           to(row) = from(row) + step(row);
         }
       });

@@ -40,7 +40,7 @@ class Chebyshev {
   RoundedMatrix matrix_;  // D^-1/2 A D^-1/2
   View<Real*> root_;      // D^-1/2 [all]
   Real largest_ = 1, widening_ = 1;
-  mutable View<Real*> b_, step_, x_, next_;  // times D^1/2 or D^-1/2
+  mutable View<Real*> step_, x_, next_;  // times D^1/2 or D^-1/2
 };
 
 }  // namespace sprekk::solve

@@ -28,6 +28,12 @@ KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, c
   }
 }
 
+std::size_t longest_row(const View<std::size_t*>& start) {
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i + 1 < start.extent(0); ++i) longest = std::max(longest, start(i + 1) - start(i));
+  return longest;
+}
+
 }  // namespace
 
 Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& aggregates,
@@ -91,10 +97,10 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   const auto R = make_rows(n_coarse, n_all, [&](LocalIndex I, const auto& add) {
     for (const std::size_t e : in_row[I]) add(row_of[e]);
   });
-  slot_transposed_ = Slots("transposed", R.node.extent(0));
+  slot_transposed_ = Slots(R.node.extent(0), longest_row(P.start));
   for (LocalIndex I = 0; I < n_coarse; ++I)
-    std::transform(in_row[I].begin(), in_row[I].end(), slot_transposed_.data() + R.start(I),
-                   [&](std::size_t e) { return static_cast<Slot>(e - P.start(row_of[e])); });
+    for (std::size_t k = 0; k < in_row[I].size(); ++k)
+      slot_transposed_.set(R.start(I) + k, static_cast<Slot>(in_row[I][k] - P.start(row_of[in_row[I][k]])));
   const auto C = make_rows(n_coarse, coarse->n_all(), [&](LocalIndex I, const auto& add) {
     for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
       for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s) add(column_AP(s));
@@ -141,7 +147,7 @@ void Galerkin::find_slots_of_fine_rows(const std::vector<bool>& far, const View<
                                        const View<LocalIndex*>& column_AP) {
   const auto start_P = start_P_all_;
   const LocalIndex n_owned = fine_.n_rows();
-  slot_P_ = Slots("slots of P", fine_.n_entries());
+  slot_P_ = View<Slot*>("slots of P", fine_.n_entries());
   first_slot_AP_ = View<std::size_t*>("first slots of A P", n_owned + 1);
   for (LocalIndex i = 0; i < n_owned; ++i) {
     std::size_t n = 0;
@@ -149,7 +155,7 @@ void Galerkin::find_slots_of_fine_rows(const std::vector<bool>& far, const View<
       n += start_P(fine_.column(e) + 1) - start_P(fine_.column(e));
     first_slot_AP_(i + 1) = first_slot_AP_(i) + n;
   }
-  slot_AP_ = Slots("slots of A P", first_slot_AP_(n_owned));
+  slot_AP_ = Slots(first_slot_AP_(n_owned), longest_row(start_AP_all_));
   const LocalIndex n_columns = P_.graph.columns->n_all();
   Places in_P(n_columns), in_AP(n_columns);
   for (LocalIndex i = 0; i < n_owned; ++i) {
@@ -161,7 +167,7 @@ void Galerkin::find_slots_of_fine_rows(const std::vector<bool>& far, const View<
       const bool both = aggregate(i) >= 0 && aggregate(j) >= 0;
       slot_P_(e) = !both ? nowhere : far[e] ? in_P[aggregate(i)] | out_of_reach : in_P[aggregate(j)];
       for (std::size_t s = start_P(j); aggregate(i) >= 0 && s < start_P(j + 1); ++s)
-        slot_AP_(at++) = in_AP[column_P_all_(s)];
+        slot_AP_.set(at++, in_AP[column_P_all_(s)]);
     }
   }
 }
@@ -171,7 +177,7 @@ void Galerkin::find_slots_of_coarse_rows(const std::vector<bool>& far, const Vie
                                          const View<LocalIndex*>& column_AP) {
   const auto &start_AP = start_AP_all_, &start_R = R_.graph.start;
   const LocalIndex n_coarse = R_.graph.n_rows();
-  slot_R_ = Slots("slots of R", fine_.n_entries());
+  slot_R_ = View<Slot*>("slots of R", fine_.n_entries());
   Kokkos::deep_copy(slot_R_, nowhere);
   first_slot_coarse_ = View<std::size_t*>("first slots", n_coarse + 1);
   for (LocalIndex I = 0; I < n_coarse; ++I) {
@@ -179,7 +185,7 @@ void Galerkin::find_slots_of_coarse_rows(const std::vector<bool>& far, const Vie
     for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
       first_slot_coarse_(I + 1) += start_AP(R_.graph.column(e) + 1) - start_AP(R_.graph.column(e));
   }
-  slot_coarse_ = Slots("slots of R A P", first_slot_coarse_(n_coarse));
+  slot_coarse_ = Slots(first_slot_coarse_(n_coarse), longest_row(coarse_.graph.start));
   Places in_R(fine_.columns->n_all()), in_coarse(coarse_.graph.columns->n_all());
   for (LocalIndex I = 0; I < n_coarse; ++I) {
     in_R.enter(start_R, R_.graph.column, I);
@@ -193,7 +199,7 @@ void Galerkin::find_slots_of_coarse_rows(const std::vector<bool>& far, const Vie
     std::size_t at = first_slot_coarse_(I);
     for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
       for (std::size_t s = start_AP(R_.graph.column(e)); s < start_AP(R_.graph.column(e) + 1); ++s)
-        slot_coarse_(at++) = in_coarse[column_AP(s)];
+        slot_coarse_.set(at++, in_coarse[column_AP(s)]);
   }
 }
 
@@ -377,10 +383,8 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
 
 std::size_t Galerkin::bytes() const {
   return sizeof(float) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0)) +
-         sizeof(Real) * coarse_.value.extent(0) +
-         sizeof(Slot) * (slot_transposed_.extent(0) + slot_P_.extent(0) + slot_R_.extent(0) + slot_AP_.extent(0) +
-                         slot_coarse_.extent(0)) +
-         slices_.bytes();
+         sizeof(Real) * coarse_.value.extent(0) + sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0)) +
+         slot_transposed_.bytes() + slot_AP_.bytes() + slot_coarse_.bytes() + slices_.bytes();
 }
 
 }  // namespace sprekk::solve

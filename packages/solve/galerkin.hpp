@@ -29,7 +29,28 @@ class Galerkin {
 
  private:
   using Slot = std::uint16_t;  // a place in a row; in slot_P_ and slot_R_ perhaps marked as out of reach
-  using Slots = View<Slot*>;
+
+  /// Places in rows of at most so many entries, in one byte each if that will do.
+  class Slots {
+   public:
+    Slots() = default;
+    Slots(std::size_t n, std::size_t longest_row)
+        : narrow_("slots", longest_row <= 256 ? n : 0), wide_("slots", longest_row <= 256 ? 0 : n) {}
+    KOKKOS_FORCEINLINE_FUNCTION std::size_t operator()(std::size_t k) const {
+      return wide_.extent(0) == 0 ? narrow_(k) : wide_(k);
+    }
+    void set(std::size_t k, Slot slot) const {
+      if (wide_.extent(0) == 0)
+        narrow_(k) = static_cast<std::uint8_t>(slot);
+      else
+        wide_(k) = slot;
+    }
+    std::size_t bytes() const { return narrow_.extent(0) + sizeof(Slot) * wide_.extent(0); }
+
+   private:
+    View<std::uint8_t*> narrow_;
+    View<Slot*> wide_;
+  };
 
   void find_members(const Aggregates& aggregates);
   void find_slots_of_fine_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
@@ -48,11 +69,11 @@ class Galerkin {
   View<LocalIndex*> column_P_all_;
   View<float*> value_P_all_;
   View<std::size_t*> start_AP_all_;   // the same of A P, of which there are slices only
-  Slots slot_P_;                      // [entry of A] where its column's aggregate is in the row of P
+  View<Slot*> slot_P_;                // [entry of A] where its column's aggregate is in the row of P
   Slots slot_AP_;                     // [owned row, entry of A, entry of P] where the product goes in the row of A P
   View<std::size_t*> first_slot_AP_;  // [owned row]
   Slots slot_transposed_;             // [entry of R] where the entry is in the row of P
-  Slots slot_R_;                      // [entry of A] where its column is in the row of R of its row's aggregate
+  View<Slot*> slot_R_;                // [entry of A] where its column is in the row of R of its row's aggregate
   Slots slot_coarse_;                 // [coarse row, entry of R, entry of A P] where the product goes
   View<std::size_t*> first_slot_coarse_;  // [coarse row]
   View<std::size_t*> first_member_;       // [coarse row]
