@@ -40,7 +40,7 @@ void check_names(const ParameterList& given, const std::vector<ParameterList>& a
 
 /// What the Krylov methods that are used here, or the one that is asked for, know.
 std::vector<ParameterList> belos_parameters(const ParameterList& given) {
-  std::vector<std::string> methods = {"Pseudo Block CG", "Flexible GMRES"};
+  std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};
   if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
   std::vector<ParameterList> lists(1);
   lists[0].set("Solver Type", "");
@@ -158,7 +158,7 @@ class IterativeSolver : public LinearSolver {
  private:
   void set_scale() {
     const auto& first = system_.diagonal.front();
-    const bool scalar = !solver_.is_null() && first.block.n_components == 1 && first.block.near_null_space.is_null();
+    const bool scalar = !solver_.is_null() && first.block.n_components == 1 && first.block.near_null_space.n() == 0;
     scale_ = scalar ? root_of_diagonal(*first.matrix, false) : Teuchos::null;
     if (!scalar) return;
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
@@ -331,6 +331,12 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
+  /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end.
+  const char* usual_method() const {
+    if (symmetric_) return "Pseudo Block CG";
+    return has_cycles_ && !families_ ? "Block GMRES" : "Flexible GMRES";
+  }
+
   /// Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are too many.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
@@ -340,7 +346,7 @@ class IterativeSolver : public LinearSolver {
     problem->setRightPrec(scale_.is_null() ? preconditioner_ : unscaled());
     problem->setProblem();
     const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
-    const std::string method = list->get("Solver Type", symmetric_ ? "Pseudo Block CG" : "Flexible GMRES");
+    const std::string method = list->get("Solver Type", usual_method());
     list->remove("Solver Type");
     if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
     list->get("Convergence Tolerance", tolerance);
