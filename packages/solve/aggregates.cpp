@@ -143,7 +143,7 @@ Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
   return all[1] > 0 ? all[0] / all[1] : 1;
 }
 
-Aggregates aggregate(const Nodes& nodes) {
+Aggregates aggregate(const Nodes& nodes, std::size_t enough) {
   const auto& [start, neighbour] = nodes.neighbours;
   const auto reaches = reach(nodes);
   const auto n = static_cast<LocalIndex>(nodes.free.size());
@@ -156,11 +156,27 @@ Aggregates aggregate(const Nodes& nodes) {
           nodes.place.empty() || distance(nodes.place[i], nodes.place[j]) <= std::fmax(reaches[i], reaches[j]))
         work(j);
   };
+  std::vector<LocalIndex> members, links(n, 0), near;
+  const auto take = [&](LocalIndex i, LocalIndex j) {
+    if (!nodes.free[j] || of[j] >= 0) return;
+    of[j] = of[i];
+    members.push_back(j);
+  };
   const auto make = [&](LocalIndex i) {
     of[i] = result.n++;
-    each(i, [&](LocalIndex j) {
-      if (nodes.free[j] && of[j] < 0) of[j] = of[i];
-    });
+    members.assign(1, i);
+    each(i, [&](LocalIndex j) { take(i, j); });
+    if (members.size() >= enough) return;
+    for (const LocalIndex j : members)
+      each(j, [&](LocalIndex k) {
+        if (nodes.free[k] && of[k] < 0 && links[k]++ == 0) near.push_back(k);
+      });
+    std::stable_sort(near.begin(), near.end(), [&](LocalIndex k, LocalIndex l) { return links[k] > links[l]; });
+    for (const LocalIndex k : near) {
+      if (members.size() < enough) take(i, k);
+      links[k] = 0;
+    }
+    near.clear();
   };
   for (LocalIndex i = 0; i < n; ++i) {
     bool alone = nodes.free[i] && of[i] < 0 && start[i + 1] > start[i];

@@ -42,12 +42,13 @@ Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm);
 
 /// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours in reach are all in no
 /// aggregate yet makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel
-/// and Brezina 1996). Aggregates hold nodes of one rank only. Stored data.
+/// and Brezina 1996). One with fewer nodes than `enough` also takes neighbours of these neighbours, those first that
+/// most of these are neighbours of. Aggregates hold nodes of one rank only. Stored data.
 struct Aggregates {
   LocalIndex n = 0;
   std::vector<LocalIndex> of;
 };
-Aggregates aggregate(const Nodes& nodes);
+Aggregates aggregate(const Nodes& nodes, std::size_t enough = 0);
 
 /// An orthonormal basis of the motions on each aggregate: [node, unknown, mode], zero for motions that others make up.
 /// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis. Stored data.
