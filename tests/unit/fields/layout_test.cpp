@@ -31,6 +31,26 @@ const std::vector<Field> all_fields = {{"displacement", Entity::node, 3, "m"},
                                        {"pressure", Entity::cell, 1, "Pa"},
                                        {"side bubble", Entity::fracture_face, 4, "m"}};
 
+TEST(Maps, StoreNoNumbersThatFollowOneAnother) {
+  const auto comm = Tpetra::getDefaultComm();
+  const int rank = comm->getRank(), size = comm->getSize();
+  std::vector<GlobalIndex> in_order, dealt;
+  for (GlobalIndex i = 0; i < rank + 2; ++i) {
+    in_order.push_back(GlobalIndex(rank) * (rank + 3) / 2 + i);  // 2, 3, 4, ... numbers on ranks 0, 1, 2, ...
+    dealt.push_back(i * size + (size - 1 - rank));
+  }
+  const auto first = make_map(in_order, comm);
+  EXPECT_TRUE(first->isContiguous());
+  for (std::size_t i = 0; i < in_order.size(); ++i) EXPECT_EQ(first->getGlobalElement(i), in_order[i]);
+  const auto second = make_map(dealt, comm);
+  EXPECT_EQ(second->getNodeNumElements(), dealt.size());
+  for (std::size_t i = 0; i < dealt.size(); ++i) EXPECT_EQ(second->getGlobalElement(i), dealt[i]);
+  const auto none = make_map(rank == 0 ? std::vector<GlobalIndex>{0, 1} : std::vector<GlobalIndex>(), comm);
+  EXPECT_TRUE(none->isContiguous());
+  EXPECT_EQ(none->getGlobalNumElements(), 2u);
+  EXPECT_EQ(none->getNodeNumElements(), rank == 0 ? 2u : 0u);
+}
+
 GlobalIndex n_global(const mesh::Mesh& mesh, Entity entity) {
   return entity == Entity::node   ? mesh.n_global_nodes
          : entity == Entity::cell ? mesh.n_global_cells

@@ -78,6 +78,31 @@ TEST(Aggregates, HoldEveryFreeNodeOnceAndNoOther) {
   EXPECT_LT(8 * aggregates.n, static_cast<LocalIndex>(nodes.free.size()) + 64);
 }
 
+/// Fewer aggregates, each still in one piece.
+TEST(Aggregates, TakeNeighboursOfNeighbours) {
+  const Truss truss(12, false, 0, 0, true);
+  const auto nodes = solve::nodes_of(solve::node_matrix(*truss.matrix, 3), truss.modes);
+  const auto& [start, neighbour] = nodes.neighbours;
+  const auto few = solve::aggregate(nodes), many = solve::aggregate(nodes, 36);
+  EXPECT_LT(5 * many.n, 4 * few.n);
+  std::vector<std::vector<LocalIndex>> members(many.n);
+  for (std::size_t i = 0; i < many.of.size(); ++i) members.at(many.of[i]).push_back(static_cast<LocalIndex>(i));
+  for (const auto& all : members) {
+    ASSERT_FALSE(all.empty());
+    std::vector<bool> reached(nodes.free.size(), false);  // over bars within the aggregate
+    std::vector<LocalIndex> next(1, all.front());
+    reached[all.front()] = true;
+    std::size_t n = 0;
+    for (; n < next.size(); ++n)
+      for (std::size_t k = start[next[n]]; k < start[next[n] + 1]; ++k)
+        if (const LocalIndex j = neighbour[k]; !reached[j] && many.of[j] == many.of[all.front()]) {
+          reached[j] = true;
+          next.push_back(j);
+        }
+    EXPECT_EQ(n, all.size());
+  }
+}
+
 /// The basis of each aggregate is orthonormal, and with the coarse motions gives the fine ones.
 TEST(Aggregates, KeepRigidMotions) {
   const Truss truss(7);

@@ -88,6 +88,17 @@ TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
   }
 }
 
+/// With aggregates of more than a node's neighbours.
+TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
+  for (const int n : {9, 15, 21}) {
+    const Truss truss(n, true, 0, 0, true);
+    solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
+    M.setup(truss.matrix, true);
+    EXPECT_LT(contraction(*truss.matrix, M), 0.75) << n;
+    EXPECT_LT(M.operator_complexity(), 1.25) << n;
+  }
+}
+
 TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
   const auto flatness = [](Real h, bool placed) {
     const FlatCells cells(8, h);

@@ -21,10 +21,10 @@ using solve::NodeMatrix;
 
 /// Bars between all nodes of a lattice [n, n, height] that are at most sqrt(3) apart, each with a stiffness of its
 /// own: rigid motions cost nothing. `held` nodes with x = 0 are prescribed; `skew` makes it unsymmetric and keeps the
-/// translations.
+/// translations; `few`: only the 14 bars of a node that are edges where six tetrahedra make up each cube.
 struct Truss {
-  explicit Truss(int n_, bool held = false, Real skew = 0, int height_ = 0)
-      : n(n_), height(height_ > 0 ? height_ : n_) {
+  explicit Truss(int n_, bool held = false, Real skew = 0, int height_ = 0, bool few_ = false)
+      : n(n_), height(height_ > 0 ? height_ : n_), few(few_) {
     const auto comm = Tpetra::getDefaultComm();
     const int n_nodes = n * n * height, rank = comm->getRank(), size = comm->getSize();
     std::vector<GlobalIndex> unknowns;  // uneven parts
@@ -47,6 +47,8 @@ struct Truss {
     for (int k = 0; k < 27; ++k) {
       const std::array<int, 3> d = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, q = {p[0] + d[0], p[1] + d[1], p[2] + d[2]};
       const int square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      const auto [least, most] = std::minmax_element(d.begin(), d.end());
+      if (few && *least < 0 && *most > 0) continue;
       if (square == 0 || *std::min_element(q.begin(), q.end()) < 0 || std::max(q[0], q[1]) >= n || q[2] >= height)
         continue;
       const GlobalIndex other = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
@@ -76,6 +78,7 @@ struct Truss {
   }
 
   int n, height;
+  bool few;
   RCP<Map> map;
   RCP<CrsMatrix> matrix;
   RCP<MultiVector> modes;
