@@ -1,4 +1,4 @@
-// Device copies of the mesh's cells, and integrals over cells and faces on the host.
+// What kernels read of the mesh's cells, and integrals over cells and faces on the host.
 #pragma once
 
 #include "assembly/reference_cell.hpp"
@@ -11,7 +11,7 @@
 
 namespace sprekk::assembly {
 
-/// What a kernel over cells reads of the mesh, which must stay.
+/// What a kernel over cells reads of the mesh, which must stay as it is.
 struct Geometry {
   ConstView<Real**> coordinates;  ///< [node, component], m
   ConstView<LocalIndex**> cells;  ///< [cell, local node]

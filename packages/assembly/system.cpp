@@ -81,9 +81,8 @@ void check_names(std::vector<std::string> names, const char* what) {
 RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout& layout) {
   const bool on_facets = layout.field().entity == Entity::facet;
   const auto& all = on_facets ? mesh.facets->id : mesh.node_id;
-  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  const Teuchos::ArrayView<const GlobalIndex> ids(all.data(), layout.n_owned_entities());
-  auto coordinates = rcp(new MultiVector(rcp(new const fields::Map(unknown, ids, 0, mesh.comm)), mesh.dim()));
+  const std::vector<GlobalIndex> ids(all.begin(), all.begin() + layout.n_owned_entities());
+  auto coordinates = rcp(new MultiVector(fields::make_map(ids, mesh.comm), mesh.dim()));
   auto view = coordinates->getLocalViewHost(Tpetra::Access::OverwriteAll);
   for (LocalIndex n = 0; n < layout.n_owned_entities() && !on_facets; ++n)
     for (int i = 0; i < mesh.dim(); ++i) view(n, i) = mesh.coordinates[n * mesh.dim() + i];

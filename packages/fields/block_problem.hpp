@@ -7,11 +7,13 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sprekk::fields {
 
-/// Vectors that a matrix makes small, [owned unknown, mode], which are made when they are asked for.
+/// Vectors that a matrix makes small, [owned unknown, mode], which are made when they are asked for. make() is
+/// collective where there are any.
 class Modes {
  public:
   Modes() = default;

@@ -50,7 +50,7 @@ void KeptRows::keep(const View<char*>& rows) {
       "count values", Policy(0, n_kept),
       KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
         for_values(now.row(k), [&](std::size_t, Real) { ++sum; });
-        if (last) now.start(k + 1) = sum;
+        if (last) now.first_value(k + 1) = sum;
       },
       n_values);
   std::size_t n_words = 0;
@@ -59,16 +59,16 @@ void KeptRows::keep(const View<char*>& rows) {
       KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
         const std::size_t length = J.graph.row_map(now.row(k) + 1) - J.graph.row_map(now.row(k));
         sum += (length + Rows::word - 1) / Rows::word;
-        if (last) now.first(k + 1) = sum;
+        if (last) now.first_word(k + 1) = sum;
       },
       n_words);
   now.present = View<std::uint64_t*>("present", n_words);
   now.value = View<Real*>("kept values", n_values);
   Kokkos::parallel_for(
       "keep values", Policy(0, n_kept), KOKKOS_LAMBDA(LocalIndex k) {
-        auto to = now.start(k);
+        auto to = now.first_value(k);
         for_values(now.row(k), [&](std::size_t at, Real a) {
-          now.present(now.first(k) + at / Rows::word) |= std::uint64_t(1) << at % Rows::word;
+          now.present(now.first_word(k) + at / Rows::word) |= std::uint64_t(1) << at % Rows::word;
           now.value(to++) = a;
         });
       });

@@ -34,18 +34,18 @@ class KeptRows {
   struct Rows {
     static constexpr std::size_t word = 64;
 
-    View<LocalIndex*> number;      // [owned row] -1: it is J's
-    View<LocalIndex*> row;         // [number]
-    View<std::size_t*> start;      // [number + 1] of values that are not 0
-    View<std::size_t*> first;      // [number + 1] of words
-    View<std::uint64_t*> present;  // bit k % 64 of word k / 64 of a row: it has a value in place k of its row of J
+    View<LocalIndex*> number;        // [owned row] -1: it is J's
+    View<LocalIndex*> row;           // [number]
+    View<std::size_t*> first_value;  // [number + 1] of those that are not 0
+    View<std::size_t*> first_word;   // [number + 1]
+    View<std::uint64_t*> present;    // bit k % 64 of word k / 64 of a row: it has a value in place k of its row of J
     View<Real*> value;
 
     /// visit(place, value) for the values of a row that is kept, in their order.
     template <class Visit>
-    KOKKOS_FORCEINLINE_FUNCTION void for_values(LocalIndex number, const Visit& visit) const {
-      std::size_t i = start(number), place = 0;
-      for (std::size_t w = first(number); w < first(number + 1); ++w, place += word)
+    KOKKOS_FORCEINLINE_FUNCTION void for_values(LocalIndex k, const Visit& visit) const {
+      std::size_t i = first_value(k), place = 0;
+      for (std::size_t w = first_word(k); w < first_word(k + 1); ++w, place += word)
         for (std::uint64_t left = present(w); left != 0; left &= left - 1) visit(place + lowest(left), value(i++));
     }
     KOKKOS_FORCEINLINE_FUNCTION static std::size_t lowest(std::uint64_t bits) { return __builtin_ctzll(bits); }

@@ -63,6 +63,12 @@ RCP<const Map> map_of(const Field& field, const mesh::Mesh& mesh, LocalIndex n) 
   return make_map(ids, mesh.comm);
 }
 
+/// The owned map itself where no rank has ghosts.
+RCP<const Map> map_with_ghosts(const Field& field, const mesh::Mesh& mesh, const RCP<const Map>& owned) {
+  const auto all = map_of(field, mesh, n_entities(mesh, field.entity, true));
+  return all->getGlobalNumElements() == owned->getGlobalNumElements() ? owned : all;
+}
+
 }  // namespace
 
 RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh) {
@@ -73,7 +79,7 @@ Layout::Layout(const Field& field, const mesh::Mesh& mesh)
     : field_(field),
       n_owned_entities_(n_entities(mesh, field.entity, false)),
       owned_(map_of(field, mesh, n_owned_entities_)),
-      ghosted_(map_of(field, mesh, n_entities(mesh, field.entity, true))),
+      ghosted_(map_with_ghosts(field, mesh, owned_)),
       import_(rcp(new const Import(owned_, ghosted_))) {}
 
 std::size_t Layout::halo_messages() const { return import_->getDistributor().getNumReceives(); }

@@ -30,7 +30,8 @@ inline BlockVector create_like(const BlockVector& x) {
   return y;
 }
 
-/// The map with these numbers on this rank. It stores none where they are 0, 1, ... over all ranks. Collective.
+/// The map with these numbers on this rank. Where they are 0, 1, ... over all ranks it stores none until it is asked
+/// for the list, as imports do. Collective.
 RCP<const Map> make_map(const std::vector<GlobalIndex>& numbers, const RCP<const Comm>& comm);
 
 inline void copy(const BlockVector& from, BlockVector& to) {

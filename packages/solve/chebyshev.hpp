@@ -29,7 +29,7 @@ class Chebyshev {
   /// w D^-1 with w = 4/3 over the largest eigenvalue of D^-1 A, [all nodes, unknown]: what smooths prolongators.
   View<Real*> damped_inverse_diagonal() const;
   int degree() const { return degree_; }
-  std::size_t bytes() const { return matrix_.bytes() + 5 * sizeof(Real) * root_.extent(0); }
+  std::size_t bytes() const { return matrix_.bytes() + 4 * sizeof(Real) * root_.extent(0); }
 
  private:
   void find_largest_eigenvalue();

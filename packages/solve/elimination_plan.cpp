@@ -1,6 +1,5 @@
 #include "solve/elimination_plan.hpp"
 
-#include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -137,7 +136,7 @@ class Planner {
 
   static LocalIndex n_owned(const GroupPlan& group) { return group.slots->n_owned(); }
 
-  /// The most targets of which so many always follow one another.
+  /// The largest width for which targets come in groups of so many that follow one another.
   static int common_width(const LocalIndices& target) {
     for (int width = max_small_size; width > 1; --width) {
       bool together = target.size() % width == 0;
@@ -251,20 +250,20 @@ class Planner {
       });
     };
     LocalIndices first(slots.column.size() + 1);
-    for_runs([&](LocalIndex pair, int, LocalIndex) { ++first[pair + 1]; }, [](LocalIndex) {});
+    for_runs([&](LocalIndex p, int, LocalIndex) { ++first[p + 1]; }, [](LocalIndex) {});
     std::partial_sum(first.begin(), first.end(), first.begin());
     coupling.first = to_device(first, "coupling first");
     coupling.source = View<LocalIndex*>("coupling source", first.back());
     coupling.component = View<std::uint8_t*>("coupling component", first.back());
     coupling.length = View<std::uint8_t*>("coupling length", first.back());
     for_runs(
-        [&](LocalIndex pair, int component, LocalIndex place) {
-          const LocalIndex at = first[pair]++;
+        [&](LocalIndex p, int component, LocalIndex place) {
+          const LocalIndex at = first[p]++;
           coupling.source(at) = place;
           coupling.component(at) = static_cast<std::uint8_t>(component);
           coupling.length(at) = 1;
         },
-        [&](LocalIndex pair) { ++coupling.length(first[pair] - 1); });
+        [&](LocalIndex p) { ++coupling.length(first[p] - 1); });
   }
 
   const BlockProblem& problem_;

@@ -331,7 +331,8 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end.
+  /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end. A sweep over
+  /// families is dear, and may have others in it.
   const char* usual_method() const {
     if (symmetric_) return "Pseudo Block CG";
     return has_cycles_ && !families_ ? "Block GMRES" : "Flexible GMRES";

@@ -26,14 +26,16 @@ constexpr Real least_coarsening = 0.8;
 
 /// Nodes of an aggregate of the finest level. In space a coarse node has six unknowns; nodes with few neighbours, as in
 /// tetrahedra, would make so many coarse ones that the levels below took half of the memory and time of the finest one.
-/// Where nodes inside of the rock have 26 neighbours, as in hexahedra, more nodes would only let cycles contract less.
-std::size_t enough_for(const Nodes& nodes) {
+/// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Collective.
+std::size_t enough_for(const Nodes& nodes, const NodeGraph& graph) {
   constexpr int modes_in_space = 6;
-  constexpr std::size_t many = 26, share = 20, enough = 36;
-  const auto& start = nodes.neighbours.start;
-  std::size_t with_many = 0;
-  for (std::size_t i = 0; i < nodes.free.size(); ++i) with_many += start[i + 1] - start[i] >= many;
-  return nodes.n_modes == modes_in_space && share * with_many < nodes.free.size() ? enough : 0;
+  constexpr std::size_t long_row = 27, enough = 36;
+  constexpr GlobalIndex share = 20;
+  if (nodes.n_modes != modes_in_space) return 0;
+  GlobalIndex here[2] = {0, graph.n_rows()}, all[2] = {};
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i) here[0] += graph.start(i + 1) - graph.start(i) >= long_row;
+  Teuchos::reduceAll(*graph.columns->owned()->getComm(), Teuchos::REDUCE_SUM, 2, here, all);
+  return share * all[0] < all[1] ? enough : 0;
 }
 
 /// Of the smoother on the finest level. Jumps that alternate along the long edges of fractures do no work on contact,
@@ -72,7 +74,7 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_comp
   degree_ = modes.is_null() ? Chebyshev::usual_degree : degree_for(flatness(nodes, *map_->getComm()));
   while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
     const auto& A = levels_.back().A;
-    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes) : 0);
+    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, A.graph) : 0);
     Nodes coarse;
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
     auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);

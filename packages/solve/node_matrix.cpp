@@ -20,7 +20,6 @@ struct ColumnNodes {
 
 ColumnNodes column_nodes(const CrsMatrix& A, int size) {
   const auto &rows = *A.getRowMap(), &columns = *A.getColMap();
-  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const LocalIndex n_owned = rows.getNodeNumElements() / size;
   std::vector<GlobalIndex> nodes(n_owned);
   std::unordered_map<GlobalIndex, LocalIndex> local;
@@ -38,10 +37,9 @@ ColumnNodes column_nodes(const CrsMatrix& A, int size) {
     if (is_new) nodes.push_back(node);
     result.node.push_back(at->second);
   }
-  const auto map = [&](std::size_t n) {
-    return rcp(new Map(invalid, Teuchos::arrayView(nodes.data(), n), 0, rows.getComm()));
-  };
-  result.halo = std::make_shared<Halo>(map(n_owned), map(nodes.size()));
+  const std::vector<GlobalIndex> owned(nodes.begin(), nodes.begin() + n_owned);
+  result.halo =
+      std::make_shared<Halo>(fields::make_map(owned, rows.getComm()), fields::make_map(nodes, rows.getComm()));
   return result;
 }
 
