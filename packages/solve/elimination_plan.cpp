@@ -274,6 +274,16 @@ class Planner {
 
 }  // namespace
 
+void Scatter::operator()(const View<Real*>& out) const {
+  const auto values = matrix->getLocalMatrixDevice().values;
+  const auto to = target;
+  const int n = width;
+  Kokkos::parallel_for(
+      "scatter values", Kokkos::RangePolicy<Execution>(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        for (int i = 0; i < n; ++i) out(to(k) + i) = values(static_cast<std::size_t>(k) * n + i);
+      });
+}
+
 EliminationPlan plan_elimination(const BlockProblem& problem) { return Planner(problem).plan(); }
 
 }  // namespace sprekk::solve

@@ -205,16 +205,6 @@ View<LocalIndex*> all_rows(const CrsMatrix& matrix) {
 
 }  // namespace
 
-void Scatter::operator()(const View<Real*>& out) const {
-  const auto values = values_of(*matrix);
-  const auto to = target;
-  const int n = width;
-  Kokkos::parallel_for(
-      "scatter values", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
-        for (int i = 0; i < n; ++i) out(to(k) + i) = values(static_cast<std::size_t>(k) * n + i);
-      });
-}
-
 LocalElimination::LocalElimination(BlockProblem& problem)
     : comm_(problem.comm()), matrix_(&problem.matrix()), plan_(plan_elimination(problem)) {
   for (int r = 0; r < n_remaining(); ++r) {
