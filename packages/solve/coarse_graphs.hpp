@@ -1,12 +1,10 @@
-// Graphs of the products that lead to the next level of multigrid, and where numbers go in them.
+// Graphs of the products that lead to the next level of multigrid.
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "base/check.hpp"
 #include "solve/aggregates.hpp"
 
 namespace sprekk::solve {
@@ -49,27 +47,5 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const fields::Map& m
 
 /// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
-
-/// Where columns are in the row that was entered last; nowhere if they are not.
-class Places {
- public:
-  static constexpr std::uint16_t nowhere = 0xffff, out_of_reach = 0x8000;  ///< rows are shorter than the latter
-
-  explicit Places(LocalIndex n_columns) : slot_(n_columns, nowhere) {}
-
-  /// Throws where the row is too long.
-  void enter(const View<std::size_t*>& start, const View<LocalIndex*>& column, LocalIndex row) {
-    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = nowhere;
-    begin_ = start(row), end_ = start(row + 1);
-    SPREKK_CHECK(end_ - begin_ < out_of_reach, "multigrid: a node couples to {} others; allowed are less than {}",
-                 end_ - begin_, out_of_reach);
-    for (std::size_t k = begin_; k < end_; ++k) slot_[column(k)] = static_cast<std::uint16_t>(k - begin_);
-  }
-  std::uint16_t operator[](LocalIndex column) const { return slot_[column]; }
-
- private:
-  std::vector<std::uint16_t> slot_;
-  std::size_t begin_ = 0, end_ = 0;
-};
 
 }  // namespace sprekk::solve

@@ -1,6 +1,7 @@
 #include "solve/galerkin.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 #include "solve/coarse_graphs.hpp"
@@ -11,8 +12,6 @@ namespace {
 
 using fields::Map;
 using Policy = Kokkos::RangePolicy<Execution>;
-
-constexpr auto nowhere = Places::nowhere, out_of_reach = Places::out_of_reach;
 
 /// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
 template <int h, int b, int m, class Number>
@@ -28,10 +27,18 @@ KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, c
   }
 }
 
-std::size_t longest_row(const View<std::size_t*>& start) {
-  std::size_t longest = 0;
-  for (std::size_t i = 0; i + 1 < start.extent(0); ++i) longest = std::max(longest, start(i + 1) - start(i));
-  return longest;
+constexpr std::size_t word = 64;
+
+/// A bit for each; none where all are false.
+View<std::uint64_t*> in_bits(const std::vector<bool>& flags) {
+  if (std::find(flags.begin(), flags.end(), true) == flags.end()) return {};
+  const View<std::uint64_t*> bits("bits", (flags.size() + word - 1) / word);
+  for (std::size_t k = 0; k < flags.size(); ++k) bits(k / word) |= std::uint64_t(flags[k]) << k % word;
+  return bits;
+}
+
+KOKKOS_FORCEINLINE_FUNCTION bool is_set(const View<std::uint64_t*>& bits, std::size_t k) {
+  return bits.extent(0) > 0 && (bits(k / word) >> k % word & 1) != 0;
 }
 
 }  // namespace
@@ -81,29 +88,23 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
                                         *reached),
                               halo);
   const auto coarse = std::make_shared<Halo>(coarse_map, with_named(coarse_map, {P.node, AP.node}));
-  const auto aggregate_here = to_local(aggregate, *coarse->all());
+  aggregate_ = to_local(aggregate, *coarse->all());
+  far_ = in_bits(far);
   start_P_all_ = P.start;
   column_P_all_ = to_local(P.node, *coarse->all());
   start_AP_all_ = AP.start;
-  const auto column_AP = to_local(AP.node, *coarse->all());
+  column_AP_all_ = to_local(AP.node, *coarse->all());
 
-  std::vector<std::vector<std::size_t>> in_row(n_coarse);  // entries of P
-  std::vector<LocalIndex> row_of(P.node.extent(0));
+  std::vector<std::vector<LocalIndex>> named_by(n_coarse);  // rows of P
   for (LocalIndex k = 0; k < n_all; ++k)
-    for (std::size_t e = P.start(k); e < P.start(k + 1); ++e) {
-      row_of[e] = k;
-      if (column_P_all_(e) < n_coarse) in_row[column_P_all_(e)].push_back(e);
-    }
+    for (std::size_t e = P.start(k); e < P.start(k + 1); ++e)
+      if (column_P_all_(e) < n_coarse) named_by[column_P_all_(e)].push_back(k);
   const auto R = make_rows(n_coarse, n_all, [&](LocalIndex I, const auto& add) {
-    for (const std::size_t e : in_row[I]) add(row_of[e]);
+    for (const LocalIndex k : named_by[I]) add(k);
   });
-  slot_transposed_ = Slots(R.node.extent(0), longest_row(P.start));
-  for (LocalIndex I = 0; I < n_coarse; ++I)
-    for (std::size_t k = 0; k < in_row[I].size(); ++k)
-      slot_transposed_.set(R.start(I) + k, static_cast<Slot>(in_row[I][k] - P.start(row_of[in_row[I][k]])));
   const auto C = make_rows(n_coarse, coarse->n_all(), [&](LocalIndex I, const auto& add) {
     for (std::size_t e = R.start(I); e < R.start(I + 1); ++e)
-      for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s) add(column_AP(s));
+      for (std::size_t s = AP.start(R.node(e)); s < AP.start(R.node(e) + 1); ++s) add(column_AP_all_(s));
   });
 
   const auto values = [](std::size_t n) {
@@ -124,10 +125,6 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
                          static_cast<std::size_t>(n_modes) * n_modes * C.node.extent(0))};
   slices_ = make_slices(R_.graph, start_AP_all_);
   find_members(aggregates);
-  base::collectively(*halo.owned()->getComm(), [&] {
-    find_slots_of_fine_rows(far, aggregate_here, column_AP);
-    find_slots_of_coarse_rows(far, aggregate_here, column_AP);
-  });
 }
 
 void Galerkin::find_members(const Aggregates& aggregates) {
@@ -140,67 +137,6 @@ void Galerkin::find_members(const Aggregates& aggregates) {
   std::vector<std::size_t> next(first_member_.data(), first_member_.data() + n_coarse);
   for (LocalIndex i = 0; i < n_owned; ++i)
     if (aggregates.of[i] >= 0) member_(next[aggregates.of[i]]++) = i;
-}
-
-/// Of P and A P.
-void Galerkin::find_slots_of_fine_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
-                                       const View<LocalIndex*>& column_AP) {
-  const auto start_P = start_P_all_;
-  const LocalIndex n_owned = fine_.n_rows();
-  slot_P_ = View<Slot*>("slots of P", fine_.n_entries());
-  first_slot_AP_ = View<std::size_t*>("first slots of A P", n_owned + 1);
-  for (LocalIndex i = 0; i < n_owned; ++i) {
-    std::size_t n = 0;
-    for (std::size_t e = fine_.start(i); aggregate(i) >= 0 && e < fine_.start(i + 1); ++e)
-      n += start_P(fine_.column(e) + 1) - start_P(fine_.column(e));
-    first_slot_AP_(i + 1) = first_slot_AP_(i) + n;
-  }
-  slot_AP_ = Slots(first_slot_AP_(n_owned), longest_row(start_AP_all_));
-  const LocalIndex n_columns = P_.graph.columns->n_all();
-  Places in_P(n_columns), in_AP(n_columns);
-  for (LocalIndex i = 0; i < n_owned; ++i) {
-    std::size_t at = first_slot_AP_(i);
-    in_P.enter(start_P, column_P_all_, i);
-    in_AP.enter(start_AP_all_, column_AP, i);
-    for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e) {
-      const LocalIndex j = fine_.column(e);
-      const bool both = aggregate(i) >= 0 && aggregate(j) >= 0;
-      slot_P_(e) = !both ? nowhere : far[e] ? in_P[aggregate(i)] | out_of_reach : in_P[aggregate(j)];
-      for (std::size_t s = start_P(j); aggregate(i) >= 0 && s < start_P(j + 1); ++s)
-        slot_AP_.set(at++, in_AP[column_P_all_(s)]);
-    }
-  }
-}
-
-/// Of R and R A P.
-void Galerkin::find_slots_of_coarse_rows(const std::vector<bool>& far, const View<LocalIndex*>& aggregate,
-                                         const View<LocalIndex*>& column_AP) {
-  const auto &start_AP = start_AP_all_, &start_R = R_.graph.start;
-  const LocalIndex n_coarse = R_.graph.n_rows();
-  slot_R_ = View<Slot*>("slots of R", fine_.n_entries());
-  Kokkos::deep_copy(slot_R_, nowhere);
-  first_slot_coarse_ = View<std::size_t*>("first slots", n_coarse + 1);
-  for (LocalIndex I = 0; I < n_coarse; ++I) {
-    first_slot_coarse_(I + 1) = first_slot_coarse_(I);
-    for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
-      first_slot_coarse_(I + 1) += start_AP(R_.graph.column(e) + 1) - start_AP(R_.graph.column(e));
-  }
-  slot_coarse_ = Slots(first_slot_coarse_(n_coarse), longest_row(coarse_.graph.start));
-  Places in_R(fine_.columns->n_all()), in_coarse(coarse_.graph.columns->n_all());
-  for (LocalIndex I = 0; I < n_coarse; ++I) {
-    in_R.enter(start_R, R_.graph.column, I);
-    for (std::size_t at = first_member_(I); at < first_member_(I + 1); ++at) {
-      const LocalIndex i = member_(at);
-      for (std::size_t e = fine_.start(i); e < fine_.start(i + 1); ++e)
-        if (const LocalIndex j = fine_.column(e); aggregate(j) >= 0)
-          slot_R_(e) = far[e] ? in_R[i] | out_of_reach : in_R[j];
-    }
-    in_coarse.enter(coarse_.graph.start, coarse_.graph.column, I);
-    std::size_t at = first_slot_coarse_(I);
-    for (std::size_t e = start_R(I); e < start_R(I + 1); ++e)
-      for (std::size_t s = start_AP(R_.graph.column(e)); s < start_AP(R_.graph.column(e) + 1); ++s)
-        slot_coarse_.set(at++, in_coarse[column_AP(s)]);
-  }
 }
 
 void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, bool symmetric) {
@@ -226,7 +162,8 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
   const auto a = A.value;
   const auto p = value_P_all_, t = tentative_;
   const auto start = start_P_all_;
-  const auto slot = slot_P_;
+  const auto column = column_P_all_, aggregate = aggregate_;
+  const auto far = far_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -237,10 +174,9 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
           for (std::size_t s = 0; s < n; ++s) {
             Real sums[b][m] = {};
             for (std::size_t k = 0; k < n_a; ++k) {
-              const Slot found = slot(begin + k);
-              if (found == nowhere || (found & ~out_of_reach) != s) continue;
-              const LocalIndex j = graph.column(begin + k);
-              const float* const from = &t(static_cast<std::size_t>(found & out_of_reach ? i : j) * b * m);
+              const LocalIndex j = graph.column(begin + k), to = is_set(far, begin + k) ? i : j;
+              if (aggregate(j) < 0 || aggregate(to) != column(first + s)) continue;
+              const float* const from = &t(static_cast<std::size_t>(to) * b * m);
               for (int r = 0; r < b; ++r) {
                 const Real* const a_r = &a(b * b * begin + (r * n_a + k) * b);
                 const Real w = inverse_diagonal(static_cast<std::size_t>(i) * b + r);
@@ -260,8 +196,7 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
 void Galerkin::restrict_symmetric() const {
   const auto p = value_P_all_, r = R_.value;
   const auto start_P = start_P_all_, start = R_.graph.start;
-  const auto column = R_.graph.column;
-  const auto transposed = slot_transposed_;
+  const auto column = R_.graph.column, column_P = column_P_all_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -269,7 +204,8 @@ void Galerkin::restrict_symmetric() const {
           const std::size_t begin = start(I), n = start(I + 1) - begin;
           for (std::size_t k = 0; k < n; ++k) {
             const LocalIndex row = column(begin + k);
-            const std::size_t first = start_P(row), n_p = start_P(row + 1) - first, s = transposed(begin + k);
+            const std::size_t first = start_P(row), n_p = start_P(row + 1) - first;
+            const std::size_t s = Walk{&column_P(first), n_p}.find(I);
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c)
                 r(b * m * begin + (q * n + k) * b + c) = p(b * m * first + (c * n_p + s) * m + q);
@@ -283,8 +219,8 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
   const auto a = A.value;
   const auto r = R_.value, t = tentative_;
   const auto start = R_.graph.start, first_member = first_member_;
-  const auto member = member_;
-  const auto slot = slot_R_;
+  const auto member = member_, column_R = R_.graph.column, aggregate = aggregate_;
+  const auto far = far_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -296,13 +232,16 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
             const LocalIndex j = member(at);
             const std::size_t begin = graph.start(j), n_a = graph.start(j + 1) - begin;
             const float* const from = &t(static_cast<std::size_t>(j) * b * m);
+            const std::size_t own_place = Walk{&column_R(start(I)), n}.find(j);
+            Walk walk{&column_R(start(I)), n};
             for (std::size_t k = 0; k < n_a; ++k) {
-              const Slot s = slot(begin + k);
-              if (s == nowhere) continue;
-              const bool own = graph.column(begin + k) == j;
-              const LocalIndex column = s & out_of_reach ? j : graph.column(begin + k);
+              if (aggregate(graph.column(begin + k)) < 0) continue;
+              const bool own = graph.column(begin + k) == j, out_of_reach = is_set(far, begin + k);
+              const LocalIndex column = out_of_reach ? j : graph.column(begin + k);
+              const std::size_t s = out_of_reach ? own_place : walk.find(column);
+              if (s == n) continue;
               for (int q = 0; q < m; ++q) {
-                float* const to = row + (q * n + (s & ~out_of_reach)) * b;
+                float* const to = row + (q * n + s) * b;
                 for (int c = 0; c < b; ++c) {
                   Real sum = 0;
                   for (int d = 0; d < b; ++d) sum += from[d * m + q] * a(b * b * begin + (d * n_a + k) * b + c);
@@ -321,10 +260,10 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
   const auto graph = fine_;
   const auto a = A.value;
   const auto p = value_P_all_;
-  const auto start_P = start_P_all_, start = start_AP_all_, first_slot = first_slot_AP_;
+  const auto start_P = start_P_all_, start = start_AP_all_;
+  const auto column_P = column_P_all_, column = column_AP_all_;
   const auto made = slices_.made;
   const auto to = slices_.to, at_present = slices_.at;
-  const auto slots = slot_AP_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -334,15 +273,16 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
           at_present(i) = to(k_made);
           Real* const row = &AP(b * m * to(k_made));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
-          std::size_t at = first_slot(i);
+          Walk walk{&column(start(i)), n};
           for (std::size_t k = 0; k < n_a; ++k) {
             const LocalIndex j = graph.column(begin + k);
             const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
             if (n_p == 0) continue;
             const float* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
-            for (std::size_t s = 0; s < n_p; ++s, ++at)
-              add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + slots(at) * m, n * m);
+            for (std::size_t s = 0; s < n_p; ++s)
+              add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + walk.find(column_P(first_p + s)) * m,
+                                 n * m);
           }
         });
   });
@@ -351,10 +291,8 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
 void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex end) const {
   const auto r = R_.value;
   const auto out = coarse_.value;
-  const auto start_R = R_.graph.start, start_AP = start_AP_all_, start = coarse_.graph.start,
-             first_slot = first_slot_coarse_, at_present = slices_.at;
-  const auto column_R = R_.graph.column, column = coarse_.graph.column;
-  const auto slots = slot_coarse_;
+  const auto start_R = R_.graph.start, start_AP = start_AP_all_, start = coarse_.graph.start, at_present = slices_.at;
+  const auto column_R = R_.graph.column, column = coarse_.graph.column, column_AP = column_AP_all_;
   with_sizes(P_.height, P_.width, [&](auto size, auto modes) {
     constexpr int b = size(), m = modes();
     Kokkos::parallel_for(
@@ -362,7 +300,7 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
           const std::size_t n = start(I + 1) - start(I), begin = start_R(I), n_r = start_R(I + 1) - begin;
           Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
-          std::size_t at = first_slot(I);
+          Walk walk{&column(start(I)), n};
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
             const std::size_t n_ap = start_AP(fine + 1) - start_AP(fine);
@@ -371,8 +309,9 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
             Real block[m * b];
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c) block[q * b + c] = r(b * m * begin + (q * n_r + k) * b + c);
-            for (std::size_t s = 0; s < n_ap; ++s, ++at)
-              add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + slots(at) * m, n * m);
+            for (std::size_t s = 0; s < n_ap; ++s)
+              add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + walk.find(column_AP(start_AP(fine) + s)) * m,
+                                 n * m);
           }
           for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)
@@ -383,8 +322,9 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
 
 std::size_t Galerkin::bytes() const {
   return sizeof(float) * (tentative_.extent(0) + value_P_all_.extent(0) + R_.value.extent(0)) +
-         sizeof(Real) * coarse_.value.extent(0) + sizeof(Slot) * (slot_P_.extent(0) + slot_R_.extent(0)) +
-         slot_transposed_.bytes() + slot_AP_.bytes() + slot_coarse_.bytes() + slices_.bytes();
+         sizeof(Real) * coarse_.value.extent(0) +
+         sizeof(LocalIndex) * (column_P_all_.extent(0) + column_AP_all_.extent(0) + R_.graph.column.extent(0)) +
+         sizeof(std::uint64_t) * far_.extent(0) + slices_.bytes();
 }
 
 }  // namespace sprekk::solve

@@ -46,6 +46,23 @@ struct Numbers<0> {
   KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
 };
 
+/// Where columns stand in a list that has none twice: fast for those that come in its order, or nearly so.
+struct Walk {
+  const LocalIndex* column;
+  std::size_t n;
+  std::size_t at = 0;  // where the next one is looked for first
+
+  /// n if it is not there.
+  KOKKOS_FORCEINLINE_FUNCTION std::size_t find(LocalIndex wanted) {
+    for (std::size_t looked_at = 0; looked_at < n; ++looked_at) {
+      const std::size_t here = at;
+      at = at + 1 < n ? at + 1 : 0;
+      if (column[here] == wanted) return here;
+    }
+    return n;
+  }
+};
+
 /// work(height, width) with the sizes of a block as constants of compile time; false if there is no code for them.
 template <class Work>
 bool try_sizes(int height, int width, const Work& work) {
