@@ -3,6 +3,7 @@
 
 #include "assembly/order_one.hpp"
 #include "base/check.hpp"
+#include "fields/without_zeros.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 
@@ -268,10 +269,24 @@ void System::find_exchanges() {
   needs_ghosts_.assign(anywhere.begin(), anywhere.end());
 }
 
+namespace {
+
+/// Blocks that only linear modules write are never written again: numbers of theirs that are zero need no places. Those
+/// on the diagonal keep theirs, for the unknowns of a node are to stay together.
+void drop_zeros(BlockMatrix& linear, BlockMatrix& all) {
+  for (int i = 0; i < all.n_blocks(); ++i)
+    for (int j = 0; j < all.n_blocks(); ++j)
+      if (const auto A = linear(i, j); i != j && !A.is_null() && all(i, j) == A)
+        all(i, j) = linear(i, j) = fields::without_zeros(A);
+}
+
+}  // namespace
+
 void System::assemble_linear() {
   const auto scope = timers_->scope("assembly of the linear part");
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
+  drop_zeros(linear_, matrix_);
 }
 
 /// The linear part, to which jacobian() of the other modules is to be added.
@@ -288,18 +303,17 @@ void System::start_matrix() {
 }
 
 /// Blocks of flow are written over by what depends on the step, or measured anew in each.
-std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<fields::CrsMatrix>& J) {
-  const auto& A = linear_(block, block);
-  const bool constant = !A.is_null() && matrix_(block, block) == A && unknowns_[block].row != Quantity::flow;
-  if (!constant) return nullptr;
-  auto kept = linear_.kept(block);
-  if (kept) {
+std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const fields::Matrix>& J) {
+  if (auto kept = linear_.kept(block)) {
     kept->restore(*J);
     return kept;
   }
-  kept = std::make_shared<fields::KeptRows>(J);
-  linear_.share(block, J, kept);
-  matrix_.share(block, J, kept);
+  const auto& A = linear_(block, block);
+  const bool constant = !A.is_null() && matrix_(block, block) == A && unknowns_[block].row != Quantity::flow;
+  if (!constant) return nullptr;
+  const auto kept = std::make_shared<fields::KeptRows>(J);
+  linear_.share(block, kept);
+  matrix_.share(block, kept);
   return kept;
 }
 
@@ -329,6 +343,10 @@ void System::set_merit_weights() {
     if (A.is_null()) continue;
     A->getLocalDiagCopy(*diagonals_[b]);
     if (weights_[b]->normInf() > 0) continue;
+    if (unknowns_[b].row != Quantity::flow) {
+      weights_[b] = Teuchos::null;
+      continue;
+    }
     Tpetra::deep_copy(*weights_[b], *diagonals_[b]);
     auto w = weights_[b]->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < w.extent(0); ++i) w(i, 0) = w(i, 0) != 0 ? 1 / std::abs(w(i, 0)) : 0;

@@ -47,7 +47,7 @@ class System : public fields::BlockProblem {
   void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
   void jacobian(const fields::BlockVector& x) override;
   const fields::BlockMatrix& matrix() const override { return matrix_; }
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<fields::CrsMatrix>& J) override;
+  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override;
   bool stores() const override { return coupled_; }
   bool symmetric() const override { return symmetric_ && !coupled_; }
   bool symmetric_blocks() const override { return symmetric_; }
@@ -154,7 +154,7 @@ class System : public fields::BlockProblem {
   std::vector<View<Real**>> gains_;  // [block](owned entity, component) what was stored more in the last step, or empty
   std::vector<char> needs_ghosts_;   // [block]
   fields::BlockVector ghosted_;      // [block] unknowns with ghosts
-  fields::BlockVector weights_;      // [block] of merit()
+  fields::BlockVector weights_;      // [block] of merit(); null: 1/|diagonal|
   fields::BlockVector diagonals_;    // [block] of linear_; where rock and fluid couple, of flow: of matrix_
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_

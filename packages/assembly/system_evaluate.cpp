@@ -337,7 +337,8 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
-    const auto weight = const_view(*weights_[b]);
+    const bool weighted = !weights_[b].is_null();
+    const auto weight = const_view(weighted ? *weights_[b] : *diagonals_[b]);
     const auto diagonal = const_view(*diagonals_[b]);
     const bool flows = unknowns_[b].row == Quantity::flow, powers = flows && coupled_;
     const Real of_flow = flows ? rounding(x, unknowns_[b].value) : 0;
@@ -346,7 +347,10 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
           const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * diagonal(i);
-          if (!mask(i) && !(size <= 0)) s += (powers ? 1 / diagonal(i) : weight(i)) * size * size;
+          if (mask(i) || size <= 0) return;
+          const Real of_diagonal = diagonal(i) < 0 ? -diagonal(i) : diagonal(i);
+          const Real w = powers ? 1 / diagonal(i) : weighted ? weight(i) : of_diagonal > 0 ? 1 / of_diagonal : 0;
+          s += w * size * size;
         },
         part);
     sum += powers ? dt_ * part : part;  // the energy of a power

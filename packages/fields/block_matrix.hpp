@@ -18,12 +18,12 @@ class BlockMatrix {
   const RCP<CrsMatrix>& operator()(int row, int column) const { return blocks_[row * n_ + column]; }
   RCP<CrsMatrix>& operator()(int row, int column) { return blocks_[row * n_ + column]; }
 
-  /// From now on block (b, b) is stored in J, but for rows that are kept: these J may have otherwise.
-  void share(int b, const RCP<CrsMatrix>& J, const std::shared_ptr<KeptRows>& kept) {
-    (*this)(b, b) = J;
+  /// From now on block (b, b) is stored in another matrix, as `kept` knows; (b, b) itself is null.
+  void share(int b, const std::shared_ptr<KeptRows>& kept) {
+    (*this)(b, b) = Teuchos::null;
     kept_[b] = kept;
   }
-  /// Null where (b, b) has all its values.
+  /// Null where (b, b) stands by itself.
   const std::shared_ptr<KeptRows>& kept(int b) const { return kept_[b]; }
 
   /// y = sum_j A_ij x_j for every i. Collective.

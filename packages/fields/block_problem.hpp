@@ -81,10 +81,10 @@ class BlockProblem {
   virtual void jacobian(const BlockVector& x) = 0;
   virtual const BlockMatrix& matrix() const = 0;
   /// A block on the diagonal of matrix() that never changes: is asked to be stored in J from now on, a matrix whose
-  /// local columns begin with those of the block, with its values as they are and zeros elsewhere. Returns where rows
-  /// are to be kept before J is changed, and gives J the values of those that already are; null if the block stays
-  /// where it is.
-  virtual std::shared_ptr<KeptRows> share(int block, const RCP<CrsMatrix>& J) { return nullptr; }
+  /// local columns begin with those of the block, with its values as they are and zeros elsewhere. Returns where
+  /// numbers are to be kept before J is changed, and gives J those that already are; null if the block stays where it
+  /// is.
+  virtual std::shared_ptr<KeptRows> share(int block, const RCP<const Matrix>& J) { return nullptr; }
   /// What is stored over a time step enters f, so that shorter steps are easier to solve; else only their loads count.
   virtual bool stores() const { return false; }
   /// The present matrix() is symmetric after elimination of the local groups.

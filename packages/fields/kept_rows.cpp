@@ -6,113 +6,154 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Sums of a row: that of place p takes part in number p % n_sums, so that an addition need not wait for the one
-/// before, and rows have the same bits whether they are kept, without zeros, or not.
-constexpr int n_sums = 4;
-
-KOKKOS_INLINE_FUNCTION Real total(const Real (&sums)[n_sums]) { return (sums[0] + sums[1]) + (sums[2] + sums[3]); }
+/// Of marks that have those before.
+bool same(const KeptRows::Marks& before, const KeptRows::Marks& now) {
+  if (before.bits.extent(0) != now.bits.extent(0)) return false;
+  std::size_t n_other = 0;
+  Kokkos::parallel_reduce(
+      "new marks", Policy(0, now.bits.extent(0)),
+      KOKKOS_LAMBDA(std::size_t w, std::size_t & sum) { sum += before.bits(w) != now.bits(w); }, n_other);
+  return n_other == 0;
+}
 
 }  // namespace
 
-KeptRows::KeptRows(RCP<const CrsMatrix> J) : J_(J) {
-  kept_.number = View<LocalIndex*>("number of a row", J->getNodeNumRows());
-  Kokkos::deep_copy(kept_.number, -1);
+KeptRows::KeptRows(RCP<const Matrix> J) : J_(J) {
+  kept_.marks.number = View<LocalIndex*>("number of a row", J->numbers().n_rows());
+  Kokkos::deep_copy(kept_.marks.number, -1);
+  kept_.marks.first_word = View<std::size_t*>("words", 1);
 }
 
-void KeptRows::keep(const View<char*>& rows) {
-  const auto before = kept_;
-  const auto J = J_->getLocalMatrixDevice();
-  const Policy all(0, before.number.extent(0));
-  const auto number = before.number;
+KeptRows::Marks KeptRows::marks(const View<char*>& rows) const {
+  const auto before = kept_.marks;
+  const auto J = J_->numbers();
+  const Policy all(0, rows.extent(0));
   LocalIndex n_kept = 0;
   Kokkos::parallel_reduce(
-      "kept rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum) { sum += number(row) >= 0 || rows(row) != 0; },
-      n_kept);
-  if (n_kept == static_cast<LocalIndex>(before.row.extent(0))) return;
-  Rows now{View<LocalIndex*>("number of a row", number.extent(0)), View<LocalIndex*>("kept rows", n_kept),
-           View<std::size_t*>("kept values", n_kept + 1), View<std::size_t*>("words", n_kept + 1)};
+      "count rows", all,
+      KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum) { sum += before.number(row) >= 0 || rows(row) != 0; }, n_kept);
+  Marks now{View<LocalIndex*>("number of a row", rows.extent(0)),
+            View<LocalIndex*>("kept rows", n_kept),
+            View<std::size_t*>("words", n_kept + 1),
+            {}};
   Kokkos::parallel_scan(
       "number rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum, bool last) {
-        const bool keeps = number(row) >= 0 || rows(row) != 0;
+        const bool keeps = before.number(row) >= 0 || rows(row) != 0;
         if (last) now.number(row) = keeps ? sum : -1;
         if (last && keeps) now.row(sum) = row;
         sum += keeps;
       });
-  // visit(place, value) for values of A in a row that are not 0
-  const auto for_values = KOKKOS_LAMBDA(LocalIndex row, const auto& visit) {
-    if (const LocalIndex k = number(row); k >= 0) return before.for_values(k, visit);
-    const auto begin = J.graph.row_map(row);
-    for (auto i = begin; i < J.graph.row_map(row + 1); ++i)
-      if (J.values(i) != 0) visit(i - begin, J.values(i));
-  };
-  std::size_t n_values = 0;
-  Kokkos::parallel_scan(
-      "count values", Policy(0, n_kept),
-      KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
-        for_values(now.row(k), [&](std::size_t, Real) { ++sum; });
-        if (last) now.first_value(k + 1) = sum;
-      },
-      n_values);
   std::size_t n_words = 0;
   Kokkos::parallel_scan(
       "count words", Policy(0, n_kept),
       KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
-        const std::size_t length = J.graph.row_map(now.row(k) + 1) - J.graph.row_map(now.row(k));
-        sum += (length + Rows::word - 1) / Rows::word;
+        sum += (J.length(now.row(k)) + Marks::word - 1) / Marks::word;
         if (last) now.first_word(k + 1) = sum;
       },
       n_words);
-  now.present = View<std::uint64_t*>("present", n_words);
+  now.bits = View<std::uint64_t*>("marks", n_words);
+  Kokkos::parallel_for(
+      "known marks", Policy(0, before.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        const std::size_t to = now.first_word(now.number(before.row(k))), from = before.first_word(k);
+        for (std::size_t w = 0; w < before.first_word(k + 1) - from; ++w) now.bits(to + w) = before.bits(from + w);
+      });
+  return now;
+}
+
+void KeptRows::keep(const Marks& marks) {
+  const auto before = kept_;
+  const auto J = J_->numbers();
+  const Policy rows(0, marks.row.extent(0));
+  if (same(before.marks, marks)) return;
+  // visit(word, bit, value of A) for the marks of a row; those that it had before are a part of them
+  const auto for_values = KOKKOS_LAMBDA(LocalIndex k, const auto& visit) {
+    const LocalIndex k_before = before.marks.number(marks.row(k));
+    std::size_t i = k_before < 0 ? 0 : before.first_value(k_before), place = J.row(marks.row(k)).begin;
+    for (std::size_t w = marks.first_word(k); w < marks.first_word(k + 1); ++w, place += Marks::word) {
+      const std::size_t w_before = k_before < 0 ? 0 : before.marks.first_word(k_before) + w - marks.first_word(k);
+      const std::uint64_t known = k_before < 0 ? 0 : before.marks.bits(w_before);
+      for (std::uint64_t left = marks.bits(w); left != 0; left &= left - 1) {
+        const std::size_t bit = Kept::lowest(left);
+        if (!(known >> bit & 1))
+          visit(w, bit, J.value(place + bit));
+        else
+          visit(w, bit, before.present(w_before) >> bit & 1 ? before.value(i++) : 0);
+      }
+    }
+  };
+  Kept now{marks,
+           View<std::uint64_t*>("present", marks.bits.extent(0)),
+           View<std::size_t*>("first values", marks.row.extent(0) + 1),
+           {}};
+  std::size_t n_values = 0;
+  Kokkos::parallel_scan(
+      "count values", rows,
+      KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
+        for_values(k, [&](std::size_t, std::size_t, Real a) { sum += a != 0; });
+        if (last) now.first_value(k + 1) = sum;
+      },
+      n_values);
   now.value = View<Real*>("kept values", n_values);
   Kokkos::parallel_for(
-      "keep values", Policy(0, n_kept), KOKKOS_LAMBDA(LocalIndex k) {
-        auto to = now.first_value(k);
-        for_values(now.row(k), [&](std::size_t at, Real a) {
-          now.present(now.first_word(k) + at / Rows::word) |= std::uint64_t(1) << at % Rows::word;
+      "keep values", rows, KOKKOS_LAMBDA(LocalIndex k) {
+        std::size_t to = now.first_value(k);
+        for_values(k, [&](std::size_t w, std::size_t bit, Real a) {
+          if (a == 0) return;
+          now.present(w) |= std::uint64_t(1) << bit;
           now.value(to++) = a;
         });
       });
   kept_ = now;
 }
 
-void KeptRows::restore(const CrsMatrix& matrix) const {
-  const auto to = matrix.getLocalMatrixDevice();
+void KeptRows::restore(const Matrix& matrix) const {
+  const auto to = matrix.numbers();
   const auto kept = kept_;
   Kokkos::parallel_for(
-      "restore", Policy(0, kept.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
-        const auto begin = to.graph.row_map(kept.row(k)), end = to.graph.row_map(kept.row(k) + 1);
-        for (auto i = begin; i < end; ++i) to.values(i) = 0;
-        kept.for_values(k, [&](std::size_t at, Real a) { to.values(begin + at) = a; });
+      "restore", Policy(0, kept.marks.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        const std::size_t begin = to.row(kept.marks.row(k)).begin;
+        kept.for_values(k, [&](std::size_t place, Real a) { to.value(begin + place) = a; });
       });
 }
 
+/// Rows that have marks are summed up as others are: to the same bits.
 void KeptRows::add_local_product(const Vector& x, Vector& y) const {
-  const auto J = J_->getLocalMatrixDevice();
+  const auto J = J_->numbers();
   const auto kept = kept_;
   const auto from = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
-  Kokkos::parallel_for(
-      "product", Policy(0, J.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
-        const auto begin = J.graph.row_map(row), end = J.graph.row_map(row + 1);
-        Real sums[n_sums] = {};
-        if (const LocalIndex k = kept.number(row); k >= 0) {
-          kept.for_values(
-              k, [&](std::size_t at, Real a) { sums[at % n_sums] += a * from(J.graph.entries(begin + at), 0); });
-        } else {
-          auto i = begin;
-          for (; i + n_sums <= end; i += n_sums)
-            for (int s = 0; s < n_sums; ++s) sums[s] += J.values(i + s) * from(J.graph.entries(i + s), 0);
-          for (int s = 0; i + s < end; ++s) sums[s] += J.values(i + s) * from(J.graph.entries(i + s), 0);
-        }
-        to(row, 0) += total(sums);
-      });
+  with_width(J.width, [&](auto width) {
+    constexpr int w = width(), n_sums = NodeRows::n_sums<w>;
+    const Real* const first = Kokkos::subview(from, Kokkos::ALL(), 0).data();
+    Kokkos::parallel_for(
+        "product", Policy(0, J.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
+          const LocalIndex k = kept.marks.number(i);
+          if (k < 0) {
+            to(i, 0) += J.product<w>(i, first);
+            return;
+          }
+          const auto row = J.row(i);
+          const std::size_t length = w * row.n_nodes;
+          Real sums[n_sums] = {};
+          std::size_t place = 0;
+          const auto add = [&](Real a) {  // that of the next place
+            if (a != 0) sums[place % n_sums] += a * from(J.column(row.first_node + place / w) * w + place % w, 0);
+            ++place;
+          };
+          kept.for_values(k, [&](std::size_t marked, Real a) {
+            while (place < marked) add(J.value(row.begin + place));
+            add(a);
+          });
+          while (place < length) add(J.value(row.begin + place));
+          to(i, 0) += NodeRows::total(sums);
+        });
+  });
 }
 
 void KeptRows::add_product(const Vector& x, Vector& y) const {
-  const auto import = J_->getGraph()->getImporter();
-  if (import.is_null()) return add_local_product(x, y);
-  Vector all(J_->getColMap());
-  all.doImport(x, *import, Tpetra::INSERT);
+  if (J_->import().is_null()) return add_local_product(x, y);
+  Vector all(J_->column_map());
+  J_->spread(x, all);
   add_local_product(all, y);
 }
 

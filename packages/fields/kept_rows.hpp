@@ -1,28 +1,47 @@
-// Rows of a matrix as they were before others wrote over them.
+// Numbers of a matrix as they were before others wrote over them.
 #pragma once
 
 #include <cstdint>
 
-#include "fields/types.hpp"
+#include "fields/matrix.hpp"
 
 namespace sprekk::fields {
 
-/// A matrix A that never changes, most of whose rows are stored as those of another matrix J: what J has in the other
-/// ones is J's affair, and those of A are kept here. The local columns of J begin with those of A; in rows that are not
-/// kept J has no others. All members are local unless they say otherwise.
+/// A matrix A that never changes, stored in another one, J, but for numbers that may change in J: those of A are kept
+/// here. The local columns of J begin with those of A; in others, rows that keep nothing have no places, and numbers of
+/// J that are not marked are zero. All members are local unless they say otherwise.
 class KeptRows {
  public:
-  /// The values of J are those of A, in all rows so far.
-  explicit KeptRows(RCP<const CrsMatrix> J);
+  /// Which numbers of which rows: bit p % 64 of word p / 64 of a row belongs to place p of the row.
+  struct Marks {
+    static constexpr std::size_t word = 64;
 
-  /// From now on the values of these rows may change in J: [owned row] not 0. Rows stay kept for good.
-  void keep(const View<char*>& rows);
+    View<LocalIndex*> number;       // [owned row] -1: none of its numbers
+    View<LocalIndex*> row;          // [number]
+    View<std::size_t*> first_word;  // [number + 1]
+    View<std::uint64_t*> bits;
 
-  /// Those that are kept. [number]
-  const View<LocalIndex*>& rows() const { return kept_.row; }
+    /// One thread for each row.
+    KOKKOS_FORCEINLINE_FUNCTION void set(LocalIndex of_row, std::size_t place) const {
+      bits(first_word(number(of_row)) + place / word) |= std::uint64_t(1) << place % word;
+    }
+  };
 
-  /// Gives the rows that are kept the values of A, in J or a matrix with its graph.
-  void restore(const CrsMatrix& matrix) const;
+  /// The numbers of J are those of A, all of them so far.
+  explicit KeptRows(RCP<const Matrix> J);
+
+  /// Room for marks in these rows, [owned row] not 0, and the marks of what is kept already.
+  Marks marks(const View<char*>& rows) const;
+
+  /// From now on the marked numbers may change in J, for good.
+  void keep(const Marks& marks);
+
+  /// Those that have marks. [number]
+  const View<LocalIndex*>& rows() const { return kept_.marks.row; }
+  const RCP<const Matrix>& J() const { return J_; }
+
+  /// Gives the numbers that are kept back, to J or a matrix with its graph.
+  void restore(const Matrix& matrix) const;
 
   /// y += A x, x with the ghosts of A.
   void add_local_product(const Vector& x, Vector& y) const;
@@ -31,28 +50,27 @@ class KeptRows {
   void add_product(const Vector& x, Vector& y) const;
 
  private:
-  struct Rows {
-    static constexpr std::size_t word = 64;
+  struct Kept {
+    Marks marks;
+    View<std::uint64_t*> present;    // as marks.bits: it is not zero
+    View<std::size_t*> first_value;  // [number + 1]
+    View<Real*> value;               // those that are not zero
 
-    View<LocalIndex*> number;        // [owned row] -1: it is J's
-    View<LocalIndex*> row;           // [number]
-    View<std::size_t*> first_value;  // [number + 1] of those that are not 0
-    View<std::size_t*> first_word;   // [number + 1]
-    View<std::uint64_t*> present;    // bit k % 64 of word k / 64 of a row: it has a value in place k of its row of J
-    View<Real*> value;
-
-    /// visit(place, value) for the values of a row that is kept, in their order.
+    /// visit(place, value) for what is kept of a row, in the order of places.
     template <class Visit>
     KOKKOS_FORCEINLINE_FUNCTION void for_values(LocalIndex k, const Visit& visit) const {
-      std::size_t i = first_value(k), place = 0;
-      for (std::size_t w = first_word(k); w < first_word(k + 1); ++w, place += word)
-        for (std::uint64_t left = present(w); left != 0; left &= left - 1) visit(place + lowest(left), value(i++));
+      std::size_t i = first_value(k), first = 0;
+      for (std::size_t w = marks.first_word(k); w < marks.first_word(k + 1); ++w, first += Marks::word)
+        for (std::uint64_t left = marks.bits(w); left != 0; left &= left - 1) {
+          const std::size_t bit = lowest(left);
+          visit(first + bit, present(w) >> bit & 1 ? value(i++) : 0);
+        }
     }
     KOKKOS_FORCEINLINE_FUNCTION static std::size_t lowest(std::uint64_t bits) { return __builtin_ctzll(bits); }
   };
 
-  RCP<const CrsMatrix> J_;
-  Rows kept_;
+  RCP<const Matrix> J_;
+  Kept kept_;
 };
 
 }  // namespace sprekk::fields

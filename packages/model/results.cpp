@@ -173,15 +173,20 @@ json block_summary(const assembly::System& system) {
   const auto& A = system.matrix();
   for (int i = 0; i < A.n_blocks(); ++i)
     for (int j = 0; j < A.n_blocks(); ++j) {
-      if (A(i, j).is_null()) continue;
-      const long long entries = static_cast<long long>(A(i, j)->getGlobalNumEntries());
-      const long long rows = static_cast<long long>(A(i, j)->getGlobalNumRows());
-      const long long bytes = entries * static_cast<long long>(sizeof(Real) + sizeof(LocalIndex)) +
-                              rows * static_cast<long long>(sizeof(std::size_t));
+      const auto kept = i == j ? A.kept(i) : nullptr;
+      if (A(i, j).is_null() && !kept) continue;
+      const auto matrix = kept ? kept->J() : fields::wrapped(A(i, j));
+      const auto& numbers = matrix->numbers();
+      const auto starts = numbers.n_rows() / numbers.height;
+      const auto entries = static_cast<long long>(numbers.value.extent(0));
+      const long long bytes = entries * static_cast<long long>(sizeof(Real)) +
+                              static_cast<long long>(numbers.column.extent(0) * sizeof(LocalIndex)) +
+                              starts * static_cast<long long>(sizeof(std::size_t));
+      const auto sums = reduce<long long>(comm, Teuchos::REDUCE_SUM, {entries, bytes});
       summary["matrices"].push_back({{"row", system.blocks()[i].name},
                                      {"column", system.blocks()[j].name},
-                                     {"entries", entries},
-                                     {"bytes", bytes}});
+                                     {"entries", sums[0]},
+                                     {"bytes", sums[1]}});
     }
   for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
   for (const auto& group : system.local_groups()) {

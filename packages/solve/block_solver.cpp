@@ -87,6 +87,23 @@ class RaisedDiagonal {
   std::vector<Real> values_;
 };
 
+/// Another operator, which takes no notice of alpha and beta, and minds them.
+class Scaled : public Operator {
+ public:
+  explicit Scaled(RCP<const Operator> A) : A_(std::move(A)) {}
+  RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, Real alpha, Real beta) const override {
+    if (alpha == 1 && beta == 0) return A_->apply(x, y, mode);
+    MultiVector Ax(y.getMap(), y.getNumVectors());
+    A_->apply(x, Ax, mode);
+    y.update(alpha, Ax, beta);
+  }
+
+ private:
+  RCP<const Operator> A_;
+};
+
 class MueLuMultigrid : public BlockSolver {
  public:
   MueLuMultigrid(const std::string& name, const ParameterList& parameters)
@@ -97,12 +114,12 @@ class MueLuMultigrid : public BlockSolver {
 
   void prepare(const DiagonalBlock& block, SolverCost& cost) override {
     // MueLu takes matrices that may change; only RaisedDiagonal changes this one
-    const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(block.matrix);
+    const auto matrix = block.matrix->crs();
     const bool anew = hierarchy_.is_null() || (symmetric_ && !block.symmetric);
     if (anew) {
       symmetric_ = block.symmetric;
-      const auto make = [&](const RCP<CrsMatrix>& bulk) { create(block.block, bulk); };
-      block.bulk ? block.bulk(make) : make(matrix);
+      const auto make = [&](const RCP<const Matrix>& bulk) { create(block.block, bulk->crs()); };
+      block.bulk ? block.bulk(make) : make(block.matrix);
     }
     if (!anew || block.bulk) {
       const RaisedDiagonal raised(*matrix);
@@ -111,7 +128,7 @@ class MueLuMultigrid : public BlockSolver {
     cost.operator_complexity = hierarchy_->GetHierarchy()->GetOperatorComplexity();
     cost.bytes = (cost.operator_complexity - 1) * matrix->getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex));
   }
-  RCP<const Operator> prepared() const override { return hierarchy_; }
+  RCP<const Operator> prepared() const override { return rcp(new Scaled(hierarchy_)); }
 
   /// Aggregates by the graph of the bulk, where no edge crosses an interface. Where the matrix is not symmetric the
   /// restriction is smoothed with its transpose.
@@ -147,9 +164,7 @@ class NodeMultigrid : public BlockSolver {
       const auto modes = block.block.near_null_space.make();
       const auto& places = block.block.coordinates;
       Nodes nodes;
-      const auto look = [&](const RCP<const CrsMatrix>& bulk) {
-        nodes = nodes_of(node_matrix(*bulk, n), modes, places);
-      };
+      const auto look = [&](const RCP<const Matrix>& bulk) { nodes = nodes_of(node_matrix(*bulk, n), modes, places); };
       block.bulk ? block.bulk(look) : look(block.matrix);
       multigrid_ = rcp(new Multigrid(block.matrix, std::move(nodes), n, modes));
     }
@@ -186,9 +201,9 @@ class TwoLevel : public BlockSolver {
   FineLevel level_;
 };
 
-bool has_zero_on_diagonal(const CrsMatrix& matrix) {
-  Vector diagonal(matrix.getRowMap());
-  matrix.getLocalDiagCopy(diagonal);
+bool has_zero_on_diagonal(const Matrix& matrix) {
+  Vector diagonal(matrix.row_map());
+  matrix.copy_diagonal(diagonal);
   const auto d = diagonal.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t i = 0; i < d.extent(0); ++i)
     if (d(i, 0) == 0) return true;
@@ -201,11 +216,12 @@ class Relaxation : public BlockSolver {
 
  private:
   void prepare(const DiagonalBlock& block, SolverCost&) override {
-    SPREKK_CHECK(!block.matrix.is_null() && !has_zero_on_diagonal(*block.matrix),
+    const bool absent = block.matrix.is_null();
+    const auto matrix = absent ? Teuchos::null : block.matrix->crs();  // by all ranks, before any may throw
+    SPREKK_CHECK(!absent && !has_zero_on_diagonal(*block.matrix),
                  "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
     if (relaxation_.is_null()) {
-      relaxation_ =
-          Ifpack2::Factory::create<Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>>("RELAXATION", block.matrix);
+      relaxation_ = Ifpack2::Factory::create<Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>>("RELAXATION", matrix);
       ParameterList list;
       list.set("relaxation: type", "Symmetric Gauss-Seidel");
       list.set("relaxation: sweeps", 2);

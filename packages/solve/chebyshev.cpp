@@ -111,7 +111,7 @@ Real Chebyshev::dot(const View<Real*>& x, const View<Real*>& y) const {
   return all;
 }
 
-void Chebyshev::apply(const View<Real*>& b, const View<Real*>& x, bool add) const {
+void Chebyshev::apply(const ConstView<Real*>& b, const View<Real*>& x, bool add) const {
   const Real shorter = static_cast<Real>(usual_degree) / degree_, widest = widening_ * largest_;
   const Real high = margin * widest, low = usual_smallest * shorter * shorter * widest;
   const Real middle = (high + low) / 2, half = (high - low) / 2, sigma = middle / half;

@@ -24,7 +24,7 @@ class Chebyshev {
   void widen() { widening_ *= 2; }
 
   /// x <- S b, or x += S b; b [owned], x [all].
-  void apply(const View<Real*>& b, const View<Real*>& x, bool add) const;
+  void apply(const ConstView<Real*>& b, const View<Real*>& x, bool add) const;
 
   /// w D^-1 with w = 4/3 over the largest eigenvalue of D^-1 A, [all nodes, unknown]: what smooths prolongators.
   View<Real*> damped_inverse_diagonal() const;

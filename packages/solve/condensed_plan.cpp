@@ -21,7 +21,8 @@ class CondensedPlanner {
 
   /// Graph of J_ab = graph of A_ab and of all products; then the columns in it of A_ab and of the responses.
   void plan(int a, int b) {
-    bool present = a == b || !matrix(a, b).is_null();
+    const auto bulk = this->bulk(a, b);
+    bool present = a == b || !bulk.is_null();
     for (const auto& group : plan_.groups) {
       const auto some = [&](const auto& matrix_of) {
         return std::any_of(group.blocks.begin(), group.blocks.end(), [&](int z) { return !matrix_of(z).is_null(); });
@@ -32,15 +33,15 @@ class CondensedPlanner {
     for (auto& group : plan_.groups) group.column.emplace_back();
     if (!present) return;
     auto products = this->products(a, b);
-    const auto columns = find_columns(a, b, products);
+    const auto columns = find_columns(a, b, bulk, products);
     for (auto& product : products)
       for (std::size_t c = 0; c < product.column.size(); ++c)
         if (product.column[c] == 0) product.column[c] = columns->getLocalElement(product.global(c));
     LocalIndices of_matrix;  // [column of A_ab]
-    for_columns(matrix(a, b), [&](GlobalIndex column) { of_matrix.push_back(columns->getLocalElement(column)); });
-    make_graph(a, b, columns, of_matrix, products);
+    for_columns(bulk, [&](GlobalIndex column) { of_matrix.push_back(columns->getLocalElement(column)); });
+    make_matrix(a, b, columns, bulk, of_matrix, products);
     auto& condensed = plan_.condensed.back();
-    condensed.bulk = matrix(a, b);
+    condensed.bulk = bulk;
     condensed.bulk_column = to_device(of_matrix, "bulk column");
     for (std::size_t g = 0; g < products.size(); ++g)
       plan_.groups[g].column.back() = to_device(products[g].column, "product column");
@@ -50,11 +51,17 @@ class CondensedPlanner {
   const std::vector<Block>& blocks() const { return problem_.blocks(); }
   RCP<const CrsMatrix> matrix(int i, int j) const { return problem_.matrix()(i, j); }
 
+  /// A_ab with all its columns, or another matrix that it stands in.
+  RCP<const Matrix> bulk(int a, int b) const {
+    if (a == b && problem_.matrix().kept(a)) return problem_.matrix().kept(a)->J();
+    return matrix(a, b).is_null() ? Teuchos::null : fields::wrapped(matrix(a, b));
+  }
+
   /// visit(global column) for those that a matrix, if there is one, has here.
   template <class Visit>
-  static void for_columns(const RCP<const CrsMatrix>& matrix, const Visit& visit) {
+  static void for_columns(const RCP<const Matrix>& matrix, const Visit& visit) {
     if (matrix.is_null()) return;
-    const auto& columns = *matrix->getColMap();
+    const auto& columns = *matrix->column_map();
     for (LocalIndex i = 0, n = columns.getNodeNumElements(); i < n; ++i) visit(columns.getGlobalElement(i));
   }
 
@@ -90,7 +97,7 @@ class CondensedPlanner {
 
   /// The columns that rows of J_ab have here: those owned in their order, the others of A_ab in theirs, and the rest by
   /// the ranks that own them.
-  RCP<const Map> find_columns(int a, int b, std::vector<Products>& products) const {
+  RCP<const Map> find_columns(int a, int b, const RCP<const Matrix>& bulk, std::vector<Products>& products) const {
     const auto& domain = *blocks()[b].map;
     std::vector<char> wanted(domain.getNodeNumElements(), a == b);  // of those owned
     GlobalIndices of_bulk, others;
@@ -100,7 +107,7 @@ class CondensedPlanner {
       else
         not_owned.push_back(column);
     };
-    for_columns(matrix(a, b), [&](GlobalIndex column) { add(column, of_bulk); });
+    for_columns(bulk, [&](GlobalIndex column) { add(column, of_bulk); });
     for (auto& product : products)
       for (std::size_t pair = 0; pair < product.slot.extent(0); ++pair)
         for (std::size_t c = product.start(product.slot(pair)), end = product.start(product.slot(pair) + 1);
@@ -133,42 +140,36 @@ class CondensedPlanner {
     return found;
   }
 
-  void make_graph(int a, int b, const RCP<const Map>& columns, const LocalIndices& of_matrix,
-                  const std::vector<Products>& products) {
+  void make_matrix(int a, int b, const RCP<const Map>& columns, const RCP<const Matrix>& bulk,
+                   const LocalIndices& of_bulk, const std::vector<Products>& products) {
     const auto& rows = blocks()[a].map;
     const LocalIndex n_rows = rows->getNodeNumElements();
-    using Local = CrsGraph::local_graph_device_type;
-    CrsMatrix::local_matrix_host_type::staticcrsgraph_type of_bulk;
-    if (!matrix(a, b).is_null()) of_bulk = matrix(a, b)->getLocalMatrixHost().graph;
     LocalIndices met(columns->getNodeNumElements(), -1);  // [column] the row that met it last
     const auto for_new = [&](LocalIndex row, const auto& visit) {
       const auto meet = [&](LocalIndex column) {
         if (met[column] != row) visit(column);
         met[column] = row;
       };
-      if (!matrix(a, b).is_null())
-        for (auto k = of_bulk.row_map(row); k < of_bulk.row_map(row + 1); ++k) meet(of_matrix[of_bulk.entries(k)]);
+      if (!bulk.is_null()) bulk->numbers().for_row(row, [&](LocalIndex c, std::size_t) { meet(of_bulk[c]); });
       if (a == b) meet(columns->getLocalElement(rows->getGlobalElement(row)));
       for (const auto& product : products) product.for_columns(row, [&](std::size_t c) { meet(product.column[c]); });
     };
-    const Local::row_map_type::non_const_type start("start", n_rows + 1);
+    const View<std::size_t*> start("start", n_rows + 1);
     for (LocalIndex row = 0; row < n_rows; ++row) {
       start(row + 1) = start(row);
       for_new(row, [&](LocalIndex) { ++start(row + 1); });
     }
     std::fill(met.begin(), met.end(), -1);
-    const Local::entries_type::non_const_type entries("columns", start(n_rows));
+    const View<LocalIndex*> entries("columns", start(n_rows));
     for (LocalIndex row = 0; row < n_rows; ++row) {
       auto *begin = entries.data() + start(row), *end = begin;
       for_new(row, [&](LocalIndex column) { *end++ = column; });
       if (!std::is_sorted(begin, end)) std::sort(begin, end);
     }
-    const auto graph = rcp(new CrsGraph(rows, columns, start, entries));
-    graph->expertStaticFillComplete(blocks()[b].map, rows);
     auto& condensed = plan_.condensed.back();
-    condensed.matrix = rcp(new CrsMatrix(graph));
-    condensed.matrix->fillComplete(blocks()[b].map, rows);
-    condensed.constrained = rcp(new Vector(columns));
+    condensed.matrix = rcp(new const Matrix(rows, columns, blocks()[b].map, start, entries, blocks()[a].n_components,
+                                            blocks()[b].n_components));
+    condensed.constrained = View<char*>("constrained", columns->getNodeNumElements());
   }
 
   const BlockProblem& problem_;

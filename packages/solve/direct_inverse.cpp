@@ -44,7 +44,7 @@ DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& n
 void DirectInverse::setup(bool symmetric) {
   if (!solver_) return factor_dense();
   const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
-  const auto failure = solver_->setup({joined, {A_}, symmetric, {}, A_});
+  const auto failure = solver_->setup({joined, {}, symmetric, {}, A_});
   SPREKK_CHECK(failure.empty(), "{}: {}", name_, failure);
 }
 

@@ -185,7 +185,8 @@ class DirectSolver : public LinearSolver {
       indices->clear();
       indices->reserve(std::max<std::size_t>(1, n_handed));  // MUMPS wants a pointer also where nothing is
     }
-    positions_.clear();
+    positions_ = std::vector<std::size_t>();  // with the memory that an earlier graph took
+    values_ = std::vector<double>();
     positions_.reserve(chosen ? n_handed : 0);
     for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; ++row)
       for (auto k = graph.row_map(row); k < graph.row_map(row + 1); ++k) {

@@ -13,9 +13,9 @@ namespace sprekk::solve {
 using fields::Block;
 using fields::BlockProblem;
 using fields::BlockVector;
-using fields::CrsGraph;
 using fields::CrsMatrix;
 using fields::Map;
+using fields::Matrix;
 using fields::Vector;
 
 using LocalIndices = std::vector<LocalIndex>;
@@ -74,13 +74,13 @@ struct GroupPlan {
 
 /// J_ab; matrix is null where nothing couples a and b.
 struct CondensedBlock {
-  RCP<CrsMatrix> matrix;
-  RCP<const CrsMatrix> bulk;               ///< A_ab; null: there is none, or it stands in J_ab
+  RCP<const Matrix> matrix;
+  RCP<const Matrix> bulk;                  ///< A_ab; null: there is none, or it stands in J_ab
   View<LocalIndex*> bulk_column;           ///< [column of A_ab] its column in J_ab
   std::shared_ptr<fields::KeptRows> kept;  ///< of A_ab that stands in J_ab, or null
   View<LocalIndex*> rows;   ///< those that may be other ones than A_ab's, where it stands there; else all
   View<LocalIndex*> held;   ///< rows of unknowns that are prescribed, and those with a column of one
-  RCP<Vector> constrained;  ///< [column] 1 where the unknown is prescribed
+  View<char*> constrained;  ///< [column] 1 where the unknown is prescribed
 };
 
 struct EliminationPlan {

@@ -63,9 +63,7 @@ class PairInverse : public Operator {
     FK_->apply(rest_K, rest_F, Teuchos::NO_TRANS, -1, 1 / scale_F);
     cycle_->apply(rest_F, y_F);
     S_->apply(y_F, rest_F, Teuchos::NO_TRANS, -1, 1);
-    MultiVector correction(y_F.getMap(), y_F.getNumVectors());
-    cycle_->apply(rest_F, correction);  // MueLu would not add
-    y_F.update(1, correction, 1);
+    cycle_->apply(rest_F, y_F, Teuchos::NO_TRANS, 1, 1);
     MultiVector of_K(*part(x, 1), Teuchos::Copy);
     KF_->apply(y_F, of_K, Teuchos::NO_TRANS, -1, 1 / scale_K);
     y.offsetViewNonConst(joined_->map(0), joined_->first(0))->update(alpha / scale_F, y_F, beta);
@@ -79,7 +77,7 @@ class PairInverse : public Operator {
   }
 
   std::shared_ptr<const Joined> joined_;
-  RCP<const CrsMatrix> FK_, KF_;
+  RCP<const Matrix> FK_, KF_;
   RCP<const Vector> D_inverse_;
   RCP<const Operator> S_, cycle_;
 };
@@ -91,11 +89,11 @@ class Pair : public Family {
 
   void setup(const LinearSystem& family) override {
     const auto D_inverse = rcp(new Vector(family.joined->map(1)));
-    family.diagonal[1].matrix->getLocalDiagCopy(*D_inverse);
+    family.diagonal[1].matrix->copy_diagonal(*D_inverse);
     if (const auto& schur = family.diagonal[1].schur; !schur.is_null()) D_inverse->update(1, *schur, 1);
     D_inverse->reciprocal(*D_inverse);
     fill_S(family, *D_inverse);
-    solver_->setup({block_, S_, {}, false});  // what was eliminated locally need not leave it symmetric
+    solver_->setup({block_, rows_of_S_, {}, false});  // what was eliminated locally need not leave it symmetric
     inverse_ = rcp(new PairInverse(family, D_inverse, S_, solver_->inverse()));
   }
   RCP<const Operator> inverse() const override { return inverse_; }
@@ -104,15 +102,17 @@ class Pair : public Family {
  private:
   /// On the graph of A_FF; the little of the product that it has no place for is left out.
   void fill_S(const LinearSystem& family, const Vector& D_inverse) {
-    const auto& FF = *family.diagonal[0].matrix;
+    const auto& FF = *family.diagonal[0].matrix->crs();
     if (S_.is_null()) {
       S_ = rcp(new CrsMatrix(FF.getCrsGraph()));
       S_->fillComplete(FF.getDomainMap(), FF.getRangeMap());
+      rows_of_S_ = fields::wrapped(S_);
     }
     S_->resumeFill();
     Kokkos::deep_copy(S_->getLocalMatrixDevice().values, FF.getLocalMatrixDevice().values);
     if (const auto& schur = family.diagonal[0].schur; !schur.is_null()) add_diagonal(*schur);
-    subtract_product(*family.blocks[1], *with_ghost_rows(*family.blocks[1], *family.blocks[2], D_inverse));
+    const auto &FK = *family.blocks[1]->crs(), &KF = *family.blocks[2]->crs();
+    subtract_product(FK, *with_ghost_rows(FK, KF, D_inverse));
     S_->fillComplete(FF.getDomainMap(), FF.getRangeMap());
   }
 
@@ -158,6 +158,7 @@ class Pair : public Family {
   Block block_;
   RCP<BlockSolver> solver_;
   RCP<CrsMatrix> S_;
+  RCP<const Matrix> rows_of_S_;
   RCP<const Operator> inverse_;
 };
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "base/check.hpp"
-#include "solve/columns.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -16,15 +15,19 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-/// P^T A P, or A itself without P. Its graph leaves out what is zero in A.
+/// P^T A P. Its graph leaves out what is zero in A.
 RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
-  if (P.is_null()) return A;
   const auto product = rcp(new CrsMatrix(P->getDomainMap(), 0));
   Tpetra::TripleMatrixMultiply::MultiplyRAP(*P, true, *A, false, *P, false, *product);
   return product;
 }
 
-/// The same with a graph for any values of A, once; and its present values.
+/// A itself without P.
+RCP<const Matrix> at_order_one(const RCP<const Matrix>& A, const RCP<const CrsMatrix>& P) {
+  return P.is_null() ? A : fields::wrapped(at_order_one(A->crs(), P));
+}
+
+/// P^T A P with a graph for any values of A, once; and its present values.
 RCP<CrsMatrix> order_one_matrix(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
   const auto ones = rcp(new CrsMatrix(A, Teuchos::Copy));
   ones->resumeFill();
@@ -65,15 +68,16 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
 }
 
 /// Flags also the unknowns whose rows have a column that is flagged. Collective.
-void add_neighbours(const CrsMatrix& A, Vector& flags) {
-  Vector of_columns(A.getColMap());
-  spread(flags, A, of_columns);
-  const auto graph = A.getLocalMatrixHost().graph;
+void add_neighbours(const Matrix& A, Vector& flags) {
+  Vector of_columns(A.column_map());
+  A.spread(flags, of_columns);
+  const auto numbers = A.numbers();
   const auto column_flag = of_columns.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto flag = flags.getLocalViewHost(Tpetra::Access::ReadWrite);
-  for (LocalIndex row = 0, n = graph.numRows(); row < n; ++row)
-    for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && flag(row, 0) == 0; ++k)
-      flag(row, 0) = column_flag(graph.entries(k), 0);
+  for (LocalIndex row = 0, n = numbers.n_rows(); row < n; ++row)
+    numbers.for_row(row, [&](LocalIndex column, std::size_t) {
+      if (column_flag(column, 0) != 0) flag(row, 0) = 1;
+    });
 }
 
 /// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; in flat cells, where
@@ -88,10 +92,10 @@ std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system, bool flat
   }
   for (int s = 1; s < n; ++s) {
     if (system.blocks[s].is_null()) continue;  // the first block's rows, the enriching one's columns
-    const auto rows = system.blocks[s]->getLocalMatrixHost().graph.row_map;
+    const auto numbers = system.blocks[s]->numbers();
     const auto flags = chosen[0]->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < flags.extent(0); ++i)
-      if (rows(i + 1) > rows(i)) flags(i, 0) = 1;
+      if (numbers.length(static_cast<LocalIndex>(i)) > 0) flags(i, 0) = 1;
   }
   if (flat) add_neighbours(*system.blocks[0], *chosen[0]);
   return chosen;
@@ -115,16 +119,9 @@ class Cycle : public Operator {
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
+    if (alpha == 1 && beta == 0) return cycle(b, y);
     MultiVector x(b.getMap(), b.getNumVectors());
-    if (exact_) {
-      correct(b, x);
-    } else {
-      MultiVector r(b, Teuchos::Copy);
-      smooth(b, x);
-      A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
-      correct(r, x);
-    }
-    smooth(b, x, true);
+    cycle(b, x);
     y.update(alpha, x, beta);
   }
 
@@ -134,6 +131,19 @@ class Cycle : public Operator {
   }
 
  private:
+  void cycle(const MultiVector& b, MultiVector& x) const {
+    x.putScalar(0);
+    if (exact_) {
+      correct(b, x);
+    } else {
+      MultiVector r(b, Teuchos::Copy);
+      smooth(b, x);
+      A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+      correct(r, x);
+    }
+    smooth(b, x, true);
+  }
+
   /// x += S (b - A x), of which S reads its rows only; `moved`: x is not zero.
   void smooth(const MultiVector& b, MultiVector& x, bool moved = false) const {
     using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
@@ -162,9 +172,7 @@ class Cycle : public Operator {
     const auto to = x.offsetViewNonConst(map_, 0);
     const Real factor = 1 / (scale_ * scale_);
     if (P_.is_null()) {
-      MultiVector z(map_, r.getNumVectors());
-      order_one_->apply(*from, z);
-      to->update(factor, z, 1);
+      order_one_->apply(*from, *to, Teuchos::NO_TRANS, factor, 1);
       return;
     }
     MultiVector b(P_->getDomainMap(), r.getNumVectors()), z(P_->getDomainMap(), r.getNumVectors());
@@ -198,11 +206,12 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
   const auto& P = first.block.interpolation;
   Bulk bulk;
   if (first.bulk)
-    bulk = [&](const auto& work) { first.bulk([&](const RCP<CrsMatrix>& A) { work(at_order_one(A, P)); }); };
-  RCP<const CrsMatrix> matrix = first.matrix;
+    bulk = [&](const auto& work) { first.bulk([&](const RCP<const Matrix>& A) { work(at_order_one(A, P)); }); };
+  RCP<const Matrix> matrix = first.matrix;
   if (!P.is_null()) {
-    if (product_.is_null()) product_ = order_one_matrix(*first.matrix, P);
-    fill_order_one(Teuchos::rcp_const_cast<CrsMatrix>(first.matrix), P, *product_);
+    const auto A = first.matrix->crs();
+    if (product_.is_null()) product_ = fields::wrapped(order_one_matrix(*A, P));
+    fill_order_one(A, P, *product_->crs());
     matrix = product_;
   }
   order_one_->setup({first.block, matrix, bulk, system.symmetric, {}, first.careful});

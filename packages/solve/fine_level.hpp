@@ -33,7 +33,7 @@ class FineLevel {
   void set_up_order_one(const LinearSystem& system);
 
   RCP<BlockSolver> order_one_;
-  RCP<CrsMatrix> product_;                  // P^T A P
+  RCP<const Matrix> product_;               // P^T A P
   std::shared_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   std::shared_ptr<JoinedRows> rows_;        // the rows of S with all columns
   RCP<DirectInverse> direct_;               // the inverse of the former, of blocks that enrich

@@ -5,6 +5,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
@@ -84,9 +85,9 @@ class ScaledOperator : public Operator {
 };
 
 /// 1/sqrt(diagonal), or its inverse.
-RCP<const Vector> root_of_diagonal(const CrsMatrix& A, bool inverse) {
-  const auto scale = rcp(new Vector(A.getRowMap()));
-  A.getLocalDiagCopy(*scale);
+RCP<const Vector> root_of_diagonal(const Matrix& A, bool inverse) {
+  const auto scale = rcp(new Vector(A.row_map()));
+  A.copy_diagonal(*scale);
   const auto values = scale->getLocalViewHost(Tpetra::Access::ReadWrite);
   for (std::size_t k = 0; k < values.extent(0); ++k)
     values(k, 0) = values(k, 0) > 0 ? std::pow(values(k, 0), inverse ? 0.5 : -0.5) : 1;
@@ -246,20 +247,14 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  /// Its places are looked up once for a graph.
-  RCP<const Vector> diagonal_of(const CrsMatrix& matrix) {
-    if (graph_ != matrix.getCrsGraph()) {
-      graph_ = matrix.getCrsGraph();
-      places_ = View<std::size_t*>("places of the diagonal", matrix.getNodeNumRows());
-      graph_->getLocalDiagOffsets(places_);
-    }
-    const auto diagonal = rcp(new Vector(matrix.getRowMap()));
-    matrix.getLocalDiagCopy(*diagonal, places_);
+  static RCP<const Vector> diagonal_of(const Matrix& matrix) {
+    const auto diagonal = rcp(new Vector(matrix.row_map()));
+    matrix.copy_diagonal(*diagonal);
     return diagonal;
   }
 
   /// How many rows have another diagonal than when multigrid was made.
-  GlobalIndex n_changed(const CrsMatrix& matrix) {
+  GlobalIndex n_changed(const Matrix& matrix) {
     const auto diagonal = diagonal_of(matrix);
     const auto now = diagonal->getLocalViewHost(Tpetra::Access::ReadOnly),
                then = diagonal_->getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -317,18 +312,35 @@ class IterativeSolver : public LinearSolver {
   /// Krylov's method updates its residual, which rounding drives away from the true one where the matrix is nearly
   /// singular. Then it solves for what is left, as long as that helps.
   void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
-    Vector r(b, Teuchos::Copy), dx(b.getMap());
-    Real before = 1;
-    if (fine_level_ && report.iterations == 0) fine_level_->start(b, x);
-    if (fine_level_ || report.iterations > 0) report.residual = before = relative_residual(*matrix_, b, x, r);
-    for (bool ended = true; ended && before > tolerance;) {
-      dx.putScalar(0);
-      ended = krylov(r, dx, tolerance / before, most, report.iterations);
-      x.update(1, dx, 1);
-      report.residual = relative_residual(*matrix_, b, x, r);
-      if (report.residual <= 2 * tolerance || report.residual >= 0.1 * before) break;
-      before = report.residual;
+    const bool begins = report.iterations == 0;
+    if (fine_level_ && begins) fine_level_->start(b, x);
+    report.residual = fine_level_ || !begins ? residual_of(b, x) : 1;
+    bool ended = report.residual > tolerance;
+    if (begins && ended) {
+      ended = krylov(b, x, tolerance, most, report.iterations);
+      const Real before = std::exchange(report.residual, residual_of(b, x));
+      ended = ended && is_worthwhile(before, report.residual, tolerance);
     }
+    if (!ended || report.residual <= tolerance) return;
+    Vector r(b.getMap()), dx(b.getMap());
+    relative_residual(*matrix_, b, x, r);
+    while (ended && report.residual > tolerance) {
+      dx.putScalar(0);
+      ended = krylov(r, dx, tolerance / report.residual, most, report.iterations);
+      x.update(1, dx, 1);
+      const Real before = std::exchange(report.residual, relative_residual(*matrix_, b, x, r));
+      ended = ended && is_worthwhile(before, report.residual, tolerance);
+    }
+  }
+
+  Real residual_of(const Vector& b, const Vector& x) const {
+    Vector r(b.getMap());
+    return relative_residual(*matrix_, b, x, r);
+  }
+
+  /// To go on after a solve.
+  static bool is_worthwhile(Real before, Real residual, Real tolerance) {
+    return residual > 2 * tolerance && residual < 0.1 * before;
   }
 
   /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end. A sweep over
@@ -338,7 +350,8 @@ class IterativeSolver : public LinearSolver {
     return has_cycles_ && !families_ ? "Block GMRES" : "Flexible GMRES";
   }
 
-  /// Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are too many.
+  /// Starts from x. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are
+  /// too many.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
@@ -379,8 +392,6 @@ class IterativeSolver : public LinearSolver {
   static constexpr int most_more = 4;      // iterations that it may then take more
   LinearSystem system_;
   RCP<const Vector> diagonal_;                             // when multigrid was made
-  RCP<const fields::CrsGraph> graph_;                      // that they belong to:
-  View<std::size_t*> places_;                              // [row] of the diagonal, within the row
   static constexpr int most_careless = 40;                 // iterations, after which multigrid is looked at
   bool has_cycles_ = false;                                // of our own multigrid, which can be looked at
   bool careful_ = false, looked_at_ = false;               // multigrid is always looked at from now on; this one was

@@ -4,14 +4,13 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "solve/columns.hpp"
-
 namespace sprekk::solve {
 namespace {
 
 using fields::BlockVector;
 using fields::CrsMatrix;
 using fields::Map;
+using fields::Matrix;
 using fields::MultiVector;
 using fields::Vector;
 using Policy = Kokkos::RangePolicy<Execution>;
@@ -54,9 +53,9 @@ class JoinedOperator : public fields::Operator {
 };
 
 /// The flags of the matrix' columns, from those of its domain.
-std::vector<char> of_columns(const CrsMatrix& matrix, const Vector& flags) {
-  Vector columns(matrix.getColMap());
-  spread(flags, matrix, columns);
+std::vector<char> of_columns(const Matrix& matrix, const Vector& flags) {
+  Vector columns(matrix.column_map());
+  matrix.spread(flags, columns);
   const auto values = columns.getLocalViewHost(Tpetra::Access::ReadOnly);
   std::vector<char> taken(values.extent(0));
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = values(i, 0) != 0;
@@ -133,40 +132,34 @@ void JoinedRows::subtract_product(const MultiVector& x, MultiVector& y) const {
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
     RCP<const MultiVector> from = x.offsetView(joined_->map(k % n), joined_->first(k % n));
-    if (const auto import = blocks_[k]->getGraph()->getImporter(); !import.is_null()) {
+    if (const auto& import = blocks_[k]->import(); !import.is_null()) {
       auto& columns = columns_[k];
       if (columns.is_null() || columns->getNumVectors() != n_vectors)
-        columns = rcp(new MultiVector(blocks_[k]->getColMap(), n_vectors));
+        columns = rcp(new MultiVector(blocks_[k]->column_map(), n_vectors));
       columns->doImport(*from, *import, Tpetra::INSERT);
       from = columns;
     }
-    const auto A = blocks_[k]->getLocalMatrixDevice();
+    const auto A = blocks_[k]->numbers();
     const auto values = from->getLocalViewDevice(Tpetra::Access::ReadOnly);
     const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
     const Real scale = joined_->scale(k / n) * joined_->scale(k % n);
     const LocalIndex first = joined_->first(k / n);
-    Kokkos::parallel_for(
-        "subtract rows", Policy(first_row_[k / n], first_row_[k / n + 1]), KOKKOS_LAMBDA(LocalIndex i) {
-          const LocalIndex row = rows(i) - first;
-          for (std::size_t v = 0; v < n_vectors; ++v) {
-            constexpr int n_sums = 4;  // so that an addition need not wait for the one before
-            Real sums[n_sums] = {};
-            const auto begin = A.graph.row_map(row), n_entries = A.graph.row_map(row + 1) - begin;
-            for (std::size_t j = 0; j + n_sums <= n_entries; j += n_sums)
-              for (int m = 0; m < n_sums; ++m)
-                sums[m] += A.values(begin + j + m) * values(A.graph.entries(begin + j + m), v);
-            for (std::size_t j = n_entries / n_sums * n_sums; j < n_entries; ++j)
-              sums[0] += A.values(begin + j) * values(A.graph.entries(begin + j), v);
-            to(i, v) -= scale * ((sums[0] + sums[1]) + (sums[2] + sums[3]));
-          }
-        });
+    fields::with_width(A.width, [&](auto width) {
+      constexpr int w = width();
+      for (std::size_t v = 0; v < n_vectors; ++v) {
+        const Real* const from_v = Kokkos::subview(values, Kokkos::ALL(), v).data();
+        Kokkos::parallel_for(
+            "subtract rows", Policy(first_row_[k / n], first_row_[k / n + 1]),
+            KOKKOS_LAMBDA(LocalIndex i) { to(i, v) -= scale * A.product<w>(rows(i) - first, from_v); });
+      }
+    });
   }
 }
 
 JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<Vector>> chosen)
     : joined_(std::move(joined)), blocks_(std::move(blocks)) {
   if (chosen.empty() && joined_->n_blocks() == 1) {
-    matrix_ = blocks_.front();
+    matrix_ = blocks_.front()->crs();
     std::vector<LocalIndex> all(matrix_->getNodeNumRows());
     std::iota(all.begin(), all.end(), 0);
     rows_ = on_device("rows", all);
@@ -197,7 +190,7 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
   RCP<const Map> columns;
   const auto places = number_columns(chosen, *map, columns);
   std::vector<std::size_t> start;
-  const auto of_entries = find_entries(rows, places, start);
+  const auto of_entries = find_runs(rows, places, start);
   const Teuchos::ArrayRCP<std::size_t> row_start(start.size());
   const Teuchos::ArrayRCP<LocalIndex> column(of_entries.size());
   std::copy(start.begin(), start.end(), row_start.begin());
@@ -208,8 +201,8 @@ void JoinedMatrix::create(const std::vector<RCP<Vector>>& chosen) {
 }
 
 /// The columns of all entries, and where those of each row start; and which entry of which block goes where.
-std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>& rows, const Places& places,
-                                                   std::vector<std::size_t>& start) {
+std::vector<LocalIndex> JoinedMatrix::find_runs(const std::vector<LocalIndex>& rows, const Places& places,
+                                                std::vector<std::size_t>& start) {
   const int n = joined_->n_blocks();
   struct Entry {
     LocalIndex column;
@@ -217,7 +210,17 @@ std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>
     LocalIndex from;
   };
   std::vector<Entry> of_row;
-  std::vector<std::vector<LocalIndex>> from(n * n), to(n * n);
+  std::vector<std::vector<LocalIndex>> from(n * n), to(n * n), length(n * n);
+  const auto add = [&](int k, LocalIndex place, LocalIndex place_here) {
+    if (!from[k].empty() && place == from[k].back() + length[k].back() &&
+        place_here == to[k].back() + length[k].back()) {
+      ++length[k].back();
+      return;
+    }
+    from[k].push_back(place);
+    to[k].push_back(place_here);
+    length[k].push_back(1);
+  };
   std::vector<LocalIndex> columns;
   start.push_back(0);
   for (const LocalIndex joined_row : rows) {
@@ -227,20 +230,20 @@ std::vector<LocalIndex> JoinedMatrix::find_entries(const std::vector<LocalIndex>
     of_row.clear();
     for (int k = r * n; k < (r + 1) * n; ++k) {
       if (blocks_[k].is_null()) continue;
-      const auto graph = blocks_[k]->getLocalMatrixHost().graph;
-      for (auto j = graph.row_map(row); j < graph.row_map(row + 1); ++j)
-        if (const LocalIndex column = places[k][graph.entries(j)]; column >= 0)
-          of_row.push_back({column, k, static_cast<LocalIndex>(j)});
+      blocks_[k]->numbers().for_row(row, [&](LocalIndex c, std::size_t place) {
+        if (const LocalIndex column = places[k][c]; column >= 0)
+          of_row.push_back({column, k, static_cast<LocalIndex>(place)});
+      });
     }
     std::sort(of_row.begin(), of_row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
     for (const auto& entry : of_row) {
-      from[entry.block].push_back(entry.from);
-      to[entry.block].push_back(static_cast<LocalIndex>(columns.size()));
+      add(entry.block, entry.from, static_cast<LocalIndex>(columns.size()));
       columns.push_back(entry.column);
     }
     start.push_back(columns.size());
   }
-  for (int k = 0; k < n * n; ++k) entries_.push_back({on_device("from", from[k]), on_device("to", to[k])});
+  for (int k = 0; k < n * n; ++k)
+    runs_.push_back({on_device("from", from[k]), on_device("to", to[k]), on_device("length", length[k])});
   return columns;
 }
 
@@ -255,7 +258,7 @@ JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>
   Places places(n * n);
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
-    const auto& of_block = *blocks_[k]->getColMap();
+    const auto& of_block = *blocks_[k]->column_map();
     const auto taken = of_columns(*blocks_[k], *chosen[k % n]);
     places[k].assign(taken.size(), -1);
     for (std::size_t c = 0; c < taken.size(); ++c) {
@@ -279,11 +282,14 @@ void JoinedMatrix::update() {
   own_->resumeFill();
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
-    const auto source = blocks_[k]->getLocalMatrixDevice().values, target = own_->getLocalMatrixDevice().values;
-    const auto from = entries_[k].from, to = entries_[k].to;
+    const auto source = blocks_[k]->numbers().value;
+    const auto target = own_->getLocalMatrixDevice().values;
+    const auto from = runs_[k].from, to = runs_[k].to, length = runs_[k].length;
     const Real scale = joined_->scale(k / n) * joined_->scale(k % n);
     Kokkos::parallel_for(
-        "join", Policy(0, from.extent(0)), KOKKOS_LAMBDA(LocalIndex j) { target(to(j)) = scale * source(from(j)); });
+        "join", Policy(0, from.extent(0)), KOKKOS_LAMBDA(LocalIndex j) {
+          for (LocalIndex i = 0; i < length(j); ++i) target(to(j) + i) = scale * source(from(j) + i);
+        });
   }
   own_->fillComplete(own_->getDomainMap(), own_->getRangeMap());
 }

@@ -41,7 +41,7 @@ class Joined {
 };
 
 /// Matrices of blocks, [r * n + s], null where they do not couple. Their graphs stay as they are.
-using Blocks = std::vector<RCP<const fields::CrsMatrix>>;
+using Blocks = std::vector<RCP<const fields::Matrix>>;
 
 /// S A S without storing it; of a single block, A itself.
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks);
@@ -84,15 +84,15 @@ class JoinedMatrix {
   using Places = std::vector<std::vector<LocalIndex>>;  // [r * n + s][column of the block]
   Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, const fields::Map& domain,
                         RCP<const fields::Map>& columns) const;
-  std::vector<LocalIndex> find_entries(const std::vector<LocalIndex>& rows, const Places& places,
-                                       std::vector<std::size_t>& start);
+  std::vector<LocalIndex> find_runs(const std::vector<LocalIndex>& rows, const Places& places,
+                                    std::vector<std::size_t>& start);
 
   std::shared_ptr<const Joined> joined_;
   Blocks blocks_;
-  struct Entries {
-    View<LocalIndex*> from, to;  // values of the block and of the matrix
+  struct Runs {  // of numbers that follow one another in the block and in the matrix
+    View<LocalIndex*> from, to, length;
   };
-  std::vector<Entries> entries_;  // [r * n + s]
+  std::vector<Runs> runs_;  // [r * n + s]
   View<LocalIndex*> rows_;
   RCP<fields::CrsMatrix> own_;  // null for A itself
   RCP<const fields::CrsMatrix> matrix_;

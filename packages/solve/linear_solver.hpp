@@ -20,6 +20,7 @@ namespace sprekk::solve {
 
 using fields::Block;
 using fields::CrsMatrix;
+using fields::Matrix;
 using fields::Vector;
 
 /// What is wanted of a linear solver. The lists are handed to the libraries untouched, over the defaults.
@@ -52,13 +53,13 @@ inline constexpr Real acceptable_linear_residual = 1e-8;
 
 /// Calls work(A) with a block's matrix without what crosses interfaces, by whose values multigrid aggregates. Meanwhile
 /// the block's matrix may have these values, too.
-using Bulk = std::function<void(const std::function<void(const RCP<CrsMatrix>& A)>& work)>;
+using Bulk = std::function<void(const std::function<void(const RCP<const Matrix>& A)>& work)>;
 
 /// A block on the diagonal of a linear system.
 struct DiagonalBlock {
   Block block;
-  RCP<const CrsMatrix> matrix;  ///< of the block alone; null if it has none
-  Bulk bulk;                    ///< or empty
+  RCP<const Matrix> matrix;  ///< of the block alone; null if it has none
+  Bulk bulk;                 ///< or empty
   bool symmetric = true;
   RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
   bool careful = true;           ///< where it is not symmetric, a cycle of multigrid is looked at and mended if need be

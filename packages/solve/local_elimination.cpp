@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solve/columns.hpp"
+#include "solve/condensed_block.hpp"
 #include "solve/node_kernels.hpp"
 #include "solve/small_lu.hpp"
 
@@ -15,177 +15,6 @@ namespace sprekk::solve {
 namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
-
-auto values_of(const CrsMatrix& matrix) { return matrix.getLocalMatrixDevice().values; }
-
-auto write(Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadWrite), Kokkos::ALL(), 0); }
-
-auto read(const Vector& v) { return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0); }
-
-/// Zeroes rows and columns of the flagged unknowns; keeps |diagonal|, or 1 where it is zero, if the block is diagonal.
-void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool diagonal) {
-  const auto& matrix = *condensed.matrix;
-  const auto local = matrix.getLocalMatrixDevice();
-  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
-  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
-  const auto held = condensed.held;
-  Kokkos::parallel_for(
-      "constrain", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-        const LocalIndex row = held(i);
-        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
-          const LocalIndex column = local.graph.entries(k);
-          if (row_flag(row) == 0 && column_flag(column) == 0) continue;
-          const bool on_diagonal = diagonal && columns.getGlobalElement(column) == rows.getGlobalElement(row);
-          const Real size = Kokkos::Experimental::fabs(local.values(k));
-          local.values(k) = on_diagonal ? (size > 0 ? size : 1) : 0;
-        }
-      });
-}
-
-void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed) {
-  const auto& matrix = *condensed.matrix;
-  const auto local = matrix.getLocalMatrixDevice();
-  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
-  const auto added = read(diagonal);
-  const auto changed = condensed.rows;
-  Kokkos::parallel_for(
-      "add diagonal", Policy(0, changed.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-        const LocalIndex row = changed(i);
-        for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-          if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
-            local.values(k) += added(row);
-      });
-}
-
-/// Changes, but for a chance of about 2^-32, when any bit of any value does: halves of values, plus keys that scatter
-/// the places, multiplied and summed (as NH of Black, Halevi, Krawczyk, Krovetz and Rogaway 1999).
-std::uint64_t checksum(const CondensedBlock& condensed) {
-  const auto local = condensed.matrix->getLocalMatrixDevice();
-  const auto rows = condensed.rows;
-  std::uint64_t sum = 0;
-  in_widest_instructions([&] {
-    Kokkos::parallel_reduce(
-        "checksum", Policy(0, rows.extent(0)),
-        KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {
-          const auto begin = local.graph.row_map(rows(i));
-          const auto n = static_cast<std::uint32_t>(local.graph.row_map(rows(i) + 1) - begin);
-          for (std::uint32_t k = 0; k < n; ++k) {
-            const auto bits = __builtin_bit_cast(std::uint64_t, local.values(begin + k));
-            std::uint32_t key = (static_cast<std::uint32_t>(begin) + k) * 0x9e3779b1u;
-            key = (key ^ (key >> 15)) * 0x85ebca6bu;
-            const std::uint32_t low = static_cast<std::uint32_t>(bits) + key;
-            const std::uint32_t high = static_cast<std::uint32_t>(bits >> 32) + (key ^ (key >> 13)) * 0xc2b2ae35u;
-            partial += static_cast<std::uint64_t>(low) * high;
-          }
-        },
-        sum);
-  });
-  return sum;
-}
-
-View<LocalIndex*> numbers_of(const View<char*>& chosen) {
-  LocalIndex n = 0;
-  const Policy all(0, chosen.extent(0));
-  Kokkos::parallel_reduce(
-      "count", all, KOKKOS_LAMBDA(LocalIndex i, LocalIndex & sum) { sum += chosen(i) != 0; }, n);
-  const View<LocalIndex*> numbers("numbers", n);
-  Kokkos::parallel_scan(
-      "number", all, KOKKOS_LAMBDA(LocalIndex i, LocalIndex & sum, bool last) {
-        if (last && chosen(i)) numbers(sum) = i;
-        sum += chosen(i) != 0;
-      });
-  return numbers;
-}
-
-/// Rows of unknowns that are prescribed, and those with a column of one.
-View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
-  const auto graph = condensed.matrix->getLocalMatrixDevice().graph;
-  const auto row_flag = read(row_flags), column_flag = read(*condensed.constrained);
-  const View<char*> held("held", graph.numRows());
-  Kokkos::parallel_for(
-      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
-        bool here = row_flag(row) != 0;
-        for (auto k = graph.row_map(row); k < graph.row_map(row + 1) && !here; ++k)
-          here = column_flag(graph.entries(k)) != 0;
-        held(row) = here;
-      });
-  return numbers_of(held);
-}
-
-/// Values of some rows of a matrix, put aside.
-class RowValues {
- public:
-  RowValues(const CrsMatrix& matrix, const View<LocalIndex*>& rows)
-      : local_(matrix.getLocalMatrixDevice()), rows_(rows), start_("start", rows.extent(0) + 1) {
-    const auto local = local_;
-    const auto start = start_;
-    std::size_t n = 0;
-    Kokkos::parallel_scan(
-        "count values", Policy(0, rows.extent(0)),
-        KOKKOS_LAMBDA(LocalIndex i, std::size_t & sum, bool last) {
-          sum += local.graph.row_map(rows(i) + 1) - local.graph.row_map(rows(i));
-          if (last) start(i + 1) = sum;
-        },
-        n);
-    value_ = View<Real*>(Kokkos::view_alloc("values put aside", Kokkos::WithoutInitializing), n);
-    each(KOKKOS_LAMBDA(const Real& in_matrix, Real& aside) { aside = in_matrix; });
-  }
-
-  void put_back() const {
-    each(KOKKOS_LAMBDA(Real & in_matrix, const Real& aside) { in_matrix = aside; });
-  }
-
-  template <class Move>
-  void each(const Move& move) const {
-    const auto local = local_;
-    const auto rows = rows_;
-    const auto start = start_;
-    const auto value = value_;
-    Kokkos::parallel_for(
-        "move values", Policy(0, rows.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-          const auto begin = local.graph.row_map(rows(i));
-          for (std::size_t k = start(i); k < start(i + 1); ++k) move(local.values(begin + k - start(i)), value(k));
-        });
-  }
-
- private:
-  CrsMatrix::local_matrix_device_type local_;
-  View<LocalIndex*> rows_;
-  View<std::size_t*> start_;
-  View<Real*> value_;
-};
-
-/// Where columns stand in a row, which knows none twice: fast for those that come in its order, or nearly so.
-template <class Graph>
-struct RowWalk {
-  const Graph& graph;
-  std::size_t begin, end, at;
-
-  KOKKOS_INLINE_FUNCTION RowWalk(const Graph& graph_of_row, LocalIndex row)
-      : graph(graph_of_row), begin(graph.row_map(row)), end(graph.row_map(row + 1)), at(begin) {}
-  KOKKOS_INLINE_FUNCTION std::size_t next() const { return at + 1 < end ? at + 1 : begin; }
-  KOKKOS_INLINE_FUNCTION std::size_t find(LocalIndex column) {
-    while (graph.entries(at) != column) at = next();
-    const std::size_t found = at;
-    at = next();  // where the next column is looked for first
-    return found;
-  }
-};
-
-/// J_ab <- A_ab.
-void start_from_bulk(const CondensedBlock& condensed) {
-  if (condensed.kept) return condensed.kept->restore(*condensed.matrix);
-  Kokkos::deep_copy(values_of(*condensed.matrix), 0.0);
-  if (condensed.bulk.is_null()) return;
-  const auto from = condensed.bulk->getLocalMatrixDevice(), local = condensed.matrix->getLocalMatrixDevice();
-  const auto column = condensed.bulk_column;
-  Kokkos::parallel_for(
-      "copy bulk", Policy(0, from.numRows()), KOKKOS_LAMBDA(LocalIndex row) {
-        RowWalk walk(local.graph, row);
-        for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1); ++k)
-          local.values(walk.find(column(from.graph.entries(k)))) = from.values(k);
-      });
-}
 
 /// Lets J_aa take the place of A_aa, if the problem agrees. Collective.
 void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
@@ -196,8 +25,18 @@ void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
   condensed.bulk_column = {};
 }
 
-View<LocalIndex*> all_rows(const CrsMatrix& matrix) {
-  const View<LocalIndex*> rows("all rows", matrix.getNodeNumRows());
+/// Of the columns, from those of the unknowns. Collective.
+void take_flags(const Vector& constrained, const CondensedBlock& condensed) {
+  Vector columns(condensed.matrix->column_map());
+  condensed.matrix->spread(constrained, columns);
+  const auto from = read_values(columns);
+  const auto to = condensed.constrained;
+  Kokkos::parallel_for(
+      "flags", Policy(0, to.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { to(i) = from(i) != 0; });
+}
+
+View<LocalIndex*> all_rows(const Matrix& matrix) {
+  const View<LocalIndex*> rows("all rows", matrix.numbers().n_rows());
   Kokkos::parallel_for(
       "all rows", Policy(0, rows.extent(0)), KOKKOS_LAMBDA(LocalIndex row) { rows(row) = row; });
   return rows;
@@ -210,7 +49,7 @@ LocalElimination::LocalElimination(BlockProblem& problem)
   for (int r = 0; r < n_remaining(); ++r) {
     constrained_.push_back(rcp(new Vector(problem.blocks()[plan_.remaining[r]].map)));
     share(problem, plan_.remaining[r], block(r, r));
-    keep_rows(r, Teuchos::null);  // before anything is multiplied: J has columns there that A does not
+    keep_condensed(block(r, r), plan_.groups, r, n_remaining());  // J has columns there that A does not
   }
   for (auto& condensed : plan_.condensed)
     if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);
@@ -222,7 +61,7 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
     const auto proximal = problem.proximal(plan_.remaining[r]);
     for (int s = 0; s < n_remaining() && (held_anew || fresh_); ++s)
       if (!block(r, s).matrix.is_null()) block(r, s).held = find_held(block(r, s), *constrained_[r]);
-    if (held_anew || fresh_ || !proximal.is_null()) keep_rows(r, proximal);
+    if (held_anew || fresh_ || !proximal.is_null()) keep_held(block(r, r), *constrained_[r], proximal);
     for (int s = 0; s < n_remaining(); ++s)
       if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
     if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
@@ -256,7 +95,7 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
   int changed = 0, anywhere = 0;
   for (int r = 0; r < n_remaining(); ++r) {
     const auto flags = problem.constrained(plan_.remaining[r]);
-    const auto flag = write(*constrained_[r]);
+    const auto flag = write_values(*constrained_[r]);
     Kokkos::parallel_reduce(
         "flags", Policy(0, flags.extent(0)),
         KOKKOS_LAMBDA(LocalIndex i, int& any) {
@@ -270,36 +109,8 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
   Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &changed, &anywhere);
   for (int r = 0; r < n_remaining() && anywhere; ++r)
     for (int s = 0; s < n_remaining(); ++s)
-      if (const auto& condensed = block(r, s); !condensed.matrix.is_null())
-        spread(*constrained_[s], *condensed.matrix, *condensed.constrained);
+      if (const auto& condensed = block(r, s); !condensed.matrix.is_null()) take_flags(*constrained_[s], condensed);
   return anywhere != 0;
-}
-
-/// Of A_aa that stands in J_aa, the rows that the proximal diagonal, local groups or constraints will change.
-void LocalElimination::keep_rows(int r, const RCP<const Vector>& proximal) {
-  auto& condensed = block(r, r);
-  if (!condensed.kept) return;
-  const View<char*> changes("changes", condensed.matrix->getNodeNumRows());
-  const Policy rows(0, changes.extent(0));
-  const auto held = condensed.held;
-  Kokkos::parallel_for(
-      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { changes(held(i)) = 1; });
-  if (!proximal.is_null()) {
-    const auto added = read(*proximal);
-    Kokkos::parallel_for(
-        "raised rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
-          if (added(row) != 0) changes(row) = 1;
-        });
-  }
-  for (const auto& group : plan_.groups) {
-    const auto first = group.coupling[r].row_start;
-    Kokkos::parallel_for(
-        "condensed rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
-          if (first(row) < first(row + 1)) changes(row) = 1;
-        });
-  }
-  condensed.kept->keep(changes);
-  condensed.rows = condensed.kept->rows();
 }
 
 /// The sizes of a group's unknowns under the present loads, as powers of two relative to the first block: so scaling
@@ -365,14 +176,14 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const auto column_start = response.column_start;
   const auto coupling = group.coupling[r];
   const auto column = group.column[r * n_remaining() + s];
-  const auto local = block(r, s).matrix->getLocalMatrixDevice();
+  const auto numbers = block(r, s).matrix->numbers();
   const auto values_of_component = values_of_components(group, r);
   in_widest_instructions([&] {
     Kokkos::parallel_for(
         "condense", Policy(0, coupling.row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
           constexpr int strip = Response::strip;
           Real factor[max_small_size];
-          RowWalk walk(local.graph, row);
+          RowWalk walk(numbers, row);
           for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair) {
             for (int i = 0; i < m; ++i) factor[i] = 0;
             for (LocalIndex run = coupling.first(pair); run < coupling.first(pair + 1); ++run) {
@@ -388,10 +199,10 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
                 z.load(&value(m * first + i * n_columns + begin));
                 sum.add(factor[i], z);
               }
-              Real numbers[strip];
-              sum.store(numbers);
+              Real sums[strip];
+              sum.store(sums);
               for (int k = 0; k < strip && begin + k < n_columns; ++k)
-                local.values(walk.find(column(first + begin + k))) -= numbers[k];
+                numbers.value(walk.find(column(first + begin + k))) -= sums[k];
             }
           }
         });
@@ -404,14 +215,15 @@ Kokkos::Array<const Real*, max_small_size> LocalElimination::values_of_component
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     const int end = i + 1 < group.offset.size() ? group.offset[i + 1] : group.size;
     if (const auto& A = (*matrix_)(plan_.remaining[r], group.blocks[i]); !A.is_null())
-      for (int component = group.offset[i]; component < end; ++component) values[component] = values_of(*A).data();
+      for (int component = group.offset[i]; component < end; ++component)
+        values[component] = A->getLocalMatrixDevice().values.data();
   }
   return values;
 }
 
-RCP<const CrsMatrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
+RCP<const Matrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }
 
-void LocalElimination::with_bulk(int r, const std::function<void(const RCP<CrsMatrix>& A)>& work) const {
+void LocalElimination::with_bulk(int r, const std::function<void(const RCP<const Matrix>& A)>& work) const {
   const auto& condensed = block(r, r);
   const RowValues of_J(*condensed.matrix, condensed.rows);
   start_from_bulk(condensed);
@@ -427,7 +239,7 @@ void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) con
   const auto pivot = group.pivot;
   const auto each = [&](const auto& move) {
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
-      const auto part = write(*z[group.blocks[i]]);
+      const auto part = write_values(*z[group.blocks[i]]);
       const int offset = group.offset[i];
       const int n = (i + 1 < group.blocks.size() ? group.offset[i + 1] : m) - offset;
       move(part, offset, n);
@@ -467,8 +279,8 @@ BlockVector LocalElimination::reduce(const BlockVector& b) const {
   BlockVector c;
   for (int r = 0; r < n_remaining(); ++r) {
     c.push_back(s[plan_.remaining[r]]);
-    const auto value = write(*c.back());
-    const auto flag = read(*constrained_[r]);
+    const auto value = write_values(*c.back());
+    const auto flag = read_values(*constrained_[r]);
     Kokkos::parallel_for(
         "constrain", Policy(0, value.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
           if (flag(i) != 0) value(i) = 0;
@@ -480,8 +292,8 @@ BlockVector LocalElimination::reduce(const BlockVector& b) const {
 void LocalElimination::expand(const BlockVector& b, const BlockVector& y, BlockVector& dx) const {
   for (int r = 0; r < n_remaining(); ++r) {
     const int a = plan_.remaining[r];
-    const auto value = write(*dx[a]);
-    const auto flag = read(*constrained_[r]), prescribed = read(*b[a]), solved = read(*y[r]);
+    const auto value = write_values(*dx[a]);
+    const auto flag = read_values(*constrained_[r]), prescribed = read_values(*b[a]), solved = read_values(*y[r]);
     Kokkos::parallel_for(
         "expand", Policy(0, value.extent(0)),
         KOKKOS_LAMBDA(LocalIndex i) { value(i) = flag(i) != 0 ? prescribed(i) : solved(i); });

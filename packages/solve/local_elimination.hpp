@@ -33,9 +33,9 @@ class LocalElimination {
   const std::vector<int>& remaining() const { return plan_.remaining; }
   /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for
   /// good.
-  RCP<const CrsMatrix> condensed(int r, int s) const;
+  RCP<const Matrix> condensed(int r, int s) const;
   /// Calls work(A) while J of the r-th remaining block is A_aa, constrained like J, without what the local groups add.
-  void with_bulk(int r, const std::function<void(const RCP<CrsMatrix>& A)>& work) const;
+  void with_bulk(int r, const std::function<void(const RCP<const Matrix>& A)>& work) const;
 
   /// c [r] for b [block].
   BlockVector reduce(const BlockVector& b) const;
@@ -44,7 +44,6 @@ class LocalElimination {
 
  private:
   bool take_constraints(const BlockProblem& problem);
-  void keep_rows(int r, const RCP<const Vector>& proximal);
   static void set_scales(const BlockProblem& problem, GroupPlan& group);
   bool factor(GroupPlan& group, std::string& failure) const;
   void condense(GroupPlan& group, int r, int s) const;

@@ -63,11 +63,11 @@ bool Multigrid::can_solve(int n_components, int n_modes) {
          try_sizes(n_modes, n_modes, nothing);
 }
 
-Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_components,
+Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
                      const RCP<const MultiVector>& modes)
-    : map_(matrix->getRowMap()), finest_(matrix), size_(n_components) {
+    : map_(matrix->row_map()), finest_(matrix), size_(n_components) {
   add_level(node_matrix(*matrix, size_));
-  const int shares = levels_.front().A.value.data() == matrix->getLocalMatrixHost().values.data();
+  const int shares = levels_.front().A.value.data() == matrix->numbers().value.data();
   int all_share = 0;
   Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_MIN, 1, &shares, &all_share);
   shares_ = all_share == 1;
@@ -101,10 +101,11 @@ Multigrid::Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_comp
 void Multigrid::add_level(const NodeMatrix& A) {
   const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
   const auto& halo = *A.graph.columns;
-  levels_.push_back({A, {}, {}, vector(halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
+  levels_.push_back(
+      {A, {}, {}, vector(levels_.empty() ? 0 : halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
 }
 
-void Multigrid::setup(const RCP<const CrsMatrix>& matrix, bool symmetric, bool careful) {
+void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful) {
   if (matrix != finest_ || !shares_) {
     const auto values = node_matrix(*matrix, size_).value;
     base::collectively(*map_->getComm(), [&] {
@@ -155,12 +156,10 @@ Real Multigrid::growth() const {
 void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const {
   const auto given = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto result = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
-  const auto from = levels_.front().b, to = levels_.front().x;
-  const Policy rows(0, from.extent(0));
+  const auto to = levels_.front().x;
+  const Policy rows(0, given.extent(0));
   for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
-    Kokkos::parallel_for(
-        "take", rows, KOKKOS_LAMBDA(LocalIndex i) { from(i) = given(i, v); });
-    cycle(0);
+    cycle(0, Kokkos::subview(given, Kokkos::ALL(), v));
     Kokkos::parallel_for(
         "give", rows, KOKKOS_LAMBDA(LocalIndex i) {
           result(i, v) = beta == 0 ? alpha * to(i) : alpha * to(i) + beta * result(i, v);
@@ -168,21 +167,21 @@ void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Re
   }
 }
 
-void Multigrid::cycle(std::size_t level) const {
-  const auto& [A, smoother, to_coarse, b, x, r] = levels_[level];
-  if (!to_coarse) return solve_last();
+void Multigrid::cycle(std::size_t level, const ConstView<Real*>& b) const {
+  const auto& [A, smoother, to_coarse, _, x, r] = levels_[level];
+  if (!to_coarse) return solve_last(b);
   smoother->apply(b, x, false);
   residual(A, x, b, r);
   product(to_coarse->restriction(), r, levels_[level + 1].b);
-  cycle(level + 1);
+  cycle(level + 1, levels_[level + 1].b);
   add_product(to_coarse->prolongation(), levels_[level + 1].x, x);
   residual(A, x, b, r);
   smoother->apply(r, x, true);
 }
 
-void Multigrid::solve_last() const {
+void Multigrid::solve_last(const ConstView<Real*>& from) const {
   if (last_.is_null()) return;
-  const auto from = levels_.back().b, to = levels_.back().x;
+  const auto to = levels_.back().x;
   MultiVector b(last_->getDomainMap(), 1), x(last_->getRangeMap(), 1);
   const Policy rows(0, from.extent(0));
   {

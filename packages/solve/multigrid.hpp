@@ -20,16 +20,16 @@ class Multigrid : public fields::Operator {
 
   /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
   /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
-  Multigrid(const RCP<const CrsMatrix>& matrix, Nodes nodes, int n_components,
+  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
             const RCP<const fields::MultiVector>& modes);
   /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
-  Multigrid(const RCP<const CrsMatrix>& matrix, const CrsMatrix& bulk, int n_components,
+  Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components,
             const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null)
       : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
   /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
   /// cycle, and smooths less if the residual grows much in it.
-  void setup(const RCP<const CrsMatrix>& matrix, bool symmetric, bool careful = true);
+  void setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful = true);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
@@ -49,17 +49,17 @@ class Multigrid : public fields::Operator {
     NodeMatrix A;
     std::unique_ptr<Chebyshev> smoother;
     std::unique_ptr<Galerkin> to_coarse;
-    View<Real*> b, x, r;  // [owned], [all], [all]
+    View<Real*> b, x, r;  // [owned], none on the finest level; [all], [all]
   };
 
   void add_level(const NodeMatrix& A);
   void factor_last(bool symmetric);
   Real growth() const;
-  void cycle(std::size_t level) const;
-  void solve_last() const;
+  void cycle(std::size_t level, const ConstView<Real*>& b) const;
+  void solve_last(const ConstView<Real*>& b) const;
 
   RCP<const fields::Map> map_;
-  RCP<const CrsMatrix> finest_;
+  RCP<const Matrix> finest_;
   int size_;
   int degree_;  // of the smoother on the finest level, of a symmetric matrix
   double operator_complexity_ = 1;

@@ -1,5 +1,7 @@
 #include "solve/node_matrix.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
@@ -170,6 +172,26 @@ void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& ou
 
 }  // namespace
 
+NodeMatrix node_matrix(const fields::Matrix& A, int size) {
+  const auto& numbers = A.numbers();
+  const auto &rows = *A.row_map(), &columns = *A.column_map();
+  bool rows_first = columns.getNodeNumElements() >= rows.getNodeNumElements();
+  for (LocalIndex i = 0, n = rows.getNodeNumElements(); i < n && rows_first; ++i)
+    rows_first = columns.getGlobalElement(i) == rows.getGlobalElement(i);
+  const int in_nodes = rows_first && numbers.height == size && numbers.width == size;
+  int all_in_nodes = 0;
+  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_MIN, 1, &in_nodes, &all_in_nodes);
+  if (all_in_nodes == 0) return node_matrix(*A.crs(), size);
+  const auto nodes = [size](const Map& unknowns) {
+    std::vector<GlobalIndex> numbers;
+    for (LocalIndex i = 0, n = unknowns.getNodeNumElements(); i < n; i += size)
+      numbers.push_back(unknowns.getGlobalElement(i) / size);
+    return fields::make_map(numbers, unknowns.getComm());
+  };
+  const auto halo = std::make_shared<Halo>(nodes(rows), nodes(columns));
+  return {size, size, {halo, numbers.start, numbers.column}, numbers.value};
+}
+
 NodeMatrix node_matrix(const CrsMatrix& A, int size) {
   const auto columns = column_nodes(A, size);
   const auto local = A.getLocalMatrixHost();
@@ -229,7 +251,7 @@ template void product(const ShortNodeMatrix&, const View<Real*>&, const View<Rea
 template void add_product(const NodeMatrix&, const View<Real*>&, const View<Real*>&);
 template void add_product(const ShortNodeMatrix&, const View<Real*>&, const View<Real*>&);
 
-void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r) {
+void residual(const NodeMatrix& A, const View<Real*>& x, const ConstView<Real*>& b, const View<Real*>& r) {
   for_rows(A, x, [b, r](LocalIndex i, const Real* sum, auto height) {
     for (int k = 0; k < height(); ++k) r(i * height() + k) = b(i * height() + k) - sum[k];
   });

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "fields/matrix.hpp"
 #include "solve/halo.hpp"
 
 namespace sprekk::solve {
@@ -28,6 +29,8 @@ struct NodeMatrixOf {
 using NodeMatrix = NodeMatrixOf<Real>;
 using ShortNodeMatrix = NodeMatrixOf<float>;  ///< in half of the bytes; products with it are in double precision
 
+/// A matrix that is stored in blocks of this size, with its numbers; of another one, see below. Collective.
+NodeMatrix node_matrix(const fields::Matrix& A, int size);
 /// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
 /// the values of A where A's rows and columns on this rank allow that. Throws where unknowns are numbered otherwise.
 /// Collective.
@@ -43,6 +46,6 @@ void product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Rea
 template <class Number>
 void add_product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y);
 /// r <- b - A x. Collective.
-void residual(const NodeMatrix& A, const View<Real*>& x, const View<Real*>& b, const View<Real*>& r);
+void residual(const NodeMatrix& A, const View<Real*>& x, const ConstView<Real*>& b, const View<Real*>& r);
 
 }  // namespace sprekk::solve

@@ -49,6 +49,16 @@ TEST(LocalElimination, SolvesTheFullSystem3D) {
   expect_equal_solutions(options);
 }
 
+/// Numbers that couple a row with an entity follow one another.
+TEST(LocalElimination, SolvesTheFullSystemWhereComponentsMix) {
+  for (const int d : {2, 3}) {
+    GridOptions options;
+    options.d = d;
+    options.mix = 0.3;
+    expect_equal_solutions(options);
+  }
+}
+
 TEST(LocalElimination, SolvesWithoutGroups) {
   GridOptions options;
   options.faces = false;
@@ -67,17 +77,16 @@ TEST(LocalElimination, CondensedMatrixIsSymmetricWithZeroedConstraints) {
   j->apply(x, jx);
   j->apply(y, jy);
   EXPECT_NEAR(y.dot(jx), x.dot(jy), 1e-12 * x.norm2() * jy.norm2());
-  const auto local = j->getLocalMatrixHost();
+  const auto numbers = j->numbers();
   const auto constrained = problem.constrained(0);
-  for (LocalIndex row = 0; row < local.numRows(); ++row)
-    for (auto k = local.graph.row_map(row); constrained(row) && k < local.graph.row_map(row + 1); ++k) {
-      const bool diagonal =
-          j->getColMap()->getGlobalElement(local.graph.entries(k)) == j->getRowMap()->getGlobalElement(row);
-      if (diagonal)
-        EXPECT_GT(local.values(k), 0);
+  for (LocalIndex row = 0; row < numbers.n_rows(); ++row)
+    numbers.for_row(row, [&](LocalIndex column, std::size_t k) {
+      if (!constrained(row)) return;
+      if (j->column_map()->getGlobalElement(column) == j->row_map()->getGlobalElement(row))
+        EXPECT_GT(numbers.value(k), 0);
       else
-        EXPECT_EQ(local.values(k), 0);
-    }
+        EXPECT_EQ(numbers.value(k), 0);
+    });
 }
 
 /// The solution is that of the dense matrix with it; other entries of the condensed matrix keep every bit.
@@ -95,17 +104,16 @@ TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
     problem.added = diagonal;
     ASSERT_EQ(with.update(problem).failure, "");
     const auto a = without.condensed(0, 0), b = with.condensed(0, 0);
-    const auto before = a->getLocalMatrixHost(), after = b->getLocalMatrixHost();
+    const auto before = a->numbers(), after = b->numbers();
     const auto constrained = problem.constrained(0);
-    for (LocalIndex row = 0; row < before.numRows(); ++row)
-      for (auto k = before.graph.row_map(row); !constrained(row) && k < before.graph.row_map(row + 1); ++k) {
-        const bool on_diagonal =
-            a->getColMap()->getGlobalElement(before.graph.entries(k)) == a->getRowMap()->getGlobalElement(row);
-        if (on_diagonal)
-          EXPECT_NEAR(after.values(k) - before.values(k), diagonal->getData()[row], 1e-14);
+    for (LocalIndex row = 0; row < before.n_rows(); ++row)
+      before.for_row(row, [&](LocalIndex column, std::size_t k) {
+        if (constrained(row)) return;
+        if (a->column_map()->getGlobalElement(column) == a->row_map()->getGlobalElement(row))
+          EXPECT_NEAR(after.value(k) - before.value(k), diagonal->getData()[row], 1e-14);
         else
-          EXPECT_EQ(after.values(k), before.values(k));
-      }
+          EXPECT_EQ(after.value(k), before.value(k));
+      });
     auto right = problem.zero(), x = problem.zero();
     const auto values = some_values(gather(right).size());
     scatter(values, right);
@@ -125,14 +133,14 @@ TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
   }
 }
 
-std::vector<Real> values_of(const CrsMatrix& matrix) {
-  const auto values = matrix.getLocalMatrixHost().values;
+std::vector<Real> values_of(const fields::Matrix& matrix) {
+  const auto values = matrix.numbers().value;
   return {values.data(), values.data() + values.extent(0)};
 }
 
 std::vector<Real> bulk_of(const LocalElimination& elimination) {
   std::vector<Real> values;
-  elimination.with_bulk(0, [&](const RCP<CrsMatrix>& A) { values = values_of(*A); });
+  elimination.with_bulk(0, [&](const RCP<const fields::Matrix>& A) { values = values_of(*A); });
   return values;
 }
 
@@ -149,7 +157,9 @@ TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
     GridProblem sharing(Tpetra::getDefaultComm(), options);
     LocalElimination own(alone), first(sharing);
     std::unique_ptr<LocalElimination> second;
-    EXPECT_EQ(sharing.matrix()(0, 0), first.condensed(0, 0));
+    EXPECT_EQ(sharing.matrix().kept(0)->J(), first.condensed(0, 0));
+    EXPECT_TRUE(sharing.matrix()(0, 0).is_null());
+    EXPECT_EQ(first.condensed(0, 0)->numbers().width, d);
     const auto diagonal = rcp(new Vector(alone.blocks()[0].map));
     diagonal->putScalar(0.3);
     const auto x = mixed_state(alone), zero = alone.zero();

@@ -20,6 +20,7 @@ using fields::Map;
 using fields::Measure;
 using fields::MultiVector;
 using fields::Vector;
+using fields::wrapped;
 
 inline RCP<const Map> make_map(const std::vector<GlobalIndex>& indices, const RCP<const Comm>& comm) {
   const auto n = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
@@ -51,12 +52,13 @@ struct GridOptions {
   int singular_face = -1;  ///< a face whose bubble has no stiffness
   bool eliminate = true;   ///< bubble and traction are a local group
   bool shares = false;     ///< the springs' matrix
+  Real mix = 0;            ///< of other components of u in a component of the jump
 };
 
 /// Springs on a grid of nodes, cut by a row of faces between two rows of nodes: 'displacement' u at nodes; at faces a
-/// 'bubble' a and a 'traction' l, with jump w = u_p - u_q + beta a:
-///   r_u = K u + l at p, -l at q, eta a at p, -eta a at the node above;  r_a = alpha a + eta (u_p - u_above) + beta l
-///   r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
+/// 'bubble' a and a 'traction' l, with jump w = Q (u_p - u_q) + beta a:
+///   r_u = K u + Q^T l at p, -Q^T l at q, eta a at p, -eta a at the node above;  r_a = alpha a + eta (u_p - u_above) +
+///   beta l r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
 /// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are
 /// more, has no nodes; faces live elsewhere than their nodes.
 class GridProblem : public BlockProblem {
@@ -128,16 +130,16 @@ class GridProblem : public BlockProblem {
       const Real dr_dw = normal ? (open ? 0 : -c) : -kt;
       ll.values(i) = normal && !open ? 0 : 1;
       la.values(i) = dr_dw * beta;
-      for (int k = 0; k < 2; ++k) lu.values(2 * i + k) = dr_dw * bu.values(2 * i + k);
+      for (auto k = bu.graph.row_map(i); k < bu.graph.row_map(i + 1); ++k) lu.values(k) = dr_dw * bu.values(k);
     }
   }
   const BlockMatrix& matrix() const override { return matrix_; }
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<CrsMatrix>& J) override {
+  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override {
     if (!o_.shares || block > 0) return nullptr;
     if (matrix_.kept(0))
       matrix_.kept(0)->restore(*J);
     else
-      matrix_.share(0, J, std::make_shared<fields::KeptRows>(J));
+      matrix_.share(0, std::make_shared<fields::KeptRows>(J));
     return matrix_.kept(0);
   }
   RCP<const Vector> proximal(int block) const override { return block == 0 ? added : Teuchos::null; }
@@ -243,9 +245,13 @@ class GridProblem : public BlockProblem {
           const GlobalIndex n = (side == 1 ? p(f) : q(f)) * d + j, m = (side == 1 ? p(f) : p(f) + o_.nx) * d + j;
           ua.add(m, i, side * eta);
           au.add(i, m, side * eta);
-          ul.add(n, i, side);
-          lu.add(i, n, side);
-          jump.add(i, n, side);
+          for (int k = 0; k < d; ++k) {
+            const Real share = side * (k == j ? 1 : o_.mix);
+            if (share == 0) continue;
+            ul.add(n - j + k, i, share);
+            lu.add(i, n - j + k, share);
+            jump.add(i, n - j + k, share);
+          }
         }
         aa.add(i, i, f == o_.singular_face ? 0 : alpha);
         al.add(i, i, beta);

@@ -15,6 +15,7 @@ using fields::CrsMatrix;
 using fields::Map;
 using fields::MultiVector;
 using fields::Vector;
+using fields::wrapped;
 using solve::Families;
 using solve::LinearSystem;
 
@@ -60,7 +61,7 @@ struct Chain {
   }
 
   /// Of faces and cells: the faces beside a cell, and back; of others, up to one place apart. No row is symmetric.
-  RCP<CrsMatrix> matrix(int r, int s) const {
+  RCP<const fields::Matrix> matrix(int r, int s) const {
     const auto result = rcp(new CrsMatrix(blocks[r].map, 3));
     const auto& rows = *blocks[r].map;
     const bool down = order[r] != cells && order[s] == cells, up = order[r] == cells && order[s] != cells;
@@ -74,7 +75,7 @@ struct Chain {
       }
     }
     result->fillComplete(blocks[s].map, blocks[r].map);
-    return result;
+    return wrapped(result);
   }
 
   /// What the families are about the inverse of: with the Schur complements that are given.

@@ -15,6 +15,7 @@ using fields::CrsMatrix;
 using fields::Map;
 using fields::MultiVector;
 using fields::Vector;
+using fields::wrapped;
 
 /// Two blocks of 9 and 4 unknowns per rank that couple, within and across ranks.
 struct Pair {
@@ -28,7 +29,7 @@ struct Pair {
     joined->set_scales({2, 0.25});
   }
 
-  RCP<CrsMatrix> block(int r, int s) const {
+  RCP<const fields::Matrix> block(int r, int s) const {
     const auto matrix = rcp(new CrsMatrix(maps[r], 9));
     const GlobalIndex n = maps[s]->getGlobalNumElements();
     for (std::size_t i = 0; i < maps[r]->getNodeNumElements(); ++i) {
@@ -41,7 +42,7 @@ struct Pair {
       }
     }
     matrix->fillComplete(maps[s], maps[r]);
-    return matrix;
+    return wrapped(matrix);
   }
 
   std::vector<RCP<const Map>> maps;

@@ -16,7 +16,7 @@ using solve::LinearSolverOptions;
 
 solve::LinearSystem system_of(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric) {
   const auto joined = std::make_shared<solve::Joined>(std::vector{block.map});
-  return {joined, {matrix}, symmetric, {{block, matrix, {}}}, matrix};
+  return {joined, {wrapped(matrix)}, symmetric, {{block, wrapped(matrix), {}}}, matrix};
 }
 
 /// Builds A x = b with a known x and solves it.
@@ -44,7 +44,7 @@ struct Grid {
   explicit Grid(int n, int d = 2) : problem(Tpetra::getDefaultComm(), {d, n, n, false, true, -1}) {
     solve::LocalElimination elimination(problem);
     elimination.update(problem);
-    matrix = rcp(new CrsMatrix(*elimination.condensed(0, 0), Teuchos::Copy));
+    matrix = rcp(new CrsMatrix(*elimination.condensed(0, 0)->crs(), Teuchos::Copy));
   }
   GridProblem problem;
   RCP<CrsMatrix> matrix;

@@ -80,8 +80,8 @@ Real contraction(const CrsMatrix& A, solve::Multigrid& M) {
 TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
   for (const int n : {9, 15}) {
     const Truss truss(n, true);
-    solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
-    M.setup(truss.matrix, true);
+    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), true);
     EXPECT_LT(contraction(*truss.matrix, M), 0.35) << n;
     EXPECT_GT(M.operator_complexity(), n == 9 ? 1.0 : 1.02);
     EXPECT_LT(M.operator_complexity(), 1.6);
@@ -92,8 +92,8 @@ TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
 TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
   for (const int n : {9, 15, 21}) {
     const Truss truss(n, true, 0, 0, true);
-    solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
-    M.setup(truss.matrix, true);
+    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), true);
     EXPECT_LT(contraction(*truss.matrix, M), 0.75) << n;
     EXPECT_LT(M.operator_complexity(), 1.25) << n;
   }
@@ -119,8 +119,8 @@ TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
 TEST(Multigrid, ContractsInFlatCells) {
   const FlatCells cells(16);
   const auto with = [&](const RCP<MultiVector>& places) {
-    solve::Multigrid M(cells.matrix, *cells.matrix, 1, Teuchos::null, places);
-    M.setup(cells.matrix, true);
+    solve::Multigrid M(wrapped(cells.matrix), *wrapped(cells.matrix), 1, Teuchos::null, places);
+    M.setup(wrapped(cells.matrix), true);
     EXPECT_LT(M.operator_complexity(), 1.8);
     return contraction(*cells.matrix, M);
   };
@@ -133,10 +133,10 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   const Truss truss(13, true);
   Vector b(truss.map), y(truss.map), z(truss.map);
   b.randomize();
-  solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
-  M.setup(truss.matrix, true);
+  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
   M.apply(b, y, Teuchos::NO_TRANS, 1, 0);
-  M.setup(truss.matrix, false);
+  M.setup(wrapped(truss.matrix), false);
   M.apply(b, z, Teuchos::NO_TRANS, 1, 0);
   z.update(-1, y, 1);
   EXPECT_LT(z.normInf(), 1e-6 * y.normInf());
@@ -146,8 +146,8 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
 TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
   for (const Real skew : {1.0, 3.0}) {
     const Truss truss(9, true, skew);
-    solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
-    M.setup(truss.matrix, false);
+    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), false);
     Vector b(truss.map), Mb(truss.map), r(truss.map);
     for (std::size_t i = 0; i < b.getLocalLength(); ++i) {
       const auto row = static_cast<Real>(truss.map->getGlobalElement(static_cast<LocalIndex>(i)));
@@ -169,8 +169,8 @@ TEST(Multigrid, NeedsNoCoarseNodes) {
     matrix->insertGlobalValues(row, 1, &value, &row);
   }
   matrix->fillComplete();
-  solve::Multigrid M(matrix, *matrix, 1, Teuchos::null);
-  M.setup(matrix, true);
+  solve::Multigrid M(wrapped(matrix), *wrapped(matrix), 1, Teuchos::null);
+  M.setup(wrapped(matrix), true);
   Vector b(map), x(map), r(map);
   b.randomize();
   M.apply(b, x, Teuchos::NO_TRANS, 1, 0);
@@ -184,23 +184,23 @@ TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
   const Truss truss(9, true), other(9, true, 0.01), larger(10, true);
   Vector b(truss.map), x(truss.map), y(truss.map);
   b.randomize();
-  solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes),
-      of_other(other.matrix, *truss.matrix, 3, truss.modes);
-  M.setup(truss.matrix, true);
-  M.setup(other.matrix, false);
+  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes),
+      of_other(wrapped(other.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  M.setup(wrapped(other.matrix), false);
   M.apply(b, x, Teuchos::NO_TRANS, 1, 0);
-  of_other.setup(other.matrix, false);
+  of_other.setup(wrapped(other.matrix), false);
   of_other.apply(b, y, Teuchos::NO_TRANS, 1, 0);
   y.update(-1, x, 1);
   EXPECT_LT(y.normInf(), 1e-12 * x.normInf());
-  EXPECT_THROW(M.setup(larger.matrix, true), Error);
+  EXPECT_THROW(M.setup(wrapped(larger.matrix), true), Error);
 }
 
 /// alpha M b + beta y of two vectors at once, linear to rounding; other values on the same graph.
 TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
   const Truss truss(9, true);
-  solve::Multigrid M(truss.matrix, *truss.matrix, 3, truss.modes);
-  M.setup(truss.matrix, true);
+  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
   MultiVector b(truss.map, 2), Mb(truss.map, 2), y(truss.map, 2);
   b.randomize();
   y.putScalar(3);
@@ -222,7 +222,7 @@ TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
   truss.matrix->resumeFill();
   truss.matrix->scale(4);
   truss.matrix->fillComplete();
-  M.setup(truss.matrix, true);
+  M.setup(wrapped(truss.matrix), true);
   MultiVector quarter(truss.map, 2);
   M.apply(b, quarter, Teuchos::NO_TRANS, 4, 0);
   quarter.update(-1, Mb, 1);

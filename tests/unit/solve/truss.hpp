@@ -17,6 +17,7 @@ using fields::CrsMatrix;
 using fields::Map;
 using fields::MultiVector;
 using fields::Vector;
+using fields::wrapped;
 using solve::NodeMatrix;
 
 /// Bars between all nodes of a lattice [n, n, height] that are at most sqrt(3) apart, each with a stiffness of its

@@ -1,0 +1,124 @@
+// Sparse matrices that name the unknowns of a node together.
+#pragma once
+
+#include <type_traits>
+
+#include "fields/types.hpp"
+
+namespace sprekk::fields {
+
+/// A sparse matrix on this rank, in blocks [height, width], one for each pair of nodes that couple. Row node i has the
+/// column nodes column(start(i)) ... column(start(i + 1) - 1). Its `height` rows of numbers follow one another, from
+/// value(height * width * start(i)) on: as in a matrix of Tpetra, but each node is named once instead of
+/// height * width times. The unknowns of local node n are width * n ... width * n + width - 1.
+struct NodeRows {
+  int height = 1, width = 1;  ///< 1 to 3
+  View<std::size_t*> start;
+  View<LocalIndex*> column;
+  View<Real*> value;
+
+  struct Row {
+    std::size_t first_node, n_nodes;  ///< in column
+    std::size_t begin;                ///< its first number
+  };
+
+  LocalIndex n_rows() const { return height * (static_cast<LocalIndex>(start.extent(0)) - 1); }
+  KOKKOS_FORCEINLINE_FUNCTION Row row(LocalIndex i) const {
+    const LocalIndex node = i / height;
+    const std::size_t first = start(node), n = start(node + 1) - first;
+    return {first, n, width * (height * first + (i - node * height) * n)};
+  }
+  KOKKOS_FORCEINLINE_FUNCTION std::size_t length(LocalIndex i) const {
+    return width * (start(i / height + 1) - start(i / height));
+  }
+  /// visit(column, place of the number in value) in the order of places.
+  template <class Visit>
+  KOKKOS_FORCEINLINE_FUNCTION void for_row(LocalIndex i, const Visit& visit) const {
+    const Row r = row(i);
+    std::size_t place = r.begin;
+    for (std::size_t k = r.first_node; k < r.first_node + r.n_nodes; ++k)
+      for (int c = 0; c < width; ++c) visit(column(k) * width + c, place++);
+  }
+
+  /// The sum of a row times x [column]; w is the width. Terms take turns in a few sums, so that an addition need not
+  /// wait for the one before: that of place p of the row is for sums[p % n_sums<w>].
+  template <int w>
+  static constexpr int n_sums = w == 3 ? 6 : 4;
+  template <int w>
+  KOKKOS_FORCEINLINE_FUNCTION Real product(LocalIndex i, const Real* x) const {
+    constexpr int n = n_sums<w>, at_once = n / w;
+    const Row r = row(i);
+    const LocalIndex* const node = &column(r.first_node);
+    const Real* a = &value(r.begin);
+    Real sums[n] = {};
+    std::size_t k = 0;
+    for (; k + at_once <= r.n_nodes; k += at_once, a += n)
+      for (int m = 0; m < at_once; ++m)
+        for (int c = 0; c < w; ++c) sums[m * w + c] += a[m * w + c] * x[node[k + m] * w + c];
+    for (int m = 0; k + m < r.n_nodes; ++m)
+      for (int c = 0; c < w; ++c) sums[m * w + c] += a[m * w + c] * x[node[k + m] * w + c];
+    return total(sums);
+  }
+  template <int n>
+  KOKKOS_FORCEINLINE_FUNCTION static Real total(const Real (&sums)[n]) {
+    Real sum = 0;
+    for (int s = 0; s < n; s += 2) sum += sums[s] + sums[s + 1];
+    return sum;
+  }
+};
+
+/// Calls work(w) with the width as a constant of compile time.
+template <class Work>
+void with_width(int width, const Work& work) {
+  if (width == 3)
+    work(std::integral_constant<int, 3>());
+  else if (width == 2)
+    work(std::integral_constant<int, 2>());
+  else
+    work(std::integral_constant<int, 1>());
+}
+
+/// A distributed matrix of such rows. Where unknowns do not come in nodes, blocks are single numbers.
+class Matrix : public Operator {
+ public:
+  /// Zeros on the graph that a matrix of Tpetra would have: row i has the columns column(start(i)) ...
+  /// column(start(i + 1) - 1), local numbers of `columns`, ascending. In blocks [height, width] if it is made of such
+  /// blocks, neither of them is more than 3, and nodes have the unknowns width * n ... of `columns`, too. Collective.
+  Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain,
+         const View<std::size_t*>& start, const View<LocalIndex*>& column, int height, int width);
+  /// A itself: it shares the numbers. Stored data.
+  explicit Matrix(const RCP<const CrsMatrix>& A);
+
+  RCP<const Map> getDomainMap() const override { return domain_; }
+  RCP<const Map> getRangeMap() const override { return rows_; }
+  const RCP<const Map>& row_map() const { return rows_; }
+  const RCP<const Map>& column_map() const { return columns_; }
+  const RCP<const Import>& import() const { return import_; }  ///< null: the columns are those of the domain
+
+  const NodeRows& numbers() const { return numbers_; }
+
+  /// The matrix for those who need one of Tpetra, with the same numbers. It is made at the first call, which is
+  /// collective, and kept.
+  RCP<CrsMatrix> crs() const;
+
+  /// y = alpha A x + beta y, of which x is no part; both with constant stride. Collective.
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode = Teuchos::NO_TRANS, Real alpha = 1,
+             Real beta = 0) const override;
+
+  /// d <- the diagonal, d [row]; zero where it has no place. Local.
+  void copy_diagonal(Vector& d) const;
+
+  /// values <- x with ghosts; x [domain], values [column]. Collective.
+  void spread(const Vector& x, Vector& values) const;
+
+ private:
+  RCP<const Map> rows_, columns_, domain_;
+  RCP<const Import> import_;
+  NodeRows numbers_;
+  mutable RCP<MultiVector> x_;  // [column]; null until there are ghosts to take
+  mutable RCP<CrsMatrix> crs_;
+};
+
+inline RCP<const Matrix> wrapped(const RCP<const CrsMatrix>& A) { return rcp(new const Matrix(A)); }
+
+}  // namespace sprekk::fields
