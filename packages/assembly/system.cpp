@@ -21,6 +21,19 @@ using fields::Entity;
 using fields::MultiVector;
 using fields::Vector;
 
+namespace {
+
+/// Blocks that only linear modules write are never written again: numbers of theirs that are zero need no places. Those
+/// on the diagonal keep theirs, for the unknowns of a node are to stay together.
+void drop_zeros(BlockMatrix& linear, BlockMatrix& all) {
+  for (int i = 0; i < all.n_blocks(); ++i)
+    for (int j = 0; j < all.n_blocks(); ++j)
+      if (const auto A = linear(i, j); i != j && !A.is_null() && all(i, j) == A)
+        all(i, j) = linear(i, j) = fields::without_zeros(A);
+}
+
+}  // namespace
+
 int Context::field(const std::string& name) const {
   for (std::size_t f = 0; f < layouts_->size(); ++f)
     if ((*layouts_)[f].field().name == name) return static_cast<int>(f);
@@ -47,6 +60,10 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   find_exchanges();
   create_matrices();
   assemble_linear();
+  {
+    const auto scope_of_structure = timers_->scope("structure of the matrices");
+    drop_zeros(linear_, matrix_);
+  }
   stencils_->forget_writers();
   set_merit_weights();
   watch_pieces();
@@ -269,24 +286,10 @@ void System::find_exchanges() {
   needs_ghosts_.assign(anywhere.begin(), anywhere.end());
 }
 
-namespace {
-
-/// Blocks that only linear modules write are never written again: numbers of theirs that are zero need no places. Those
-/// on the diagonal keep theirs, for the unknowns of a node are to stay together.
-void drop_zeros(BlockMatrix& linear, BlockMatrix& all) {
-  for (int i = 0; i < all.n_blocks(); ++i)
-    for (int j = 0; j < all.n_blocks(); ++j)
-      if (const auto A = linear(i, j); i != j && !A.is_null() && all(i, j) == A)
-        all(i, j) = linear(i, j) = fields::without_zeros(A);
-}
-
-}  // namespace
-
 void System::assemble_linear() {
   const auto scope = timers_->scope("assembly of the linear part");
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
-  drop_zeros(linear_, matrix_);
 }
 
 /// The linear part, to which jacobian() of the other modules is to be added.

@@ -31,18 +31,29 @@ struct RowWalk {
   const fields::NodeRows& numbers;
   const fields::NodeRows::Row row;
   std::size_t at = 0;  // the node that is looked at first
+  LocalIndex next = -1;
+  std::size_t place_of_next = 0;  // if it is an unknown of the same node
+  int n_left = 0;                 // of these
 
-  KOKKOS_INLINE_FUNCTION RowWalk(const fields::NodeRows& of, LocalIndex i) : numbers(of), row(of.row(i)) {}
-  KOKKOS_INLINE_FUNCTION void go_on() { at = at + 1 < row.n_nodes ? at + 1 : 0; }
-  KOKKOS_INLINE_FUNCTION std::size_t find(LocalIndex column) {
-    const int width = numbers.width;
-    LocalIndex component = column - numbers.column(row.first_node + at) * width;
-    while (component < 0 || component >= width) {
-      go_on();
-      component = column - numbers.column(row.first_node + at) * width;
+  KOKKOS_FORCEINLINE_FUNCTION RowWalk(const fields::NodeRows& of, LocalIndex i) : numbers(of), row(of.row(i)) {}
+  KOKKOS_FORCEINLINE_FUNCTION std::size_t find(LocalIndex column) {
+    if (column == next && n_left > 0) {
+      --n_left;
+      ++next;
+      return place_of_next++;
     }
-    const std::size_t found = row.begin + at * width + component;
-    if (component + 1 == width) go_on();
+    const int width = numbers.width;
+    LocalIndex component = 0;
+    std::size_t here = 0;
+    do {
+      here = at;
+      at = at + 1 < row.n_nodes ? at + 1 : 0;
+      component = column - numbers.column(row.first_node + here) * width;
+    } while (component < 0 || component >= width);
+    const std::size_t found = row.begin + here * width + component;
+    next = column + 1;
+    place_of_next = found + 1;
+    n_left = width - 1 - component;
     return found;
   }
 };

@@ -274,15 +274,19 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
           Real* const row = &AP(b * m * to(k_made));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           Walk walk{&column(start(i)), n};
+          std::size_t begins = 0;  // where the last one did: rows of neighbours often begin alike
           for (std::size_t k = 0; k < n_a; ++k) {
             const LocalIndex j = graph.column(begin + k);
             const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
             if (n_p == 0) continue;
             const float* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
-            for (std::size_t s = 0; s < n_p; ++s)
-              add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + walk.find(column_P(first_p + s)) * m,
-                                 n * m);
+            walk.at = begins;
+            for (std::size_t s = 0; s < n_p; ++s) {
+              const std::size_t place = walk.find(column_P(first_p + s));
+              if (s == 0) begins = place;
+              add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + place * m, n * m);
+            }
           }
         });
   });
@@ -301,6 +305,7 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
           Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
           Walk walk{&column(start(I)), n};
+          std::size_t begins = 0;  // where the last one did
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
             const std::size_t n_ap = start_AP(fine + 1) - start_AP(fine);
@@ -309,9 +314,12 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
             Real block[m * b];
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c) block[q * b + c] = r(b * m * begin + (q * n_r + k) * b + c);
-            for (std::size_t s = 0; s < n_ap; ++s)
-              add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + walk.find(column_AP(start_AP(fine) + s)) * m,
-                                 n * m);
+            walk.at = begins;
+            for (std::size_t s = 0; s < n_ap; ++s) {
+              const std::size_t place = walk.find(column_AP(start_AP(fine) + s));
+              if (s == 0) begins = place;
+              add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + place * m, n * m);
+            }
           }
           for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)

@@ -115,6 +115,40 @@ TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
   EXPECT_EQ(flatness(0.1, false), 1);
 }
 
+/// The same matrix with the unknowns of a node together, or apart as far as `together` says for this rank.
+RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, bool together) {
+  const auto local = A.getLocalMatrixHost();
+  const View<std::size_t*> start("start", local.numRows() + 1);
+  const View<LocalIndex*> column("column", local.nnz());
+  for (LocalIndex row = 0; row < local.numRows(); ++row) start(row + 1) = local.graph.row_map(row + 1);
+  for (std::size_t k = 0; k < column.extent(0); ++k) column(k) = local.graph.entries(k);
+  const int size = together ? 3 : 1;
+  const auto matrix =
+      rcp(new const fields::Matrix(A.getRowMap(), A.getColMap(), A.getDomainMap(), start, column, size, size));
+  for (std::size_t k = 0; k < column.extent(0); ++k) matrix->numbers().value(k) = local.values(k);
+  return matrix;
+}
+
+/// However the matrix is stored, and if only some ranks have the unknowns of a node together.
+TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
+  const Truss truss(9, true);
+  const int rank = truss.map->getComm()->getRank();
+  Vector b(truss.map), expected(truss.map), x(truss.map);
+  b.randomize();
+  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  M.apply(b, expected, Teuchos::NO_TRANS, 1, 0);
+  for (const bool together : {true, rank % 2 == 1, rank % 2 == 0}) {
+    const auto A = in_nodes(*truss.matrix, together);
+    ASSERT_EQ(A->numbers().width, together ? 3 : 1);
+    solve::Multigrid of_nodes(A, *A, 3, truss.modes);
+    of_nodes.setup(A, true);
+    of_nodes.apply(b, x, Teuchos::NO_TRANS, 1, 0);
+    x.update(-1, expected, 1);
+    EXPECT_LT(x.normInf(), 1e-12 * expected.normInf());
+  }
+}
+
 /// Flat cells are coarsened across their short edges first: which are those, the places tell.
 TEST(Multigrid, ContractsInFlatCells) {
   const FlatCells cells(16);
