@@ -24,19 +24,32 @@ function(sprekk_package name)
 endfunction()
 
 # What tests find around them. Open MPI may run as root; it uses the memory of this machine at once instead of looking for
-# networks.
+# networks, and ranks that wait leave the processor to others.
 set(SPREKK_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
   OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_mpi_yield_when_idle=1)
 
-# sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...] [TIMEOUT seconds])
+# Debian's packages of Python belong to its own interpreter, which need not be the one found first.
+if(SPREKK_TESTS)
+  find_program(SPREKK_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(SPREKK_PYTHON python3 REQUIRED)
+endif()
+
+# sprekk_test(NAME COMMAND words... [PROPERTIES name value...])
+# Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, or perf.
+# The time limit ends what hangs and nothing else: the longest test takes a tenth of it on two cores.
+function(sprekk_test name)
+  cmake_parse_arguments(ARG "" "" "COMMAND;PROPERTIES" ${ARGN})
+  add_test(NAME ${name} COMMAND ${ARG_COMMAND})
+  set_tests_properties(${name} PROPERTIES LABELS ${SPREKK_TEST_LABEL} TIMEOUT 1500
+    ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}" ${ARG_PROPERTIES})
+endfunction()
+
+# sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...])
 # One GoogleTest program of all .cpp in the current folder, run on each number of ranks.
 function(sprekk_tests name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "RANKS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "RANKS;LINKS" ${ARGN})
   if(NOT ARG_RANKS)
     set(ARG_RANKS 1 2 3)
-  endif()
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(NOT sources)
@@ -46,9 +59,8 @@ function(sprekk_tests name)
   target_link_libraries(test_${name} PRIVATE sprekk_test_main ${ARG_LINKS})
   target_compile_definitions(test_${name} PRIVATE SPREKK_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   foreach(ranks ${ARG_RANKS})
-    add_test(NAME ${name}.${ranks}
-      COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe --bind-to none -np ${ranks} $<TARGET_FILE:test_${name}>)
-    set_tests_properties(${name}.${ranks} PROPERTIES TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${ranks}
-      ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}")
+    sprekk_test(${name}.${ranks}
+      COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe --bind-to none -np ${ranks} $<TARGET_FILE:test_${name}>
+      PROPERTIES PROCESSORS ${ranks})
   endforeach()
 endfunction()

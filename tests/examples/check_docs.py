@@ -122,7 +122,7 @@ def run(command, folder):
                    "OMP_NUM_THREADS": "1", "SPREKK_TERMINAL": "1"}
     return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=environment,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          timeout=60)
+                          timeout=600)
 
 
 def check_commands(root, binary, mpiexec, page):

@@ -281,7 +281,8 @@ class Runs(MeshTest):
             binary.symlink_to(program.PROGRAM)
             (self.folder / "apps").mkdir()
             (self.folder / "apps/mesh").symlink_to(ROOT / "apps/mesh")
-        done = subprocess.run(["timeout", "60", "bash", "./sprekk", *map(str, words)], cwd=self.folder, capture_output=True, text=True)
+        done = subprocess.run(["timeout", str(program.TIME_LIMIT), "bash", "./sprekk", *map(str, words)], cwd=self.folder,
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done.stdout + done.stderr
 

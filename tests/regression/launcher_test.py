@@ -40,7 +40,8 @@ class Launcher(ProgramTest):
                              "stdin": subprocess.DEVNULL}
 
     def launch(self, *words, expect=0):
-        done = subprocess.run(["timeout", "60", "./sprekk", *words], capture_output=True, **self.surroundings)
+        done = subprocess.run(["timeout", str(program.TIME_LIMIT), "./sprekk", *words], capture_output=True,
+                              **self.surroundings)
         self.assertEqual(done.returncode, expect, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout, done.stderr
 
@@ -76,7 +77,7 @@ class Launcher(ProgramTest):
                     self.assertTrue(line)
                 if times == 2:
                     os.killpg(run.pid, signal.SIGINT)
-                self.assertEqual(run.wait(timeout=20), status)
+                self.assertEqual(run.wait(timeout=program.TIME_LIMIT), status)
                 if times == 1:
                     self.assertEqual(self.results()["status"], "interrupted")
                 run.communicate()
@@ -125,7 +126,7 @@ class Launcher(ProgramTest):
                                    **self.surroundings)
             self.assertIn("waiting for another build", run.stderr.readline())
         with run:
-            self.assertEqual(run.wait(timeout=20), 0)
+            self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
 
     def test_build_that_fails(self):
         (self.folder / "broken").touch()

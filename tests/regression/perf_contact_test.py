@@ -104,7 +104,8 @@ class Violation(ProgramTest):
 class Table(ProgramTest):
     def contact(self, *words, expect):
         done = subprocess.run([sys.executable, "-B", ROOT / "perf/contact/contact.py", "--binary", program.PROGRAM, "--output",
-                               self.folder / "out", *words], cwd=self.folder, capture_output=True, text=True, timeout=100)
+                               self.folder / "out", *words], cwd=self.folder, capture_output=True, text=True,
+                              timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done.stdout.splitlines()
 

@@ -270,7 +270,8 @@ class Scenes(ProgramTest):
 class Table(ProgramTest):
     def test_lines_and_files(self):
         done = subprocess.run([sys.executable, "-B", ROOT / "perf/verification/verification.py", "--binary", program.PROGRAM,
-                               "--output", self.folder / "out", "--quick", "--only", "mms2d"], capture_output=True, text=True, timeout=100)
+                               "--output", self.folder / "out", "--quick", "--only", "mms2d"], capture_output=True, text=True,
+                              timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         number = r"-?\d\.\d+"
         self.assertRegex(done.stdout.splitlines()[-3], rf"^mms2d jump_estimate={number}\.\.{number} stress_estimate={number}\.\.{number}$")

@@ -43,7 +43,7 @@ class Restart(ProgramTest):
         """What a run says."""
         command = self.command(*arguments, **options)
         environment = {**os.environ, "PMIX_MCA_gds": "hash"}  # MPI itself must live without large files
-        done = subprocess.run(["timeout", "60", *command], cwd=self.folder, capture_output=True, text=True,
+        done = subprocess.run(["timeout", str(program.TIME_LIMIT), *command], cwd=self.folder, capture_output=True, text=True,
                               stdin=subprocess.DEVNULL, preexec_fn=limit, env=environment)
         self.assertEqual(done.returncode, expect, f"{command}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
@@ -162,7 +162,7 @@ class Restart(ProgramTest):
         run.send_signal(signal.SIGINT)
         self.assertIn("a second signal stops at once", run.stderr.readline())
         run.send_signal(signal.SIGINT)
-        self.assertEqual(run.wait(timeout=10), -signal.SIGINT)
+        self.assertEqual(run.wait(timeout=program.TIME_LIMIT), -signal.SIGINT)
         self.assertEqual(self.results()["status"], "running")
 
     def test_cost_of_a_checkpoint(self):
@@ -182,7 +182,7 @@ class Restart(ProgramTest):
             time.sleep(0.01)
         children = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True).stdout.split()
         subprocess.run(["kill", "-9", children[-1]], check=True)
-        self.assertNotEqual(run.wait(timeout=30), 0)
+        self.assertNotEqual(run.wait(timeout=program.TIME_LIMIT), 0)
         reached = self.last()[0]["time"]
         short = f"Time.schedule={{{reached}, {reached + 0.04}}}"
         self.go(CYCLIC, short, EVERY_STEP, QUIET, ranks=3, restart=True)
