@@ -39,6 +39,9 @@ endif()
 # The time limit ends what hangs and nothing else: the longest test takes a tenth of it on two cores.
 function(sprekk_test name)
   cmake_parse_arguments(ARG "" "" "COMMAND;PROPERTIES" ${ARGN})
+  if(NOT SPREKK_TEST_LABEL)
+    message(FATAL_ERROR "${name}: set SPREKK_TEST_LABEL to fast, slow or perf in this folder or above")
+  endif()
   add_test(NAME ${name} COMMAND ${ARG_COMMAND})
   set_tests_properties(${name} PROPERTIES LABELS ${SPREKK_TEST_LABEL} TIMEOUT 1500
     ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}" ${ARG_PROPERTIES})
