@@ -121,6 +121,7 @@ def legend_of_traces(ax, traces):
         handles.append(plt.Line2D([], [], color=FAINT, linewidth=0.6, label="others"))
     ax.add_artist(ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 0.98), ncol=len(handles), columnspacing=0.7,
                             handlelength=1, handletextpad=0.3, borderaxespad=0))
+    ax.legend_ = None  # drawn once, and room for another
 
 
 def legend_of_lines(ax, row, one):
