@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from progress import doing
 from shapes import NetworkError
 
 
@@ -20,7 +21,7 @@ def arguments(words):
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene; may be repeated")
     parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the mesh, too")
     parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # on behalf of a run into the mesh's folder
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors and, now and then, what takes long")
     parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # sprekk itself, by the launcher
     return parser.parse_args(words)
 
@@ -57,7 +58,8 @@ def is_made(mesh, report, print_of_input):
 def make(options):
     from description import Network
     text = description(options)
-    network = Network(text)
+    with doing("reading and generating fractures"):
+        network = Network(text)
     report_file = options.output.with_suffix(options.output.suffix + ".json")
     print_of_input = fingerprint(text, network.files)
     if is_made(options.output, report_file, print_of_input) and not options.picture:
@@ -68,11 +70,15 @@ def make(options):
     import report
     from plan import Plan
     from sizes import Sizes
-    plan = Plan(network)
-    checks.check(plan)
-    sizes = Sizes(plan)
-    mesh = mesher.make_mesh(plan, sizes)
-    groups = msh_file.groups_of(mesh, plan)
+    with doing(f"finding where {len(network.fractures)} fractures meet"):
+        plan = Plan(network)
+    with doing(f"looking for small angles and distances among {len(plan.edges)} edges of fractures"):
+        checks.check(plan)
+    with doing(f"finding how short cells must be at {len(plan.edges)} edges of fractures"):
+        sizes = Sizes(plan)
+    with doing(f"making a mesh of about {sum(sizes.expected_cells().values()):.1g} cells"):
+        mesh = mesher.make_mesh(plan, sizes)
+        groups = msh_file.groups_of(mesh, plan)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
     try:

@@ -2,19 +2,27 @@
 from collections import defaultdict
 
 import numpy as np
+from shapes import NetworkError
+
+MOST_PAIRS = 5 * 10**6  # of edges that are compared: some gigabytes
+MOST_CROSSINGS = 2 * 10**5  # some minutes
 
 
 def near_pairs(low, high, reach):
-    """Pairs i < j of boxes that are closer than `reach` in every direction: two arrays."""
+    """Pairs i < j of boxes that are closer than `reach` in every direction: two arrays. Refuses more than MOST_PAIRS."""
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order] - 0.5 * reach, high[order] + 0.5 * reach
     last = np.searchsorted(low[:, 0], high[:, 0], side="right")
-    first, second = [], []
+    first, second, n = [], [], 0
     for i in range(len(low)):
         j = np.arange(i + 1, last[i])
         j = j[np.all((low[j] <= high[i]) & (high[j] >= low[i]), axis=1)]
         first.append(np.full(len(j), i))
         second.append(j)
+        n += len(j)
+        if n > MOST_PAIRS:
+            raise NetworkError(f"the network is too dense: of {len(low)} edges more than {MOST_PAIRS:g} pairs may be closer than {reach:.3g} m; "
+                               f"leave fractures out, or ask for smaller cells (\"relative size\", \"size\")")
     first, second = (order[np.concatenate(k).astype(int)] if k else np.array([], int) for k in (first, second))
     return np.minimum(first, second), np.maximum(first, second)
 
@@ -95,6 +103,8 @@ def cut(segments, parents, tolerance):
                     joined.append((gap[k], parents[one[k]], parents[other[k]]))
     s, t, gap = closest(segments[i], segments[j])
     cross = np.flatnonzero((gap <= tolerance) & (s > 0) & (s < 1) & (t > 0) & (t < 1))
+    if len(cross) > MOST_CROSSINGS:
+        raise NetworkError(f"the network is too dense: fractures cross in {len(cross)} points, at most {MOST_CROSSINGS} are meshed")
     n = len(points[0])
     for k in cross:
         a, b = segments[i[k]], segments[j[k]]

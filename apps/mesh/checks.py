@@ -1,6 +1,6 @@
 """What is too close in a network to be meshed: refused with the names of both fractures."""
 import numpy as np
-from arrange import closest, near_pairs
+from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
 from shapes import Errors
 
@@ -16,11 +16,16 @@ def names(plan, one, other):
     return None
 
 
+def both(pair):
+    """Two fractures, or parts of one, in words."""
+    return f"{pair[0]} and {pair[1]}" if pair[0] != pair[1] else f"parts of {pair[0]}"
+
+
 def too_close(plan, pair, gap, where):
     allowed, tolerance = plan.network.minimum_distance, plan.network.tolerance
     advice = f"move one, or join them by a larger \"tolerance\" (now {tolerance:.3g} m)" if gap > tolerance else "move one"
     place = ", ".join(f"{x:.6g}" for x in where[:plan.dim])
-    return (f"{pair[0]} and {pair[1]} are {gap:.3g} m apart at ({place}) without meeting; the \"minimum distance\" is {allowed:.3g} m; {advice}")
+    return (f"{both(pair)} are {gap:.3g} m apart at ({place}) without meeting; the \"minimum distance\" is {allowed:.3g} m; {advice}")
 
 
 def close_edges(plan):
@@ -61,6 +66,52 @@ def close_surfaces(plan):
                 yield pair, too_close(plan, pair, abs(surface.plane.height(points[p])), points[p])
 
 
+def folds(plan):
+    """Of fractures that come close to themselves: of segments one after the other that meet at a small angle, and of others
+    that are close in space but, along the line or around the polygon, not."""
+    for fracture in plan.network.fractures:
+        ring, pair = plan.dim == 3 or (fracture.points[0] == fracture.points[-1]).all(), (fracture.name, fracture.name)
+        x = np.concatenate([fracture.points, fracture.points[:1]]) if plan.dim == 3 else fracture.points
+        angle = corner_angles(x, ring)
+        if len(angle) and angle.min() < plan.network.minimum_angle:
+            yield pair, small_angle(plan, pair, angle.min())
+        close = list(self_approaches(x, ring, plan.network.tolerance, plan.network.minimum_distance)) if len(x) > 3 else []
+        if close:
+            yield pair, too_close(plan, pair, *min(close, key=lambda found: found[0]))
+
+
+def corner_angles(x, ring):
+    """Angles (degree) between segments that follow each other: 180 where a line goes straight on."""
+    back = x[:-1] - x[1:]
+    back /= np.linalg.norm(back, axis=1)[:, None]
+    one, other = (back, -np.roll(back, -1, axis=0)) if ring else (back[:-1], -back[1:])
+    return 2 * np.degrees(np.arctan2(np.linalg.norm(one - other, axis=1), np.linalg.norm(one + other, axis=1)))
+
+
+def self_approaches(x, ring, tolerance, reach):
+    """(distance, point) where a polyline x comes closer to itself than `reach` over a detour of more than twice as much;
+    what is within the tolerance is joined."""
+    begin, end = x[:-1], x[1:]
+    length = np.linalg.norm(end - begin, axis=1)
+    at = np.concatenate([[0], np.cumsum(length)])
+    i, j = near_pairs(np.minimum(begin, end), np.maximum(begin, end), reach)
+    apart = (j > i + 1) & ~(ring & (i == 0) & (j == len(length) - 1))
+    i, j = i[apart], j[apart]
+    for one, other in ((i, j), (j, i)):
+        near = np.minimum(2 * reach / length[one], 1)  # so far from its ends, and at them
+        for s in (0 * near, near, 1 - near, 0 * near + 1):
+            point = begin[one] + s[:, None] * (end - begin)[one]
+            t, gap = on_segment(point, begin[other], end[other])
+            detour = abs(at[one] + s * length[one] - at[other] - t * length[other])
+            detour = np.minimum(detour, at[-1] - detour) if ring else detour
+            for k in np.flatnonzero((tolerance < gap) & (gap < reach) & (detour > 2 * reach)):
+                yield gap[k], point[k]
+
+
+def small_angle(plan, pair, angle):
+    return f"{both(pair)} meet at {angle:.3g} degrees; the \"minimum angle\" is {plan.network.minimum_angle:g}"
+
+
 def small_angles(plan):
     """Of edges of different fractures at a point, 2D."""
     at, minimum = {}, plan.network.minimum_angle
@@ -74,7 +125,7 @@ def small_angles(plan):
             angle = np.degrees(other - one) % 360
             pair = names(plan, of, others) if len(star) > 1 and angle < minimum else None
             if pair:
-                yield pair, f"{pair[0]} and {pair[1]} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}"
+                yield pair, small_angle(plan, pair, angle)
 
 
 def lying_on(plan):
@@ -91,7 +142,7 @@ def lying_on(plan):
 
 def check(plan):
     """Refuses what is wrong, once for each two features."""
-    found = list(lying_on(plan)) + list(small_angles(plan)) if plan.dim == 2 else []
+    found = list(folds(plan)) + (list(lying_on(plan)) + list(small_angles(plan)) if plan.dim == 2 else [])
     found = found or list(close_edges(plan)) + (list(close_surfaces(plan)) if plan.dim == 3 else [])
     first = {}
     for pair, line in found:

@@ -9,6 +9,8 @@ from generator import at_random
 from shapes import Feature, NetworkError, ellipse
 from tables import read_table
 
+MOST_FRACTURES = 10**5
+
 READ = {"int": int, "double": float, "bool": lambda text: text == "true", "string": str}
 
 
@@ -91,6 +93,9 @@ class Network:
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
                                      ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"])))
+            number = len(found) + content.get("random", {}).get("number", 0)
+            if number > MOST_FRACTURES:
+                raise NetworkError(f"{path}: brings the network to {number} {kind}s, at most {MOST_FRACTURES} are meshed")
             if "random" in content:
                 found += [Feature(kind, name, f'{kind} {k + 1} at random of "{name}"', x)
                           for k, x in enumerate(at_random(content["random"], self.domain))]

@@ -118,7 +118,7 @@ class Body:
         """Surfaces of the parts of a surface inside; refuses a fracture on a side."""
         polygon = whole.feature
         for s in self.surfaces:
-            if are_level(whole, s, tolerance) and overlap(s, whole).area > tolerance * self.size:
+            if are_level(whole, s, tolerance) and overlap(s, whole, tolerance):
                 if polygon.kind == "fracture":
                     refuse(polygon, f"lies on {s.feature.name}; a fracture needs rock on both sides")
                 return [whole]

@@ -4,7 +4,7 @@ from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
 from shapes import Errors, Feature, NetworkError, Plane, check_line, check_polygon, refuse
-from surfaces import Surface, are_level, check_angles, moved_onto, overlap, shared_sides, traces, without
+from surfaces import Surface, are_level, check_angles, moved_onto, overlap, traces, without
 
 
 class Face:
@@ -132,7 +132,7 @@ class Plan:
                 if not parts and feature.kind == "constraint":
                     refuse(feature, "lies outside of the domain")
                 for part in parts:
-                    level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s).area > tolerance * network.domain.size]
+                    level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s, tolerance)]
                     surfaces += without(part, level, tolerance) if level else [part]
         errors.throw()
         segments, parents, touches = [], [], []
@@ -173,13 +173,14 @@ class Plan:
         return found
 
     def meet(self, one, other):
-        """Segments in which two surfaces meet; refuses fractures that lie on each other or meet at too small an angle."""
+        """Segments in which two surfaces meet, but for sides that both have; refuses fractures that lie on each other or
+        meet at too small an angle."""
         tolerance = self.tolerance
         are_fractures = one.feature.kind == other.feature.kind == "fracture"
         if are_level(one, other, tolerance):
-            if are_fractures and overlap(one, other).area > tolerance * self.network.domain.size:
+            if are_fractures and overlap(one, other, tolerance):
                 raise NetworkError(f"{one.feature.name} and {other.feature.name} lie on each other; leave one out or make them one")
-            return shared_sides(one, other, tolerance)
+            return []
         if np.linalg.norm(np.cross(one.plane.normal, other.plane.normal)) < 1e-8:
             return []
         found = traces(one, other, tolerance)

@@ -1,6 +1,6 @@
 """Plane polygons in space and the segments in which they meet."""
 import numpy as np
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import Point, Polygon
 from shapely.ops import unary_union
 from shapes import NetworkError, Plane
 
@@ -121,28 +121,17 @@ def lines_of(shape):
     return [part for piece in getattr(shape, "geoms", []) for part in lines_of(piece)]
 
 
-def overlap(one, other):
-    """The part of `other` that lies in `one`, which is level with it, in the coordinates of `one`."""
+def overlap(one, other, tolerance):
+    """Whether two level surfaces have a part in common that is wider than the tolerance. Both are made smaller by half of
+    it, since the intersection of polygons whose sides differ by round-off can be wrong in GEOS."""
     rings = [one.plane.inside(ring) for ring in other.rings]
-    return Polygon(rings[0], rings[1:]).buffer(0).intersection(one.shape.buffer(0))
-
-
-def shared_sides(one, other, tolerance):
-    """Segments of the sides of one of two level surfaces in the other: pairs of points."""
-    found = []
-    for a, b in ((one, other), (other, one)):
-        for begin, end in b.sides():
-            line = LineString(a.plane.inside(np.array([begin, end])))
-            for part in lines_of(line.intersection(a.shape.buffer(tolerance))):
-                if part.length > tolerance:
-                    found.append(tuple(a.plane.outside(np.array([part.coords[0], part.coords[-1]]))))
-    return found
+    return one.shape.buffer(-0.5 * tolerance).intersects(Polygon(rings[0], rings[1:]).buffer(-0.5 * tolerance))
 
 
 def without(surface, others, tolerance):
-    """What others, level with it, leave of a surface: a list."""
+    """What others, level with it, leave of a surface: a list. Its new sides are off theirs by less than is joined."""
     left = surface.shape.buffer(0)
-    taken = [Polygon(surface.plane.inside(o.rings[0]), [surface.plane.inside(r) for r in o.rings[1:]]).buffer(tolerance) for o in others]
+    taken = [Polygon(surface.plane.inside(o.rings[0]), [surface.plane.inside(r) for r in o.rings[1:]]).buffer(0.5 * tolerance) for o in others]
     left = left.difference(unary_union(taken))
     return [Surface.of_shape(surface.feature, surface.plane, part) for part in polygons_of(left) if part.area > tolerance * part.length]
 

@@ -1,10 +1,15 @@
 """Files of fractures as they are exchanged: CSV of lines, polygons and ellipses, and .fab of FracMan."""
 import csv
 import math
+import os
+import stat
 from dataclasses import dataclass, field
 
 import numpy as np
 from shapes import Errors, NetworkError, ellipse
+
+MOST_CHARACTERS = 2 * 10**8  # of a file; some million fractures
+SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # that are none
 
 
 @dataclass
@@ -43,17 +48,40 @@ def is_number(word):
 
 
 def read_lines(path):
+    """The lines of a file; refuses what may have no end, such as a pipe or a device."""
+    def refuse(why):
+        raise NetworkError(f"{path}: cannot be read: {why}", [path]) from None
     try:
+        mode = os.stat(path).st_mode
+        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() tells of a folder
+            refuse("is no regular file, but a pipe, a socket or a device")
         with open(path, encoding="utf-8-sig") as file:
-            return file.read().splitlines()
+            text = file.read(MOST_CHARACTERS + 1)
     except (OSError, UnicodeDecodeError) as error:
-        raise NetworkError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is no text in UTF-8'}", [path]) from None
+        refuse(getattr(error, "strerror", None) or "is no text in UTF-8")
+    if len(text) > MOST_CHARACTERS:
+        refuse(f"has more than {MOST_CHARACTERS:g} characters; divide it into several sets, or leave fractures out")
+    return text.splitlines()
 
 
 def columns(line):
     """The words of a line, which may be in quotes, without a comment; None where there are none."""
     line = line.partition("#")[0].strip()
     return next(csv.reader([line], skipinitialspace=True)) if line else None
+
+
+def other_separator(line, words):
+    """What separates the numbers of a row where commas do not, in words, or None. A name may come before the numbers."""
+    line = line.partition("#")[0].strip()
+    if ";" in line:
+        return SEPARATORS[";"]
+    if len(words) > 1 and all(map(is_number, words[1:])):
+        return None
+    for separator, name in SEPARATORS.items():
+        parts = [part.strip().replace(",", ".") for part in line.split(separator)]  # decimal commas, perhaps
+        if len(parts) > 2 and all(map(is_number, parts[1:])):
+            return name
+    return None
 
 
 def lines_row(words, place, table):
@@ -101,8 +129,9 @@ def read_csv(path, row):
         words = columns(line)
         if words is None:
             continue
-        if ";" in line.partition("#")[0]:
-            raise NetworkError(f"{path}: line {k}: has semicolons; columns are separated by commas, and numbers have decimal points", [path])
+        separator = other_separator(line, words)
+        if separator:
+            raise NetworkError(f"{path}: line {k}: has {separator}; columns are separated by commas, and numbers have decimal points", [path])
         while len(words) > 1 and not words[-1].strip():  # commas at the end
             words.pop()
         is_title = is_first and not any(is_number(word) for word in words)

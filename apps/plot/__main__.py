@@ -2,8 +2,8 @@
 
 PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
 as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
-error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps. Of a
-run with flow alone flow.png, with pressure and velocity, takes the place of the first three and of the loops.
+error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps. A run
+with flow has flow.png, with pressure and velocity, too; one with flow alone has no others but the last.
 """
 import argparse
 import sys
@@ -49,6 +49,7 @@ def of_run(directory, options):
     names = sorted(states[-1]["fractures"]) if states else []
     name = directory.resolve().name
 
+    sizes = 0, 0  # (m, Pa) that round-off is measured by
     bulk_steps, fracture_steps = (read.written_steps(directory, kind) for kind in ("bulk", "fractures"))
     if bulk_steps:
         wanted = bulk_steps[-1][0] if options.time is None else options.time
@@ -63,16 +64,24 @@ def of_run(directory, options):
         if deforms:
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
         if deforms and joints and joints.GetNumberOfCells() > 0:
-            yield "fractures", fractures.of_step(joints, names, title)
-            yield "maps", maps.of_step(rock, joints, title)
+            sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
+            yield "fractures", fractures.of_step(rock, joints, names, title)
+            yield "maps", maps.of_step(rock, joints, names, title)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
+    else:
+        why = "no step of the run was completed" if not states else 'it holds no bulk.pvd; the scene\'s Output has "vtu" false, or it was removed'
+        left_out("bulk.png or other picture of one step", directory, why)
     names = [name for name in names if "mean_jump" in states[-1]["fractures"][name]]
     if names and len(states) > 1:
-        yield "loops", loops.of_fractures(states, names, name)
+        yield "loops", loops.of_fractures(states, names, name, *sizes)
     elif names:
-        print(f"sprekk plot: no loops.png: {directory} holds one step, a loop needs two", file=sys.stderr)
+        left_out("loops.png", directory, "it holds one step, a loop needs two")
     yield "convergence", convergence.of_run(steps, name)
+
+
+def left_out(pictures, directory, why):
+    print(f"sprekk plot: no {pictures} of {directory}: {why}", file=sys.stderr)
 
 
 def plot(path, options):

@@ -3,7 +3,7 @@ import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgba
-from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, plt
+from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, plt, without_noise
 
 
 def tensors(stress):
@@ -51,12 +51,13 @@ def triangles(polygons):
 
 def panels(surface):
     """(values, colours, label, on the points) of each picture; values in the label's unit."""
-    size = np.linalg.norm(surface.point_data["displacement"], axis=1)
-    equivalent, compression = von_mises(surface.cell_data["stress"]), largest_compression(surface.cell_data["stress"])
-    for values, colours, name, base, on_points in (
-            (size, "viridis", "displacement", "m", True),
-            (equivalent, "inferno", "von Mises stress", "Pa", False),
-            (compression, "cividis", "largest compressive stress", "Pa", False)):
+    size, stress = np.linalg.norm(surface.point_data["displacement"], axis=1), surface.cell_data["stress"]
+    scale = np.max(abs(stress), initial=0)
+    for values, scale, colours, name, base, on_points in (
+            (size, 0, "viridis", "displacement", "m", True),
+            (von_mises(stress), scale, "inferno", "von Mises stress", "Pa", False),
+            (largest_compression(stress), scale, "cividis", "largest compressive stress", "Pa", False)):
+        values = without_noise(values, scale)
         quantity = Quantity(name, base, values)
         yield quantity(values), plt.get_cmap(colours), quantity.label, on_points
 

@@ -1,6 +1,6 @@
 """How the solver went: iterations of each step, and what was left when it stopped."""
 import numpy as np
-from style import FAINT, LINES, plt
+from style import FAINT, LINES, look, plt
 
 
 def of_run(steps, title):
@@ -26,13 +26,18 @@ def of_run(steps, title):
     if cut:
         left.legend()
 
-    for i, name in enumerate(sorted(steps[-1]["measures"])):
-        values = np.array([step["measures"].get(name) for step in steps], dtype=float)  # none: no number
-        right.semilogy(number, np.where(values > 0, values, np.nan), "o-", markersize=3, color=LINES[i % len(LINES)],
-                       label=name.replace("_", " "))
+    measures = {name: np.array([step["measures"].get(name) for step in steps], dtype=float)  # none: no number
+                for name in sorted(steps[-1]["measures"])}
+    drawn = {name: np.where(values > 0, values, np.nan) for name, values in measures.items() if np.any(values > 0)}
+    for i, (name, values) in enumerate(drawn.items()):
+        right.semilogy(number, values, markersize=3, label=name.replace("_", " "), **look(i))
     right.set(xlabel="step", ylabel="relative residual (-)", title="left at the end of each step")
-    right.legend(loc="upper left", bbox_to_anchor=(1, 1))
-    if not any(value for step in steps for value in step["measures"].values()):
+    if drawn:
+        low, high = (limit(np.log10(limit_of(list(drawn.values())))) for limit, limit_of in ((np.floor, np.nanmin), (np.ceil, np.nanmax)))
+        right.set_ylim(10.0**low, 10.0 ** max(high, low + 1))
+        right.yaxis.set_major_locator(plt.LogLocator(numticks=8))
+        right.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=3)
+    else:
         right.text(0.5, 0.5, "nothing but rounding", transform=right.transAxes, ha="center", color=FAINT)
         right.set_yticks([])
     for ax in (left, right):

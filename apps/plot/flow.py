@@ -3,7 +3,7 @@ import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
-from style import INK, Quantity, colour_bar, draw_polygons_3d, limits, plt
+from style import INK, Quantity, colour_bar, draw_polygons_3d, limits, plt, without_noise
 
 
 def decades(values):
@@ -19,7 +19,7 @@ def panels(rock, joints):
     faces = joints.cell_data if joints else {}
     inside = faces.get("fracture pressure", np.zeros(0))
     pressure = Quantity("pressure", "Pa", data["pressure"], inside)
-    norm = limits(np.concatenate([pressure(data["pressure"]), pressure(inside)]))
+    norm = limits(pressure(without_noise(np.concatenate([data["pressure"], inside]), 0)))
     bar = (norm, plt.get_cmap("viridis"), pressure.label)
     yield "pressure", (pressure(data["pressure"]), *bar), (pressure(inside), *bar) if joints else None
     speed = np.linalg.norm(data["Darcy velocity"], axis=1)

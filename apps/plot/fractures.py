@@ -1,12 +1,27 @@
 """Fractures: slip, opening, traction and contact state, along them in 2D, on them in 3D."""
 import numpy as np
 import read
-from style import (FAINT, LINES, Quantity, STATE_COLOURS, STATES, colour_bar, draw_polygons_3d, limits, plt, state_bar,
-                   without_noise)
+from style import (FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, colour_bar, draw_polygons_3d, foremost, limits, natural, plt,
+                   state_bar, without_noise)
+
+
+STRAIGHT = np.cos(np.radians(30))
+
+
+def onward(face, at, others, n_there, faces, key, points):
+    """The face that goes on from the end `at` of a face; where several fractures meet, the one that goes straight on or none."""
+    def leaving(i):
+        a, b = faces[i] if key[faces[i][0]] == at else faces[i][::-1]
+        return (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
+    if n_there <= 2:
+        return next(iter(others), None)
+    straight = [-leaving(face) @ leaving(i) for i in others]
+    return others[int(np.argmax(straight))] if max(straight, default=-1) > STRAIGHT else None
 
 
 def chains(segments):
-    """Faces of a fracture one after the other: lists of faces with the arc length at their ends, (n + 1)."""
+    """Faces of a fracture one after the other: lists of faces with the arc length at their ends, (n + 1); one for each trace,
+    also where traces cross."""
     points, faces = segments.points, [tuple(s[:2]) for s in segments.polygons]
     tolerance = 1e-9 * np.max(np.ptp(points, axis=0))
     place = {}  # one number for all points of a place
@@ -27,7 +42,7 @@ def chains(segments):
             chain.append(face)
             arc.append(arc[-1] + np.linalg.norm(points[b] - points[a]))
             at = key[b] if key[a] == at else key[a]
-            face = next((i for i in around[at] if i in left), None)
+            face = onward(face, at, [i for i in around[at] if i in left], len(around[at]), faces, key, points)
         found.append((chain, np.array(arc)))
     return found
 
@@ -39,14 +54,16 @@ def part(surface, number):
                         {name: values[chosen] for name, values in surface.cell_data.items()}, {})
 
 
-def scales(data):
-    """Sizes that round-off is measured by: of jumps, of tractions."""
-    return np.max(np.linalg.norm(data["jump"], axis=1)), np.max(np.linalg.norm(data["traction"], axis=1))
+def scales(rock, data):
+    """Sizes (m, Pa) that round-off is measured by: of displacements and jumps, of stresses and tractions; of the grid of the
+    rock and the arrays of the fractures."""
+    displacement, stress = (read.arrays(of)[name] for of, name in ((rock.GetPointData(), "displacement"), (rock.GetCellData(), "stress")))
+    largest = lambda vectors: np.max(np.linalg.norm(vectors, axis=1), initial=0)
+    return max(largest(displacement), largest(data["jump"])), max(np.max(abs(stress), initial=0), largest(data["traction"]))
 
 
-def quantities(data):
-    """(values, in m or Pa) by name; without round-off."""
-    length, stress = scales(data)
+def quantities(data, length, stress):
+    """(values, in m or Pa) by name; without round-off of a length and a stress."""
     jump, traction = data["jump local"], data["traction local"]
     return {"tangential jump": (without_noise(np.linalg.norm(jump[:, 1:], axis=1), length), "m"),
             "slip": (without_noise(data["slip"], length), "m"),
@@ -59,60 +76,121 @@ ROWS = {"tangential jump": ("tangential jump", "slip"), "opening": ("opening",),
         "traction": ("normal traction", "shear traction")}  # of the picture in 2D
 
 
-def along(surface, names, title):
-    """2D: a column for each fracture, values over the arc length."""
-    numbers = sorted(set(surface.cell_data["fracture"].astype(int)))
-    figure, axes = plt.subplots(len(ROWS) + 1, len(numbers), sharex="col", sharey="row", squeeze=False,
-                                figsize=(max(5.2, 3.6 * len(numbers)), 6),
-                                gridspec_kw={"height_ratios": [1] * len(ROWS) + [0.2]})
-    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
-    drawn = quantities(surface.cell_data)
+class Trace:
+    """A trace in 2D: its name, faces, arc length at their ends (m), and how it is drawn."""
+
+    def __init__(self, name, faces, arc, colour):
+        self.name, self.faces, self.arc, self.colour = name, faces, arc, colour
+
+
+def traces_of(surface, number, name):
+    """The traces of a fracture, largest tangential jumps in colour and named by their numbers if there are several."""
+    chosen = np.flatnonzero(surface.cell_data["fracture"] == number)
+    found = [(chosen[chain], arc) for chain, arc in chains(part(surface, number))]
+    found.sort(key=lambda trace: tuple(np.min(surface.points[surface.polygons[trace[0][0]][:2]], axis=0)))
+    jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
+    shown = foremost([np.max(jump[faces]) for faces, _ in found], len(LINES))
+    return [Trace(f"{name} {k + 1}" if len(found) > 1 else name, faces, arc, LINES[shown.index(k)] if k in shown else FAINT)
+            for k, (faces, arc) in enumerate(found)]
+
+
+def draw_curves(ax, traces, row, drawn, quantity):
+    """The first quantity of a row as lines, the second with dashes; in colours of their own where there is one trace."""
+    for trace in sorted(traces, key=lambda trace: trace.colour != FAINT):
+        for i, name in enumerate(row):
+            ax.stairs(quantity(drawn[name][0][trace.faces]), trace.arc, baseline=None, linestyle="--" if i else "-",
+                      color=LINES[i] if len(traces) == 1 else trace.colour, linewidth=0.6 if trace.colour == FAINT else 1.6)
+    ax.axhline(0, color=FAINT, linewidth=0.6, zorder=1)
+
+
+def draw_states(ax, traces, state, first):
+    """A strip for each trace, the first at the top; named in the first of several columns."""
+    for k, trace in enumerate(traces):
+        ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], state[trace.faces][None, :], cmap=STATE_COLOURS, vmin=-0.5, vmax=2.5)
+    ax.set(xlabel="arc length (m)", ylim=(len(traces) + 0.5, 0.5))
+    ax.yaxis.set_major_locator(plt.MaxNLocator(6, integer=True, min_n_ticks=1) if len(traces) > 1 else plt.NullLocator())
+    if first:
+        ax.set_ylabel("state", rotation=0, ha="right", va="center", labelpad=4 if len(traces) == 1 else 8)
+    ax.grid(False)
+
+
+def legend_of_traces(ax, traces):
+    """Which colour is which trace, above a column."""
+    handles = [plt.Line2D([], [], color=t.colour, label=t.name.split()[-1]) for t in traces if t.colour != FAINT]
+    if len(handles) < len(traces):
+        handles.append(plt.Line2D([], [], color=FAINT, linewidth=0.6, label="others"))
+    ax.add_artist(ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 0.98), ncol=len(handles), columnspacing=0.7,
+                            handlelength=1, handletextpad=0.3, borderaxespad=0))
+    ax.legend_ = None  # drawn once, and room for another
+
+
+def legend_of_lines(ax, row, one):
+    """Which line is which quantity of a row that has two; of one trace by colour, too."""
+    handles = [plt.Line2D([], [], color=LINES[i] if one else INK, linestyle="--" if i else "-", label=name) for i, name in enumerate(row)]
+    ax.legend(handles=handles, loc="best", fontsize=7, handlelength=1.6, frameon=True, framealpha=0.7, edgecolor="none")
+
+
+MOST_COLUMNS = 4
+
+
+def along(surface, names, title, length, stress):
+    """2D: a column for each fracture, values over the arc length; of many fractures, several rows of columns."""
+    named = {number: names[number] if number < len(names) else f"fracture {number}" for number in set(surface.cell_data["fracture"].astype(int))}
+    numbers = sorted(named, key=lambda number: natural(named[number]))
+    traces = {number: traces_of(surface, number, named[number]) for number in numbers}
+    columns = min(len(numbers), MOST_COLUMNS)
+    blocks, strips = -(-len(numbers) // columns), min(0.2 + 0.05 * max(map(len, traces.values())), 1.5)
+    width, height = max(5.2, 3.6 * columns), blocks * (5.4 + 1.6 * strips)
+    figure = plt.figure(figsize=(width, height))
+    figure.set_layout_engine("none")  # the constrained one takes minutes for many axes
+    grid = figure.add_gridspec(blocks, columns, left=0.7 / width, right=1, bottom=0.5 / height, top=1 - 0.7 / height, wspace=0.1,
+                               hspace=0.8 * blocks / height)
+    figure.suptitle(title, fontsize=10, x=0, y=1, ha="left", va="top")
+    drawn = quantities(surface.cell_data, length, stress)
     units = [Quantity(label, drawn[row[0]][1], *(drawn[name][0] for name in row)) for label, row in ROWS.items()]
-    for column, number in zip(axes.T, numbers):
-        chosen = np.flatnonzero(surface.cell_data["fracture"] == number)
-        column[0].set_title(names[number] if number < len(names) else f"fracture {number}", loc="left")
-        for k, (chain, arc) in enumerate(chains(part(surface, number))):
-            for ax, row, quantity in zip(column, ROWS.values(), units):
-                for i, name in enumerate(row):
-                    ax.stairs(quantity(drawn[name][0][chosen][chain]), arc, baseline=None, color=LINES[i],
-                              linewidth=1.6, linestyle="--" if name == "slip" else "-",
-                              label=name if k == 0 and len(row) > 1 else None)
-            state = surface.cell_data["state"][chosen][chain]
-            column[-1].pcolormesh(arc, [0, 1], state[None, :], cmap=STATE_COLOURS, vmin=-0.5, vmax=2.5)
-        column[-1].set(xlabel="arc length (m)", yticks=[])
-        column[-1].grid(False)
-        for ax in column[:-1]:
-            ax.axhline(0, color=FAINT, linewidth=0.6, zorder=1)
-    for ax, quantity in zip(axes[:, 0], units):
-        ax.set_ylabel(quantity.label)
-    axes[-1, 0].set_ylabel("state", rotation=0, ha="right", va="center")
-    for row, ax in zip(ROWS.values(), axes[:, -1]):
-        if len(row) > 1:
-            ax.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2, columnspacing=1, borderaxespad=0)
+    first = None
+    for k, number in enumerate(numbers):
+        column, cells = [], grid[k // columns, k % columns].subgridspec(len(ROWS) + 1, 1, height_ratios=[1] * len(ROWS) + [strips], hspace=0.12)
+        for r in range(len(ROWS) + 1):
+            column.append(figure.add_subplot(cells[r], sharex=column[0] if r else None, sharey=first[r] if first and r < len(ROWS) else None))
+        first = first or column
+        column[0].set_title(named[number], loc="left", pad=6 if len(traces[number]) == 1 else 18)
+        for ax, row, quantity in zip(column, ROWS.values(), units):
+            draw_curves(ax, traces[number], row, drawn, quantity)
+            ax.tick_params(labelbottom=False, labelleft=k % columns == 0)
+            ax.set_ylabel(quantity.label if k % columns == 0 else "")
+            ax.yaxis.set_label_coords(-0.5 / 3.6, 0.5)
+        draw_states(column[-1], traces[number], surface.cell_data["state"], k % columns == 0)
+        if len(traces[number]) > 1:
+            legend_of_traces(column[0], traces[number])
+        for ax, row in zip(column, ROWS.values()):
+            if k % columns == 0 and len(row) > 1:
+                legend_of_lines(ax, row, len(traces[number]) == 1)
     patches = [plt.Rectangle((0, 0), 1, 1, color=STATE_COLOURS(i)) for i in range(3)]
-    figure.legend(patches, STATES, loc="upper right", ncol=3, columnspacing=1, handlelength=1.2)
+    figure.legend(patches, STATES, loc="upper right", bbox_to_anchor=(1, 1), ncol=3, columnspacing=1, handlelength=1.2, borderaxespad=0)
     return figure
 
 
-def on_faces(surface, title):
+def on_faces(surface, title, length, stress):
     """3D: the faces coloured."""
     figure, axes = plt.subplots(2, 3, figsize=(9, 6.2), subplot_kw={"projection": "3d"})
     figure.suptitle(title, fontsize=10)
     bar = {"location": "bottom", "shrink": 0.7, "pad": 0.12}
     edges = [(0.5, 0.5, 0.5, 0.6)]
     colours = {"opening": "RdBu_r", "normal traction": "cividis", "shear traction": "cividis"}
-    for ax, (name, (values, base)) in zip(axes.flat, quantities(surface.cell_data).items()):
+    for ax, (name, (values, base)) in zip(axes.flat, quantities(surface.cell_data, length, stress).items()):
         quantity, palette = Quantity(name, base, values), plt.get_cmap(colours.get(name, "inferno"))
         norm = limits(quantity(values), signed=name == "opening")
         draw_polygons_3d(ax, surface.corners(), palette(norm(quantity(values))), edges, zoom=0.95)
-        colour_bar(figure, ax, norm, palette, quantity.label, zero=not np.any(values), **bar)
+        colour_bar(figure, ax, norm, palette, quantity.label, **bar)
     norm = state_bar(figure, axes[-1, -1], **bar)
     draw_polygons_3d(axes[-1, -1], surface.corners(), STATE_COLOURS(norm(surface.cell_data["state"])), edges, zoom=0.95)
     return figure
 
 
-def of_step(grid, names, title):
-    """Of the fractures' grid, at least one face."""
-    if grid.GetCell(0).GetCellDimension() == 1:
-        return along(read.segments(grid), names, title)
-    return on_faces(read.surface(grid), title)
+def of_step(rock, grid, names, title):
+    """Of the grids of the rock and of the fractures, at least one face."""
+    plane = grid.GetCell(0).GetCellDimension() == 1
+    surface = read.segments(grid) if plane else read.surface(grid)
+    sizes = scales(rock, surface.cell_data)
+    return along(surface, names, title, *sizes) if plane else on_faces(surface, title, *sizes)

@@ -1,14 +1,15 @@
 """Traction against jump: of a point, and of the means over the fractures of a run."""
 import numpy as np
 from read import PlotError
-from style import LINES, Quantity, STATES, STATE_COLOURS, give_room, plt, without_noise
+from style import (FAINT, LINES, MOST_CURVES, Quantity, STATES, STATE_COLOURS, foremost, give_room, look, natural, plt,
+                   without_noise)
 
 SHOW_STATES = 400  # of at most so many steps, more would hide the curve
 
 
-def curve(ax, x, y, colour, label=None, states=None):
+def curve(ax, x, y, colour, label=None, states=None, line="-"):
     """A path with its first step and its last marked; dots tell the contact state."""
-    ax.plot(x, y, color=colour, label=label, zorder=2)
+    ax.plot(x, y, color=colour, label=label, linestyle=line, zorder=2)
     ax.plot(x[:1], y[:1], "o", color="white", markeredgecolor=colour, markersize=5, zorder=4)
     if states is not None and len(x) <= SHOW_STATES:
         ax.scatter(x, y, c=STATE_COLOURS(states.astype(int)), s=14, zorder=3, linewidths=0.4, edgecolors="white")
@@ -66,14 +67,18 @@ def of_point(columns, tangential, title):
 
 
 def main_direction(vectors):
-    """The direction in the tangent plane along which the vectors (n, 1 or 2) extend most, towards the largest."""
-    largest = vectors[np.argmax(np.linalg.norm(vectors, axis=1))]
+    """The direction in the tangent plane along which the vectors (n, 1 or 2) extend most: t in 2D; in 3D, towards the first
+    of them that has a thousandth of the largest along it."""
+    if vectors.shape[1] == 1:
+        return np.ones(1)
     direction = np.linalg.svd(vectors)[2][0]
-    return direction if direction @ largest >= 0 else -direction
+    along = vectors @ direction
+    return direction * np.sign(along[np.argmax(abs(along) >= 1e-3 * np.max(abs(along)))] or 1)
 
 
-def of_fractures(steps, names, title):
-    """Means over each fracture, step by step: shear along the main direction of its tangential jump, and normal."""
+def of_fractures(steps, names, title, length=0, stress=0):
+    """Means over each fracture, step by step: shear along the main direction of its tangential jump, and normal. Round-off is
+    measured by a length and a stress, if not by the means."""
     if not names:
         raise PlotError(f"{title}: the run has no fractures")
 
@@ -81,27 +86,33 @@ def of_fractures(steps, names, title):
         return np.array([step["fractures"][name][key]["local"] for step in steps])
 
     means = {name: (local(name, "mean_jump"), local(name, "mean_traction")) for name in names}
-    length = max(np.max(np.abs(jump)) for jump, _ in means.values())
-    stress = max(np.max(np.abs(traction)) for _, traction in means.values())
+    length = max(length, *(np.max(np.abs(jump)) for jump, _ in means.values()))
+    stress = max(stress, *(np.max(np.abs(traction)) for _, traction in means.values()))
     shears, normals = {}, {}
     for name, (jump, traction) in means.items():
         along = main_direction(jump[:, 1:])
         shears[name] = without_noise(jump[:, 1:] @ along, length), without_noise(traction[:, 1:] @ along, stress)
         normals[name] = without_noise(jump[:, 0], length), without_noise(traction[:, 0], stress)
 
-    figure, axes = plt.subplots(1, 2, figsize=(7.4, 3.3))
+    names = sorted(names, key=natural)
+    shown = [names[k] for k in foremost([np.max(np.abs(shears[name][0])) for name in names], MOST_CURVES)]
+    figure, axes = plt.subplots(1, 2, figsize=(7.4 if len(names) == 1 else 9, max(3.3, 0.17 * len(shown) + 0.8)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     for ax, kind, curves in zip(axes, (("tangential jump", "shear traction"), ("normal jump", "normal traction")),
                                 (shears, normals)):
         jump = Quantity("mean " + kind[0], "m", *(c[0] for c in curves.values()))
         traction = Quantity("mean " + kind[1], "Pa", *(c[1] for c in curves.values()))
-        for i, (name, (x, y)) in enumerate(curves.items()):
-            curve(ax, jump(x), traction(y), LINES[i % len(LINES)], label=name)
+        for name, (x, y) in curves.items():
+            if name not in shown:
+                ax.plot(jump(x), traction(y), color=FAINT, linewidth=0.5, zorder=1)
+        for k, name in enumerate(shown):
+            curve(ax, *(quantity(values) for quantity, values in zip((jump, traction), curves[name])), look(k)["color"], name, line=look(k)["linestyle"])
         ax.set(xlabel=jump.label, ylabel=traction.label)
         give_room(ax)
     mark_legend(figure, states=False)
     axes[0].set_title("shear")
     axes[1].set_title("normal, compression negative")
     if len(names) > 1:
-        axes[0].legend()
+        others = [plt.Line2D([], [], color=FAINT, linewidth=0.5, label=f"{len(names) - len(shown)} others")] if len(shown) < len(names) else []
+        axes[1].legend(handles=[*axes[1].get_legend_handles_labels()[0], *others], loc="upper left", bbox_to_anchor=(1, 1), handlelength=3)
     return figure

@@ -3,30 +3,32 @@ import numpy as np
 import orientations
 import read
 from bulk import rim
-from fractures import scales
+from fractures import scales, traces_of
+from matplotlib import patheffects
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
-from style import FAINT, INK, Quantity, STATE_COLOURS, colour_bar, draw_polygons_3d, limits, plt, without_noise
+from style import FAINT, INK, NOISE, Quantity, STATE_COLOURS, colour_bar, draw_polygons_3d, limits, plt, without_noise
 
 LARGEST_TENDENCY = 1.5  # that colours tell apart
 LIGHT = np.array([0.3, -0.5, 0.81])  # from where faces are lit
 
 
-def slip_tendency(data):
-    """Shear traction over normal compression; not a number on open faces, which have none."""
-    normal, shear = data["traction local"][:, 0], np.linalg.norm(data["traction local"][:, 1:], axis=1)
-    loaded = (data["state"] > 0) & (normal < -1e-10 * scales(data)[1])
-    return np.where(loaded, shear / np.where(loaded, -normal, 1), np.nan)
+def slip_tendency(data, stress):
+    """Shear traction over normal compression; not a number on open faces, which have none. Tractions that are round-off of
+    the stress are zero."""
+    normal, shear = data["traction local"][:, 0], without_noise(np.linalg.norm(data["traction local"][:, 1:], axis=1), stress)
+    loaded = (data["state"] > 0) & (normal < -NOISE * stress)
+    return without_noise(np.where(loaded, shear / np.where(loaded, -normal, 1), np.nan), 1)
 
 
-def panels(data):
-    """(values, norm, colours, label) of each map."""
-    tendency = np.minimum(slip_tendency(data), LARGEST_TENDENCY)
+def panels(data, length, stress):
+    """(values, norm, colours, label) of each map; length and stress measure round-off."""
+    tendency = np.minimum(slip_tendency(data, stress), LARGEST_TENDENCY)
     colours = plt.get_cmap("plasma").with_extremes(bad=STATE_COLOURS(0))
     yield tendency, limits(tendency[~np.isnan(tendency)]), colours, "shear traction / normal compression (-)"
     for name, title, palette in (("slip", "slip", "YlOrRd"), ("opening", "opening, normal jump", "YlGnBu")):
-        values = without_noise(data[name], scales(data)[0])
-        quantity, signed = Quantity(title, "m", values), np.min(values) < -1e-9 * np.max(np.abs(values))
+        values = without_noise(data[name], length)
+        quantity, signed = Quantity(title, "m", values), np.min(values) < 0
         yield quantity(values), limits(quantity(values), signed), plt.get_cmap("coolwarm" if signed else palette), quantity.label
 
 
@@ -45,8 +47,9 @@ def planes(surface, values):
 
 
 def draw_directions(ax, shapes, values, norm, colours):
-    """Rose diagram of lines, stereonet of polygons, coloured by their values."""
-    classes = np.where(np.isnan(values), -1, np.clip(np.floor(10 * np.ma.filled(norm(values), 0)), 0, 9))
+    """Rose diagram of lines, stereonet of polygons, coloured by their values, in ten classes; what is between two but for
+    round-off is in the upper."""
+    classes = np.where(np.isnan(values), -1, np.clip(np.floor(10 * np.ma.filled(norm(values), 0) + 1e-6), 0, 9))
     parts = [(colours(np.nan if k < 0 else (k + 0.5) / 10), [shapes[i] for i in np.flatnonzero(classes == k)])
              for k in range(-1, 10)]
     orientations.draw(ax, 2 if shapes[0].shape[1] == 2 else 3, [(colour, part) for colour, part in parts if part])
@@ -79,8 +82,18 @@ def draw_lines(ax, surface, outline, values, norm, colours):
     ax.set(xlabel="x (m)", ylabel="y (m)")
 
 
-def of_step(rock, joints, title):
-    """Of the grids of the rock and of the fractures."""
+def write_names(ax, surface, names):
+    """At traces that fractures.png shows in colour, where it has several of a fracture."""
+    for number in sorted(set(surface.cell_data["fracture"].astype(int))):
+        traces = traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}")
+        for trace in [trace for trace in traces if len(traces) > 1 and trace.colour != FAINT]:
+            at = np.mean(surface.points[surface.polygons[trace.faces[len(trace.faces) // 2]][:2]], axis=0)
+            text = ax.text(*at[:2], trace.name, fontsize=6, ha="center", va="center", zorder=6)
+            text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
+
+
+def of_step(rock, joints, names, title):
+    """Of the grids of the rock and of the fractures, which have these names."""
     plane = read.is_plane(rock)
     surface = read.segments(joints) if plane else read.surface(joints)
     skin = read.surface(rock)
@@ -89,13 +102,15 @@ def of_step(rock, joints, title):
     figure = plt.figure(figsize=(9, 7.6 * height + 0.8))
     figure.suptitle(title, fontsize=10)
     bar = {} if plane else {"location": "bottom", "shrink": 0.7, "pad": 0.1}
-    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data)):
+    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data, *scales(rock, surface.cell_data))):
         ax = figure.add_subplot(2, 2, k, projection=None if plane else "3d")
         if plane:
             draw_lines(ax, surface, outline, values, norm, colours)
+            if k == 3:
+                write_names(ax, surface, names)
         else:
             draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
-        colour_bar(figure, ax, norm, colours, label, zero=not np.any(values), **bar)
+        colour_bar(figure, ax, norm, colours, label, **bar)
         if k == 1:
             shapes = ([x[:2, :2] for x in surface.corners()], values) if plane else planes(surface, values)
             draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *shapes, norm, colours)

@@ -1,4 +1,6 @@
 """One look for all pictures: fonts, units, colours, colour bars."""
+import re
+
 import matplotlib
 
 matplotlib.use("Agg")  # no screen
@@ -9,6 +11,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 
 INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
 LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
+STYLES = ["-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5))]
+MARKERS = ["o", "s", "^", "D"]
+MOST_CURVES = len(LINES) * len(STYLES)  # that are told apart
+NOISE = 1e-9  # of the size of what numbers are computed from: these are zero, or the same
 STATES = ["open", "stick", "slip"]
 STATE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#cc3311"])
 
@@ -45,22 +51,50 @@ class Quantity:
         return np.asarray(values) / self.factor
 
 
+def look(k):
+    """Colour, line and marker of the k-th of several curves."""
+    row = k // len(LINES) % len(STYLES)
+    return {"color": LINES[k % len(LINES)], "linestyle": STYLES[row], "marker": MARKERS[row]}
+
+
+def natural(name):
+    """To sort names by: 2 comes before 10."""
+    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", name) if part]
+
+
+def foremost(sizes, most):
+    """Which of several are shown in colour: the `most` largest, in their order."""
+    return sorted(np.argsort(-np.asarray(sizes), kind="stable")[:most].tolist())
+
+
 def without_noise(values, scale):
-    """The values, or zeros where all of them are round-off of something as large as scale."""
+    """The values; zeros where they are round-off of something as large as scale, their mean where they differ by no more."""
     values = np.asarray(values, dtype=float)
-    return values if np.max(np.abs(values), initial=0) > 1e-10 * scale else np.zeros_like(values)
+    scale = max(scale, np.nanmax(np.abs(values), initial=0))
+    values = np.where(np.abs(values) <= NOISE * scale, 0 * values, values)
+    known = values[~np.isnan(values)]
+    return np.where(np.isnan(values), values, np.mean(known)) if known.size and np.ptp(known) <= NOISE * scale else values
+
+
+class Range(Normalize):
+    """Ends of a colour bar; `single` is the value of a field that has no other, else None."""
+
+    def __init__(self, low, high, single=None):
+        super().__init__(low, high)
+        self.single = single
 
 
 def limits(values, signed=False):
-    """Ends of a colour bar: around zero if signed; a constant gets some room."""
+    """Around zero if signed; a constant gets some room."""
     low, high = (float(np.min(values)), float(np.max(values))) if np.size(values) else (0, 0)
+    largest = max(abs(low), abs(high))
+    single = 0.5 * (low + high) if high - low <= NOISE * largest else None
     if signed:
-        high = max(abs(low), abs(high)) or 1
-        return Normalize(-high, high)
-    if high - low <= 1e-6 * max(abs(low), abs(high)):
-        room = 0.05 * max(abs(low), abs(high))
-        low, high = (0, 1) if low == high == 0 else (low - room, high + room)
-    return Normalize(low, high)
+        return Range(-(largest or 1), largest or 1, single)
+    if high - low <= 1e-6 * largest:
+        room = 0.05 * largest
+        low, high = (0, 1) if largest == 0 else (low - room, high + room)
+    return Range(low, high, single)
 
 
 def give_room(ax):
@@ -72,11 +106,14 @@ def give_room(ax):
                 put(np.mean(values) - 0.1 * size, np.mean(values) + 0.1 * size)
 
 
-def colour_bar(figure, ax, norm, colours, label, zero=False, **where):
-    """A bar beside the axes or where `location` says; of a field that is zero everywhere it shows just that."""
+def colour_bar(figure, ax, norm, colours, label, **where):
+    """A bar beside the axes or where `location` says; of a field that is the same everywhere it shows just that value."""
     bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
     bar.set_label(label)
-    bar.locator = plt.FixedLocator([0]) if zero else plt.MaxNLocator(4 if "location" in where else 7)
+    single = getattr(norm, "single", None)
+    bar.locator = plt.MaxNLocator(4 if "location" in where else 7) if single is None else plt.FixedLocator([single])
+    if single is not None:
+        bar.formatter = plt.FuncFormatter(lambda value, _: f"{value:.4g}")
     bar.update_ticks()
     bar.outline.set_visible(False)
     return bar

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Meshes of fracture networks: mesh_test.py PROGRAM ROOT MPIEXEC"""
 import unittest
+from unittest import mock
 
 import numpy as np
 from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers, planned
@@ -8,6 +9,7 @@ from msh_file import groups_of
 from orientations import poles, strikes
 from report import gamma
 from shapes import NetworkError, ellipse
+from sizes import Sizes
 
 
 def square_at(axis, place, low=0.2, high=0.8):
@@ -55,6 +57,12 @@ class Lines(Conformity):
     def test_clipped_and_on_the_boundary(self):
         self.expect({"a": [[-0.5, 0.5], [0.5, 0.5]], "through": [[0.3, -1], [0.3, 2]], "touches": [[0.7, 0.2], [1, 0.2]],
                      "corner": [[0, 0], [0.2, 0.2]]}, {"a": 0.5, "through": 1, "touches": 0.3, "corner": np.hypot(0.2, 0.2)})
+
+    def test_lines_that_turn_but_not_back(self):
+        """Short segments of a curve are no fold, nor is a line that is closed."""
+        angle = np.linspace(0, np.pi, 60)
+        curve = np.column_stack([0.5 + 3e-3 * np.cos(angle), 0.5 + 3e-3 * np.sin(angle)])
+        planned(network({"a": curve, "b": [[0.2, 0.2], [0.4, 0.2], [0.3, 0.4], [0.2, 0.2]]}))
 
     def test_polygon_that_is_not_convex(self):
         corners = [0, 0, 2, 0, 2, 1, 1, 1, 1, 2, 0, 2]
@@ -128,6 +136,31 @@ class Polygons(Conformity):
                                   ("parallel", square_at(2, 0.6), 0.36)):
             with self.subTest(name):
                 self.expect({"a": a, "b": other}, {"a": 0.36, **({"b": area} if area else {})})
+
+    def test_level_polygons_that_share_sides(self):
+        """A fault of triangles, a ring of quadrilaterals, in planes at any angle: shared sides are no fronts."""
+        random = np.random.default_rng(23)
+        for case in range(6):
+            turn = np.linalg.qr(random.normal(size=(3, 3)))[0] if case else np.eye(3)
+            x, y = np.meshgrid(*2 * [np.linspace(-0.3, 0.3, 4)])
+            flat = np.stack([x, y, 0 * x], axis=-1)
+            flat[1:-1, 1:-1, :2] += random.uniform(-0.04, 0.04, (2, 2, 2))
+            x = np.round(0.5 + flat @ turn.T, 7 if case % 2 else 16)
+            triangles = {f"f{i}{j}{k}": [x[i, j], *corners] for i in range(3) for j in range(3) for k, corners in
+                         enumerate(([x[i, j + 1], x[i + 1, j + 1]], [x[i + 1, j + 1], x[i + 1, j]]))}
+            self.expect_whole(triangles, 0.36, 2.4)
+        angle = np.pi / 6 * np.arange(12)
+        ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+        quadrilaterals = {f"f{k}": 0.5 + np.array([0.4 * a, 0.4 * b, 0.2 * b, 0.2 * a]) for k, (a, b) in enumerate(zip(ring, np.roll(ring, -1, axis=0)))}
+        self.expect_whole(quadrilaterals, 3 * (0.4**2 - 0.2**2), 24 * 0.6 * np.sin(np.pi / 12))
+
+    def expect_whole(self, fractures, area, front):
+        """The fractures together have an area, and fronts of a length."""
+        net = network(fractures)
+        plan, mesh = meshed(net)
+        self.assertEqual(defects(plan, mesh, 1e-6), [])
+        self.assertAlmostEqual(sum(measure_of(plan, mesh, name) for name in fractures), area, 6)
+        self.assertAlmostEqual(sum(np.linalg.norm(plan.points[a] - plan.points[b]) for a, b in Sizes(plan).tips), front, 5)
 
     def test_triple_point_and_three_through_a_line(self):
         plan, mesh = self.expect({f"f{axis}": square_at(axis, 0.5) for axis in range(3)}, {f"f{axis}": 0.36 for axis in range(3)})
@@ -216,6 +249,32 @@ class Refusals(unittest.TestCase):
         self.refused({"a": [[0.2, 0.2], [0.2, 0.2]], "b": [[0.1, 0.1], [0.5, 0.1], [0.5, 0.5], [0.2, 0.0]]}, "has no length", "crosses itself", lines=2)
         self.refused({"west": a}, "has the name of a side", domain=SQUARE)
         self.refused({"a": a}, "tolerance: is 0.5 m, must be at most a hundredth of the domain's diagonal, 0.0141421 m", tolerance=0.5)
+
+    def test_lines_that_fold_back(self):
+        parts, minimum = 'parts of fracture "a" of "a"', '"minimum distance" is 0.000141 m'
+        self.refused({"a": [[0.1, 0.1], [0.9, 0.9], [0.1, 0.10001]]}, parts, "meet at 0.000358 degrees; the \"minimum angle\" is 2")
+        self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.11], [0.1, 0.1]]}, parts, "meet at 0.716 degrees")  # where it is closed
+        for end in ([0.1, 0.1001], [0.2, 0.1001], [0.3, 0.107]):  # along it
+            self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.1001], end]}, parts, "are 0.0001", " m apart at (0.", "without meeting", minimum)
+        self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.5], [0.5, 0.5], [0.5, 0.1001]]}, parts, "are 0.0001 m apart at (0.5, 0.1001)")
+
+    def test_polygons_that_fold_back(self):
+        parts, minimum = 'parts of fracture "a" of "a"', '"minimum distance" is 0.000173 m'
+        corner = [[0.2, 0.2, 0.5], [0.8, 0.2, 0.5], [0.8, 0.21, 0.5]]
+        self.refused({"a": corner}, parts, "meet at 0.955 degrees; the \"minimum angle\" is 2")
+        neck = [[0.2, 0.2], [0.5, 0.4999], [0.8, 0.2], [0.8, 0.8], [0.5, 0.5], [0.2, 0.8]]
+        self.refused({"a": [[x, y, 0.5] for x, y in neck]}, parts, "are 0.0001 m apart at (0.5, ", minimum)
+        slit = [[0.2, 0.2], [0.8, 0.2], [0.8, 0.5], [0.4, 0.5], [0.4, 0.5001], [0.8, 0.5001], [0.8, 0.8], [0.2, 0.8]]
+        self.refused({"a": [[x, y, 0.5] for x, y in slit]}, parts, "are 0.0001 m apart at (0.", minimum)
+
+    def test_networks_that_are_too_dense(self):
+        """Told before anything is made of them that takes minutes, or all memory."""
+        import arrange
+        fan = {f"f{k}": [[0.1, 0.1 + 0.01 * k], [0.9, 0.9 - 0.01 * k]] for k in range(60)}
+        with mock.patch.object(arrange, "MOST_CROSSINGS", 1000):
+            self.refused(fan, "too dense: fractures cross in 1770 points, at most 1000 are meshed", tolerance=1e-9)
+        with mock.patch.object(arrange, "MOST_PAIRS", 2000):
+            self.refused(fan, "too dense: of ", "more than 2000 pairs may be closer than ", tolerance=1e-9, minimum_angle=0.0, minimum_distance=0.0)
 
     def test_what_is_no_fracture(self):
         far, square = {"lower corner": [2.0, 2.0], "upper corner": [3.0, 3.0], "corners": [], "faces": {}}, square_at(2, 0.5)

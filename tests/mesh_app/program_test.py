@@ -136,12 +136,20 @@ class Files(MeshTest):
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
         self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 0.6, 9)
 
-    def test_other_numbers_and_columns(self):
+    def test_other_numbers_and_separators(self):
+        """Rows of numbers between anything but commas do not pass for titles, nor for other errors."""
         net = self.write("net.csv", "1,0.2,0.5,0.8,1_0")
         self.refused(net, f'{net}: line 1: "1_0" in column 5 is no number')
-        for row in ("1;0.2;0.5;0.8;0.5", "1;0,2;0,5;0,8;0,5"):
-            net = self.write("net.csv", "# from a spreadsheet; in metres", row)
-            self.refused(net, f"{net}: line 2: has semicolons; columns are separated by commas")
+        rows = (("semicolons", "1;0.2;0.5;0.8;0.5"), ("semicolons", "1;0,2;0,5;0,8;0,5"), ("tabs", "1\t0.2\t0.5\t0.8\t0.5"),
+                ("tabs", "north fault\t0,2\t0,5\t0,8\t0,5"), ("blanks between numbers", "1 0.2 0.5 0.8 0.5"), ("blanks between numbers", "f1  0.2 0.5  1 1"))
+        for name, row in rows:
+            for before in ([], ["id,x0,y0,x1,y1"], ["1,0.2,0.5,0.8,0.5"]):
+                net = self.write("net.csv", "# from a spreadsheet; in metres", *before, row, "3,0.1,0.1,0.2,0.2")
+                self.refused(net, f"{net}: line {2 + len(before)}: has {name}; columns are separated by commas")
+            net = self.write("net.csv", row)
+            self.refused(net, f"{net}: line 1: has {name}", dim=3, **self.CUBE)
+        self.write("net.csv", "trace 7, x in m, y in m, x1, y1", "1 2, 0.2,\t0.5, 0.8, 0.5")
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
 
     def test_closed_rings(self):
         """The last corner may repeat the first."""
@@ -185,6 +193,18 @@ class Files(MeshTest):
         (self.folder / "net.csv").write_bytes(b"1,0.2,0.5,\xff\xfe")
         self.refused(self.folder / "net.csv", "net.csv: cannot be read: is no text in UTF-8")
         self.refused(self.write("net.csv", "id,x0,y0,x1,y1"), "net.csv: has no fracture")
+        (self.folder / "folder").mkdir()
+        self.refused(self.folder / "folder", "folder: cannot be read: Is a directory")
+        os.mkfifo(self.folder / "pipe")
+        (self.folder / "zeros").symlink_to("/dev/zero")
+        for name in ("pipe", "zeros"):
+            self.refused(self.folder / name, f"{name}: cannot be read: is no regular file, but a pipe, a socket or a device")
+        with mock.patch("tables.MOST_CHARACTERS", 100):
+            self.refused(self.write("net.csv", *["1,0.2,0.5,0.8,0.5"] * 6), "net.csv: cannot be read: has more than 100 characters")
+
+    def test_more_fractures_than_can_be_meshed(self):
+        with mock.patch("description.MOST_FRACTURES", 3):
+            self.refused(self.write("net.csv", *(f"{k},0.2,0.{k},0.8,0.{k}" for k in range(1, 6))), "fractures > set: brings the network to 5 fractures, at most 3")
 
 
 class Runs(MeshTest):
@@ -204,6 +224,19 @@ class Runs(MeshTest):
         with open(self.folder / "net.msh", "r+b") as file:
             file.truncate(1000)
         self.assertIn("cells", self.mesh(scene, "--set", "Mesh file.network.growth=0.6"))
+
+    def test_what_takes_long_is_told(self):
+        from progress import doing
+        err = io.StringIO()
+        with mock.patch("progress.PATIENCE", 0.01), contextlib.redirect_stderr(err):
+            with doing("waiting"):
+                for _ in range(1000):
+                    time.sleep(0.01)
+                    if err.getvalue():
+                        break
+            with doing("hurrying"):
+                pass
+        self.assertEqual(err.getvalue(), "sprekk: waiting ...\n")
 
     def test_same_mesh_each_time(self):
         scene = self.simple()

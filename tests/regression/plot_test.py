@@ -24,6 +24,7 @@ plot = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plot)
 
 import bulk  # noqa: E402
+import convergence  # noqa: E402
 import flow  # noqa: E402
 import fractures  # noqa: E402
 import loops  # noqa: E402
@@ -174,6 +175,78 @@ class Pictures(PlotTest):
         self.assertAlmostEqual(abs(x[-1]) * 1e-3, abs(last["mean_jump"]["local"][1]), 12)
         self.assertAlmostEqual(abs(y[-1]), abs(last["mean_traction"]["local"][1]), 12)
 
+    def test_loops_have_the_sign_of_the_results(self):
+        """Also where the largest excursion is a negative one, or round-off says which it is."""
+        for ramp in ("{0, 1, -1.2}", "{0, 1, -1}", "{0, -1, 1}"):
+            content = self.run_scene(ROOT / "docs/shear_test.xml", f"Tables.ramp.values={ramp}", "Time.steps=6", "Mesh.cells={8, 4}", "Output.vtu=false")
+            wanted = [step["fractures"]["shear plane"]["mean_traction"]["local"][1] for step in content["steps"]]
+            y = self.figures("out")["loops"].axes[0].lines[0].get_ydata()
+            self.assertTrue(np.allclose(1e6 * y, wanted, rtol=1e-9, atol=1), (ramp, y, wanted))
+
+    def means(self, n):
+        """Steps of a run with n fractures, and their names."""
+        def mean(*local):
+            return {"local": list(map(float, local))}
+        names = [f"f {k + 1}" for k in range(n)]
+        return [{"fractures": {name: {"mean_jump": mean(1e-6, 1e-3 * t * (k + 1)), "mean_traction": mean(-1e6, 1e5 * t)} for k, name in enumerate(names)}}
+                for t in (1, 2)], sorted(names)
+
+    def test_loops_of_many_fractures(self):
+        """Curves that are named differ in colour or line, in the order of their numbers, beside the axes."""
+        for n, named in ((12, 12), (40, style.MOST_CURVES)):
+            figure = loops.of_fractures(*self.means(n), "many")
+            legend = figure.axes[1].get_legend()
+            labels = [text.get_text() for text in legend.get_texts()]
+            self.assertEqual(labels[:named], [f"f {k + 1}" for k in range(n - named, n)])
+            self.assertEqual(labels[named:], [f"{n - named} others"] if n > named else [])
+            lines = legend.get_lines()
+            self.assertEqual(len({(line.get_color(), line._dash_pattern[1] and tuple(line._dash_pattern[1])) for line in lines}), len(labels))
+            figure.canvas.draw()
+            self.assertGreaterEqual(legend.get_window_extent().x0, figure.axes[1].get_window_extent().x1)
+
+    def test_convergence_shows_what_its_legend_lists(self):
+        measures = {f"m{k}": 10.0**-k for k in range(12, 20)}
+        steps = [{"newton_iterations": 2, "linear_iterations": 2, "cuts": 0, "measures": {**measures, "zero": 0.0, "none": None}}] * 3
+        ax = convergence.of_run(steps, "run").axes[1]
+        self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], sorted(measures))
+        self.assertEqual(len({(line.get_color(), str(line.get_linestyle())) for line in ax.lines}), len(measures))
+        for value in (3e-11, 1e-11):  # within a decade
+            ax = convergence.of_run([{**steps[0], "measures": {"m": value}}] * 3, "run").axes[1]
+            low, high = ax.get_ylim()
+            self.assertGreaterEqual(sum(low <= tick <= high for tick in ax.get_yticks()), 2)
+
+    def crossing_traces(self, n):
+        """The faces of a fracture of n traces side by side, two faces each; the last slips, the others stick."""
+        points = np.array([[x, k, 0.0] for k in range(n) for x in (0, 1, 3)])
+        faces = [np.array([3 * k + i, 3 * k + i + 1]) for k in range(n) for i in (0, 1)]
+        state = np.ones(2 * n)
+        state[-4:-2] = 2
+        jump = np.repeat(np.arange(n), 2)[:, None] * [0.0, 1e-3]
+        data = {"fracture": np.zeros(2 * n), "state": state, "jump": jump, "jump local": jump, "slip": jump[:, 1], "opening": jump[:, 0],
+                "traction": jump - [1e6, 0], "traction local": jump - [1e6, 0]}
+        return read.Surface(points, faces, data, {})
+
+    def test_every_trace_of_a_fracture_shows(self):
+        """Each has its strip of states; the largest jumps have colours and numbers of their own."""
+        for n in (5, 30):
+            axes = fractures.along(self.crossing_traces(n), ["set"], "run", 1e-3, 1e6).axes
+            strips = axes[-1].collections
+            self.assertEqual([strip.get_array().ravel().tolist() for strip in strips], [[1, 1]] * (n - 2) + [[2, 2], [1, 1]])
+            self.assertEqual(len({strip.get_datalim(axes[-1].transData).y0 for strip in strips}), n)
+            legend = next(child for child in axes[0].get_children() if isinstance(child, style.matplotlib.legend.Legend))
+            labels = [text.get_text() for text in legend.get_texts()]
+            self.assertEqual(labels, ["1", "2", "3", "4", "5"] if n == 5 else ["25", "26", "27", "28", "29", "30", "others"])
+            self.assertEqual(len({line.get_color() for line in legend.get_lines()}), len(labels))
+
+    def test_many_fractures_fit_a_page(self):
+        """In the order of their numbers, four beside each other."""
+        surface = self.crossing_traces(11)
+        surface.cell_data["fracture"] = np.repeat(np.arange(11), 2)
+        names = sorted(str(k + 1) for k in range(11))
+        figure = fractures.along(surface, names, "run", 1e-3, 1e6)
+        self.assertEqual([t for t in (ax.get_title(loc="left") for ax in figure.axes) if t], [str(k + 1) for k in range(11)])
+        self.assertLess(figure.get_size_inches()[0], 16)
+
     def test_step_of_a_time(self):
         self.run_scene("verification/crossing_2d.xml")
         self.assertIn("t = 2 s", self.figures("out", "--time", "2.2")["bulk"]._suptitle.get_text())
@@ -184,7 +257,11 @@ class Pictures(PlotTest):
         self.run_scene("verification/uniaxial_2d.xml")
         self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence"])
         self.run_scene("seed/push_2d.xml", "Output.vtu=false", output="numbers")
-        self.assertEqual(sorted(self.figures("numbers")), ["convergence"])
+        out, err = self.draw(self.folder / "numbers", "--dpi", "30")
+        self.assertEqual([Path(line).name for line in out.splitlines()], ["convergence.png"])
+        self.assertIn(f'no bulk.png or other picture of one step of {self.folder / "numbers"}: it holds no bulk.pvd; the scene\'s Output has "vtu" false', err)
+        self.run_scene(ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", output="failed", expect=3)
+        self.assertIn("of one step of", self.draw(self.folder / "failed", "--dpi", "30")[1])
 
     def test_quadratic_cells(self):
         self.run_scene("seed/push_2d.xml", "Mesh.order=2")
@@ -236,10 +313,10 @@ class Pictures(PlotTest):
 
 class Maps(PlotTest):
     def test_slip_tendency(self):
-        """Shear over compression; none on faces that are open or pulled, or carry round-off."""
-        traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 0, 0]])
-        data = {"traction local": traction, "traction": traction, "jump": traction, "state": np.array([1, 2, 0, 0, 1, 0])}
-        self.assertTrue(np.array_equal(maps.slip_tendency(data), [0.5, 1.5, np.nan, np.nan, np.nan, np.nan], equal_nan=True))
+        """Shear over compression; none on faces that are open or pulled, or carry round-off; zero where the shear is round-off."""
+        traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 1e-10, 0]])
+        data = {"traction local": traction, "traction": traction, "jump": traction, "state": np.array([1, 2, 0, 0, 1, 1])}
+        self.assertTrue(np.array_equal(maps.slip_tendency(data, 5), [0.5, 1.5, np.nan, np.nan, np.nan, 0], equal_nan=True))
 
     def test_planes(self):
         """Faces in one plane are one pole, with the mean over their area; those of another fracture or height another."""
@@ -257,7 +334,7 @@ class Maps(PlotTest):
         shown = [np.ma.filled(lines.get_array(), np.nan) for ax in figure.axes for lines in ax.collections if lines.get_array() is not None]
         shown = [values for values in shown if len(values) == len(data["slip"])]
         self.assertEqual(len(shown), 3)
-        self.assertTrue(np.allclose(shown[0], np.minimum(maps.slip_tendency(data), maps.LARGEST_TENDENCY), equal_nan=True))
+        self.assertTrue(np.allclose(shown[0], np.minimum(maps.slip_tendency(data, 0), maps.LARGEST_TENDENCY), equal_nan=True))
         for values, name in zip(shown[1:], ("slip", "opening")):
             self.assertTrue(np.allclose(values / np.max(abs(values)), data[name] / np.max(abs(data[name]))), name)
         self.assertEqual(bool(figure.axes[0].get_legend()), bool(np.isnan(shown[0]).any()))
@@ -327,8 +404,43 @@ class Numbers(ProgramTest):
         self.assertTrue(np.allclose(arc, [0, 1, 3, 5]))
 
     def test_main_direction(self):
-        along = loops.main_direction(np.array([[0.1, 0.1], [-2.0, -2.0], [1.0, 1.0]]))
-        self.assertTrue(np.allclose(along, [-(0.5**0.5), -(0.5**0.5)]))
+        """Towards the first that has one, not the largest; in 2D always that of the results."""
+        along = loops.main_direction(np.array([[1e-15, -1e-15], [0.1, 0.1], [-2.0, -2.0], [1.0, 1.0]]))
+        self.assertTrue(np.allclose(along, [0.5**0.5, 0.5**0.5]))
+        self.assertEqual(loops.main_direction(np.array([[0.1], [-2.0]])).tolist(), [1])
+        self.assertEqual(abs(loops.main_direction(np.zeros((3, 2)))).tolist(), [1, 0])
+
+    def test_traces_that_cross(self):
+        """Each is one chain, from end to end; one that abuts ends there, and a bend is none."""
+        points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [1, -1, 0], [1, 1, 0], [2, 1, 0], [0, 2, 0], [3, 2, 0]])
+        faces = [np.array(f) for f in ([0, 1], [3, 1], [1, 2], [1, 4], [4, 5], [6, 4], [4, 7])]
+        found = {tuple(sorted(chain)) for chain, _ in fractures.chains(read.Surface(points, faces, {}, {}))}
+        self.assertIn((0, 2), found)
+        self.assertIn((1, 3), found)
+
+    def test_round_off_is_one_colour(self):
+        noise = 1e-12 * np.array([1.0, -2, 3])
+        self.assertTrue((style.without_noise(noise, 1) == 0).all())
+        self.assertEqual(np.ptp(style.without_noise(0.5 + noise, 1)), 0)
+        self.assertEqual(style.limits(0.5 + noise).single, 0.5 + np.mean(noise[1:]))
+        self.assertIsNone(style.limits(np.array([1.0, 2])).single)
+        kept = np.array([1.0, np.nan, 1e-3])
+        self.assertTrue(np.array_equal(style.without_noise(kept, 1), kept, equal_nan=True))
+        figure, ax = style.plt.subplots()
+        bar = style.colour_bar(figure, ax, style.limits(np.full(3, 2.5e-11)), style.plt.get_cmap(), "slip (m)")
+        figure.canvas.draw()
+        self.assertEqual([label.get_text() for label in bar.ax.get_yticklabels()], ["2.5e-11"])
+        self.assertEqual(bar.ax.yaxis.get_offset_text().get_text(), "")
+
+    def test_directions_of_one_value_have_one_colour(self):
+        lines = [np.array([[0.0, 0], [np.cos(a), np.sin(a)]]) for a in (0.1, 0.9, 2.0)]
+        values = 0.5773 + np.array([0, 1e-16, -1e-16])
+        ax = style.plt.figure().add_subplot(projection="polar")
+        maps.draw_directions(ax, lines, values, style.limits(values), style.plt.get_cmap())
+        self.assertEqual(len({bar.get_facecolor() for bar in ax.patches if bar.get_height() > 0}), 1)
+
+    def test_names_are_in_the_order_of_their_numbers(self):
+        self.assertEqual(sorted(["10", "2", "1", "b 3", "b 12", "a"], key=style.natural), ["1", "2", "10", "a", "b 3", "b 12"])
 
 
 if __name__ == "__main__":
