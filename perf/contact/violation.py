@@ -160,24 +160,24 @@ def violation(step, before, scales):
 
 
 def _wrong_increment(step, before, shear, scales):
-    """The part of the plastic increment that (11) forbids: all of it on faces that stick, on those that slip what is not
-    along the traction; also the increment where the shear is below the bound. Open faces move freely, and so do
-    faces without friction."""
+    """The part of the plastic increment that (11) forbids: all of it on faces that stick, on those that slip what is not along
+    the traction; also the increment where the shear is below the bound. Open faces move freely, and so do faces without
+    friction and those that touch without load: an increment counts no more than the load that forbids it."""
     increment = step.plastic[:, 1:] - before.plastic[:, 1:]
-    size = np.linalg.norm(increment, axis=1)
-    slips = (step.state == SLIP) & (shear > 1e-12 * scales.traction)
+    size = np.linalg.norm(increment, axis=1) / scales.length
     along = step.traction[:, 1:] / np.where(shear > 0, shear, 1)[:, None]
     forward = np.maximum((increment * along).sum(axis=1), 0)
     across = np.linalg.norm(increment - forward[:, None] * along, axis=1) / scales.length
-    below = np.minimum(size / scales.length, np.maximum(step.bound - shear, 0) / scales.traction)
-    return max(np.where(slips, np.maximum(across, below), 0).max(),
-               np.where(step.state == STICK, size / scales.length, 0).max())
+    wrong = np.maximum(np.minimum(across, shear / scales.traction), np.minimum(size, (step.bound - shear) / scales.traction))
+    load = np.maximum(-step.traction[:, 0], 0) / scales.traction
+    return max(np.where(step.state == SLIP, wrong, 0).max(), np.where(step.state == STICK, np.minimum(size, load), 0).max())
 
 
 def largest(directory, results, input_):
     """The faces of each step, the violation of the run by parts, and how many steps were not judged by direction."""
     steps, scales = history(directory, input_)
-    at = {round(step["time"], 9): k for k, step in enumerate(results["steps"])}
+    numbered = list(enumerate(results["steps"]))
+    at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before
     worst, skipped, last = np.zeros(len(PARTS)), 0, -1
     for k, step in enumerate(steps):
         number = at[round(step.time, 9)]

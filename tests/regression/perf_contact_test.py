@@ -58,6 +58,14 @@ class Violation(ProgramTest):
         crept = self.parts(stick, stick, plastic=stick.plastic + [0, 0, 0.01])
         self.assertAlmostEqual(crept["direction"], 0.01 / length)
 
+    def test_faces_that_touch_without_load_may_come_from_anywhere(self):
+        stick, slip, *_ = self.steps("contact/all_change_3d.xml")
+        for state in (violation.STICK, violation.SLIP):
+            for share, expected in ((0, 0), (1e-3, 1e-3)):
+                traction = share * self.scales.traction * np.array([[-1, 1, 0]])
+                light = self.parts(slip, stick, state=state, traction=traction, bound=traction[0, 1], plastic=stick.plastic + [0, 0, 0.1])
+                self.assertAlmostEqual(light["direction"], expected)
+
     def test_the_law_is_that_of_the_input(self):
         steps = self.steps("contact/all_change_2d.xml")
         joint, slip = self.input.joints[0], steps[1]

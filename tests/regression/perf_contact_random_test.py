@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Random scenes of perf/contact: perf_contact_random_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy, SciPy, VTK or gmsh.
+
+Limit analysis against loads whose limit is known; the same scenes for the same seed; what is judged to be a failure."""
+import io
+import math
+import subprocess
+import sys
+import unittest
+import xml.etree.ElementTree as xml
+
+import program
+from program import ROOT, ProgramTest, main
+
+if ROOT:
+    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact")]
+try:
+    import gmsh  # noqa: F401
+    import numpy as np
+    import contact
+    import limit_analysis
+    import random_run
+    import random_scenes
+    import rigid_pieces
+    import scene_file
+    import violation
+    from scenes import Scene
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+SOUTH, NORTH, WEST, EAST = ({"boundary": side, "displacement": [0.0, 0.0]} for side in ("south", "north", "west", "east"))
+
+
+def read(tree):
+    """A scene, as it is read from a file."""
+    return violation.Input(io.StringIO(xml.tostring(scene_file.section("Sprekk", tree), encoding="unicode")))
+
+
+def scene(mesh, friction, conditions, bulk=None, **fracture):
+    joint = {"type": "joint", "friction coefficient": friction}
+    rock = {"type": "elastic", "Young's modulus": 1.0, "Poisson's ratio": 0.25}
+    return read({"Mesh": mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"body force": bulk or [0.0, -1.0]},
+                 "Fractures": {name: {"material": "joint", **fracture} for name in mesh["fractures"]},
+                 "Boundary conditions": {str(k): condition for k, condition in enumerate(conditions)}})
+
+
+def box(high, cells, *fractures, cell="quadrilateral", **more):
+    corners = {f"f{k}": {"lower corner": lower, "upper corner": upper} for k, (lower, upper) in enumerate(fractures)}
+    return {"cell": cell, "lower corner": [0.0] * len(high), "upper corner": high, "cells": cells, "fractures": corners, **more}
+
+
+def stands(input_, time=0):
+    return limit_analysis.admissible(input_, rigid_pieces.box(input_), time)
+
+
+class LimitAnalysis(unittest.TestCase):
+    def incline(self, angle, friction, height=1.2, **more):
+        """A block of length 2 on a base that is turned."""
+        mesh = box([2.0, height], [8, 2], ([0.0, height / 2], [2.0, height / 2]), rotation=angle)
+        return stands(scene(mesh, friction, [SOUTH], **more))
+
+    def test_a_block_on_a_slope_slides_beyond_the_angle_of_friction(self):
+        for angle in (10, -25, 40):
+            limit = math.tan(math.radians(abs(angle)))
+            self.assertTrue(self.incline(angle, 1.001 * limit))
+            self.assertFalse(self.incline(angle, 0.999 * limit))
+
+    def test_a_slender_block_falls_over(self):
+        """About the centre of the outermost face, 7/8 of half its length away from the middle."""
+        limit = 2 * math.degrees(math.atan(1))  # height of the block, at which it falls at 45 degrees: 7/8 * 2
+        self.assertTrue(self.incline(limit / 2, 2, height=2 * 0.999 * 7 / 4))
+        self.assertFalse(self.incline(limit / 2, 2, height=2 * 1.001 * 7 / 4))
+
+    def test_slopes_in_space(self):
+        """Edges of the cone lie on it: between them friction is less by up to 1 - cos(pi/32)."""
+        for cell, faces in (("hexahedron", 4), ("tetrahedron", 8)):
+            for turn in (0, 33):
+                axis = [math.cos(math.radians(turn)), math.sin(math.radians(turn)), 0.0]
+                mesh = box([2.0, 2.0, 1.0], [2, 2, 2], ([0.0, 0.0, 0.5], [2.0, 2.0, 0.5]), cell=cell, rotation=20.0)
+                mesh["rotation axis"] = axis
+                floor = {"boundary": "bottom", "displacement": [0.0, 0.0, 0.0]}
+                limit = math.tan(math.radians(20))
+                for factor in (1.006, 0.999):
+                    input_ = scene(mesh, factor * limit, [floor], [0.0, 0.0, -1.0])
+                    self.assertEqual(stands(input_), factor > 1, (cell, turn))
+                    parts = rigid_pieces.pieces(rigid_pieces.box(input_), ["f0"])
+                    self.assertEqual((parts.count, len(parts.fractures)), (2, faces))
+
+    def test_what_hangs_falls_and_what_is_clamped_stays(self):
+        halves = box([1.0, 1.0], [2, 2], ([0.0, 0.5], [1.0, 0.5]))
+        self.assertFalse(stands(scene(halves, 0.9, [NORTH])))
+        self.assertTrue(stands(scene(halves, 0.0, [NORTH, SOUTH])))
+        middle = box([3.0, 1.0], [3, 2], ([1.0, 0.0], [1.0, 1.0]), ([2.0, 0.0], [2.0, 1.0]))
+        self.assertTrue(stands(scene(middle, 0.1, [WEST, EAST])))
+        self.assertFalse(stands(scene(middle, 0.0, [WEST, EAST])))
+
+    def test_rollers_bear_what_they_prescribe(self):
+        halves = box([1.0, 1.0], [2, 2], ([0.0, 0.5], [1.0, 0.5]))
+        roller = {"boundary": "east", "displacement": ["0", "free"]}
+        self.assertTrue(stands(scene(halves, 0.0, [SOUTH, roller], [-1.0, -1.0])))
+        self.assertFalse(stands(scene(halves, 0.0, [SOUTH], [-0.01, -1.0])))
+
+    def test_loads_follow_their_tables(self):
+        halves = box([1.0, 1.0], [2, 2], ([0.0, 0.5], [1.0, 0.5]))
+        load = {"boundary": "north", "traction": ["-q(t)", "-(1 + 0*x)"]}
+        tree = scene(halves, 0.5, [SOUTH, load])
+        tree.root.append(scene_file.section("Tables", {"q": {"arguments": [0.0, 1.0], "values": [0.0, 1.0]}}))
+        # the weight of the block is 0.5, so that it slides at 0.75; a resultant within the middle half does not turn it
+        self.assertTrue(stands(tree, 0.2))
+        self.assertFalse(stands(tree, 0.76))
+
+    def test_fluid_pressure_lifts(self):
+        """The weight of the upper half is 0.6 per length; on a slope, friction knows of the effective traction alone."""
+        for pressure, expected in (("0.59", True), ("0.61", False)):
+            self.assertEqual(self.incline(0, 0.5, **{"fluid pressure": pressure}), expected)
+        limit = 0.6 * (math.cos(math.radians(20)) - math.sin(math.radians(20)) / 0.6)
+        for factor in (0.999, 1.001):
+            self.assertEqual(self.incline(20, 0.6, **{"fluid pressure": factor * limit}), factor < 1)
+
+    def arch(self, thickness, friction, stones=60, across=20):
+        """A semicircle of mean radius 1 on two stones that are held, its stones cut into cells across the thickness."""
+        radii = np.linspace(1 - thickness / 2, 1 + thickness / 2, across + 1)
+        angles, stones = math.pi * np.arange(-1, stones + 2) / stones, stones + 2
+        points = np.stack([np.outer(np.cos(angles), radii), np.outer(np.sin(angles), radii)], -1).reshape(-1, 2)
+        node = np.arange(len(points)).reshape(stones + 1, across + 1)
+        a, b, c, d = node[:-1, :-1].ravel(), node[:-1, 1:].ravel(), node[1:, 1:].ravel(), node[1:, :-1].ravel()
+        facets = np.stack([np.stack(pair, -1) for pair in ((a, b), (b, c), (c, d), (d, a))], 1)
+        diagonals = points[c] - points[a], points[d] - points[b]
+        volumes = (diagonals[0][:, 0] * diagonals[1][:, 1] - diagonals[0][:, 1] * diagonals[1][:, 0]) / 2
+        groups = {f"j{k:02}": np.stack([node[k, :-1], node[k, 1:]], -1) for k in range(stones + 1)}
+        springings = {"right": groups.pop("j00"), "left": groups.pop(f"j{stones:02}")}
+        rock = rigid_pieces.Rock(points, facets, volumes, points[np.stack([a, b, c, d], -1)].mean(axis=1), groups | springings)
+        conditions = [{"boundary": side, "displacement": [0.0, 0.0]} for side in springings]
+        input_ = scene({"fractures": {name: {} for name in groups}}, friction, conditions)
+        return limit_analysis.admissible(input_, rock, 0)
+
+    def test_an_arch_needs_a_tenth_of_its_radius(self):
+        """A semicircular arch stands from a thickness of 0.1075 of its mean radius on (Milankovitch 1907, Cocchetti 2011)."""
+        for effective, expected in ((0.107, False), (0.108, True)):
+            # the outermost centres of faces are 19/20 of the thickness apart
+            self.assertEqual(self.arch(effective * 20 / 19, 2), expected)
+        self.assertFalse(self.arch(0.2, 0.3))  # it slides below 0.31 to 0.4
+
+    def test_pieces_of_a_network(self):
+        """Two triangles, cut or not."""
+        points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+        cells = np.array([[0, 1, 2], [0, 2, 3]])
+        facets = np.stack([np.delete(cells, i, axis=1) for i in range(3)], axis=1)
+        rock = rigid_pieces.Rock(points, facets, np.array([0.5, 0.5]), points[cells].mean(axis=1), {"f": np.array([[2, 0]])})
+        parts = rigid_pieces.pieces(rock, ["f"])
+        self.assertEqual((parts.count, parts.fractures[0].pieces), (2, (0, 1)))
+        self.assertAlmostEqual(parts.fractures[0].area, math.sqrt(2))
+        self.assertTrue(np.allclose(parts.fractures[0].normal, np.array([-1, 1]) / math.sqrt(2)))
+        self.assertEqual(rigid_pieces.pieces(rock, []).count, 1)
+
+
+class Drawing(ProgramTest):
+    def test_a_scene_depends_on_seed_and_number_alone(self):
+        drawn = [random_scenes.draw_scene(3, k) for k in range(300)]
+        self.assertEqual(drawn[299], random_scenes.draw_scene(3, 299))
+        self.assertNotEqual(drawn[5].tree, random_scenes.draw_scene(4, 5).tree)
+        self.assertEqual({one.name.rsplit("-", 1)[0] for one in drawn}, set(random_scenes.FAMILIES))
+
+    def test_files_are_the_same_and_can_be_read(self):
+        """Of the first scene of each family; limit analysis reads the same mesh of a network as the program."""
+        first = {}
+        for k in range(100):
+            first.setdefault(random_scenes.draw_scene(3, k).name.rsplit("-", 1)[0], k)
+        for family, k in first.items():
+            drawn, refusal = random_scenes.write(3, k, self.folder, program.PROGRAM)
+            self.assertEqual(refusal, "")
+            path = self.folder / f"{drawn.name}.xml"
+            self.call("check", path)
+            limit_analysis.of_scene(path, 1.0)
+            if family in ("network-2d", "box-3d"):
+                before = {file.name: file.read_bytes() for file in self.folder.glob(f"{drawn.name}*.[xm][ms][lh]")}
+                random_scenes.write(3, k, self.folder, program.PROGRAM)
+                self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
+        mesh = next(self.folder.glob("network-2d*.msh"))
+        said = self.call("mesh-info", mesh, "--fractures", "a,b")[0]
+        rock = rigid_pieces.simplices(mesh)
+        self.assertIn(f"{len(rock.volumes)} triangles", said)
+        self.assertAlmostEqual(rock.volumes.sum(), np.prod(np.ptp(rock.points, axis=0)))
+
+
+class Verdicts(ProgramTest):
+    def verdict(self, status, friction, time=0.0, end=1.0):
+        """Of a run of the clamped middle that ended so after the step to `time`."""
+        mesh = box([3.0, 1.0], [3, 2], ([1.0, 0.0], [1.0, 1.0]), ([2.0, 0.0], [2.0, 1.0]))
+        input_ = scene(mesh, friction, [WEST, EAST])
+        input_.root.append(scene_file.section("Time", {"end": end, "steps": 2}))
+        path = self.folder / "scene.xml"
+        path.write_text(xml.tostring(input_.root, encoding="unicode"))
+        run = contact.Run(Scene("scene", str(path)), self.folder / "none", words="said", results={"steps": [], "reason": "why"})
+        return random_run.judge(run, status, path)
+
+    def test_a_refusal_is_right_only_where_no_tractions_exist(self):
+        self.assertEqual(self.verdict(3, 0.0), ("refused", []))
+        verdict, (what,) = self.verdict(3, 0.1)
+        self.assertEqual(verdict, "failed")
+        self.assertIn("t = 0.5 exist: why", what)
+
+    def test_other_ends(self):
+        self.assertEqual(self.verdict(0, 0.1), ("ok", []))
+        self.assertEqual(self.verdict(None, 0.0)[0], "hang")
+        for status in (1, 134):
+            self.assertEqual(self.verdict(status, 0.0), ("failed", [f"status {status}: said"]))
+
+    def test_scenes_that_fail_are_kept(self):
+        broken = self.folder / "broken"
+        broken.write_text("#!/bin/sh\necho no good; exit 5\n")
+        broken.chmod(0o755)
+        command = [sys.executable, "-B", ROOT / "perf/contact/contact.py", "--random", "12", "--seed", "7", "--only", "box-3d-0008",
+                   "--binary", broken, "--output", self.folder / "out"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        kept = list((self.folder / "out/failures").iterdir())
+        self.assertRegex(done.stdout.splitlines()[-1], "^scenes=1 failures=1 refused=0 hangs=0 newton_median=nan newton_p90=nan rank_differences=0$")
+        self.call("check", kept[0])
+        self.assertIn("status 5: no good", kept[0].read_text().splitlines()[0])
+        self.assertEqual(len((self.folder / "out/random.csv").read_text().splitlines()), 2)
+
+
+if __name__ == "__main__":
+    main()
