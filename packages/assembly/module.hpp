@@ -110,6 +110,7 @@ struct State {
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
   Real tether = 0;                     ///< see BlockProblem::tether()
   ConstView<Real**> anchor = {};       ///< [owned fracture face, dim] the jump that it pulls to, global, m
+  ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
 };
@@ -155,6 +156,10 @@ class Module {
   /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
   /// Schur complement, for preconditioners and for sizes of rows.
   virtual void add_schur(const State& state, const Rows& diagonals) const {}
+  /// Sets, of faces where a flux has a coefficient that depends on unknowns, what it is a power of, above zero [local
+  /// fracture face]: those of the state, or `widest`, the largest that it may well have under the present loads. Where
+  /// State::coefficients is given, residual() and jacobian() take that. Local.
+  virtual void coefficients(const State& state, bool widest, std::vector<Real>& values) const {}
   /// Appends measures that see what |residual| cannot, as maxima over this rank.
   virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
   /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows; without them 1/|diagonal| is taken.

@@ -62,6 +62,7 @@ class System : public fields::BlockProblem {
   std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
+  Real lag(Lag how, const fields::BlockVector& x) override;
   bool tether(Real stiffness, const fields::BlockVector& x) override;
   bool calibrate(const fields::BlockVector& x, bool first) override;
   bool settle(fields::BlockVector& x) override;
@@ -156,6 +157,7 @@ class System : public fields::BlockProblem {
   fields::BlockVector ghosted_;      // [block] unknowns with ghosts
   fields::BlockVector weights_;      // [block] of merit(); null: 1/|diagonal|
   fields::BlockVector diagonals_;    // [block] of linear_; where rock and fluid couple, of flow: of matrix_
+  fields::BlockVector present_;      // [block] the same of the last jacobian()
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
   std::unique_ptr<LoosePieces> loose_;  // null without displacement, or where modules hold bodies
@@ -173,6 +175,11 @@ class System : public fields::BlockProblem {
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
   ConstView<Real**> anchor_;  // [owned fracture face, dim] of tether()
   Real tether_ = 0;
+  ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
+  struct Lagged {
+    std::vector<Real> used, before, led_to, slope;  // [local fracture face] ln of coefficients: those in f, the ones
+                                                    // before them, those of the x that these led to; slopes
+  } lagged_;
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;
   Rates rates_;

@@ -50,7 +50,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, rates_.now, damping_, augmentation_, tether_, anchor_, {}, history_[module]};
+  State s{t_, rates_.now, damping_, augmentation_, tether_, anchor_, coefficients_, {}, history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -81,6 +81,56 @@ bool System::tether(Real stiffness, const BlockVector& x) {
   anchor_ = anchor;
   tether_ = stiffness;
   return true;
+}
+
+/// In logarithms, for coefficients go over many orders of magnitude. Of y -> ln of the coefficients that f lagged by
+/// exp(y) leads to, each face has its own fixed-point iteration, relaxed by 1/(1 - s) with the secant's slope s, of
+/// which the steepest is remembered, by half with each iterate, and made steeper where that went too far, for faces act
+/// on each other. Where conductances follow a cubic law s is -3 if
+/// pressures decide on the aperture, and 0 if volumes do.
+Real System::lag(Lag how, const BlockVector& x) {
+  constexpr Real steepest = -10, first_slope = -1;
+  if (how == Lag::none) {
+    coefficients_ = {};
+    lagged_ = {};
+    return 0;
+  }
+  refresh_ghosts(x, false);
+  std::vector<Real> found(mesh_->n_fracture_faces(), 0);
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
+  auto& [used, before, led_to, slope] = lagged_;
+  Real here = -1, farthest = 0;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (!(found[f] > 0)) continue;
+    found[f] = std::log(found[f]);
+    here = std::max(here, used.empty() ? 0 : std::abs(found[f] - used[f]));
+  }
+  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &farthest);
+  if (farthest < 0) return farthest;
+  auto next = found;
+  slope.resize(found.size(), 0);
+  if (how == Lag::follow && !used.empty()) {
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      const Real away = found[f] - used[f], moved = before.empty() ? 0 : used[f] - before[f];
+      Real remembered = slope[f] / 2, secant = before.empty() ? first_slope : 0;
+      if (moved != 0) secant = (found[f] - led_to[f]) / moved;
+      if (moved * away < 0) remembered = 2 * slope[f] - 0.5;  // gone too far
+      slope[f] = std::clamp(std::min(secant, remembered), steepest, Real(0));
+      next[f] = used[f] + away / (1 - slope[f]);
+    }
+    before = used;
+    led_to = found;
+  } else {
+    before.clear();
+  }
+  used = next;
+  View<Real*> values("coefficients", next.size());
+  const auto host = Kokkos::create_mirror_view(values);
+  for (std::size_t f = 0; f < next.size(); ++f) host(f) = std::exp(next[f]);
+  Kokkos::deep_copy(values, host);
+  coefficients_ = values;
+  return farthest;
 }
 
 /// Evaluates the loads at time t and lets the scales grow with them.
@@ -256,10 +306,13 @@ void System::find_schur() {
   }
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
-  for (std::size_t b = 0; b < blocks_.size() && coupled_ && !sized_; ++b)  // rates are no part of the linear one
+  if (present_.empty()) present_ = diagonals_;
+  for (std::size_t b = 0; b < blocks_.size() && coupled_; ++b)  // rates are no part of the linear one
     if (unknowns_[b].row == Quantity::flow) {
-      matrix_(b, b)->getLocalDiagCopy(*diagonals_[b]);
-      if (!schur_[b].is_null()) diagonals_[b]->update(1, *schur_[b], 1);
+      if (present_[b] == diagonals_[b]) present_[b] = rcp(new fields::Vector(blocks_[b].map));
+      matrix_(b, b)->getLocalDiagCopy(*present_[b]);
+      if (!schur_[b].is_null()) present_[b]->update(1, *schur_[b], 1);
+      if (!sized_) Tpetra::deep_copy(*diagonals_[b], *present_[b]);
     }
   sized_ = true;
 }
@@ -301,7 +354,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
-    const auto diagonal = const_view(*diagonals_[b]);
+    const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const Real rounding_of_block = rounding(x, unknowns_[b].value);
     const bool of_flow = unknowns_[b].row == Quantity::flow;  // some rows let much less through than others
     const Real moved = of_flow && coupled_ ? rounding(x, Quantity::length) * face_area_ / dt_ : 0;
@@ -310,7 +363,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real noise = mask(i) ? 0 : rounding_of_block * diagonal(i) + moved,
+          const Real noise = mask(i) ? 0 : rounding_of_block * now(i) + moved,
                      size_of_row = row(i) < 0 ? -row(i) : row(i);
           const Real weak = of_flow ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
@@ -339,14 +392,14 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const auto row = const_view(*r[b]);
     const bool weighted = !weights_[b].is_null();
     const auto weight = const_view(weighted ? *weights_[b] : *diagonals_[b]);
-    const auto diagonal = const_view(*diagonals_[b]);
+    const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const bool flows = unknowns_[b].row == Quantity::flow, powers = flows && coupled_;
     const Real of_flow = flows ? rounding(x, unknowns_[b].value) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
-          const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * diagonal(i);
+          const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * now(i);
           if (mask(i) || size <= 0) return;
           const Real of_diagonal = diagonal(i) < 0 ? -diagonal(i) : diagonal(i);
           const Real w = powers ? 1 / diagonal(i) : weighted ? weight(i) : of_diagonal > 0 ? 1 / of_diagonal : 0;

@@ -113,6 +113,13 @@ class BlockProblem {
   /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
   /// derivative of f. Solutions do not depend on it. Local.
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
+  enum class Lag { none, follow, widest };
+  /// Coefficients of fluxes may depend on x by high powers (the transmissivity of a fracture, on its aperture), which
+  /// misleads Newton's method far from a solution. From now on f takes them as given: `follow`, first those of x, then
+  /// nearer to those of x with each call; `widest`, everywhere the largest of those of x. none: f is as it is. Returns
+  /// the largest |ln| of the ratio of those of x to those that were given before; below zero where there are none, and f
+  /// stays as it is. Collective.
+  virtual Real lag(Lag how, const BlockVector& x) { return -1; }
   /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
   /// about as much as the rock around it does): so every body is held, and where they rub friction decides little. Zero
   /// is f as it is. False where there is no contact, and f stays as it is.

@@ -73,7 +73,9 @@ struct Conduit {
   }
   /// Hydraulic aperture times k_t/mu, m^3/(Pa s), and its derivative in the widening.
   KOKKOS_INLINE_FUNCTION Real transmissivity(Real widening = 0) const {
-    const Real a = hydraulic_aperture(widening);
+    return transmissivity_of(hydraulic_aperture(widening));
+  }
+  KOKKOS_INLINE_FUNCTION Real transmissivity_of(Real a) const {
     return a * (permeability > 0 ? permeability : a * a / 12) / viscosity;
   }
   KOKKOS_INLINE_FUNCTION Real dtransmissivity(Real widening) const {

@@ -53,16 +53,18 @@ struct WideningFace : FractureFace<n> {
   using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
   using Rows = typename Base::Columns;
 
-  explicit WideningFace(const Base& base) : Base(base) {}
+  ConstView<Real*> aperture;  // [face] hydraulic, m, where it is given
+
+  explicit WideningFace(const Base& base, ConstView<Real*> aperture = {}) : Base(base), aperture(aperture) {}
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
-    evaluate(face, x, this->conduit(face).transmissivity(x[1 + n]), r);
+    evaluate(face, x, transmissivity(face, x[1 + n]), r);
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
     Real p[1 + n], by_widening[1 + n], own[1 + n][1 + n];
     for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
     Base::at(face).jacobian(p, own);
-    evaluate(face, x, this->conduit(face).dtransmissivity(x[1 + n]), by_widening);
-    const Real transmissivity = this->conduit(face).transmissivity(x[1 + n]);
+    evaluate(face, x, is_given() ? 0 : this->conduit(face).dtransmissivity(x[1 + n]), by_widening);
+    const Real transmissivity = this->transmissivity(face, x[1 + n]);
     for (int i = 0; i < 1 + n; ++i) {
       for (int k = 0; k < 1 + n; ++k) J[i][k] = transmissivity * own[i][k];
       J[i][1 + n] = by_widening[i];
@@ -70,6 +72,11 @@ struct WideningFace : FractureFace<n> {
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION bool is_given() const { return aperture.extent(0) > 0; }
+  KOKKOS_INLINE_FUNCTION Real transmissivity(int face, Real widening) const {
+    const laws::Conduit& conduit = this->conduit(face);
+    return is_given() ? conduit.transmissivity_of(aperture(face)) : conduit.transmissivity(widening);
+  }
   KOKKOS_INLINE_FUNCTION void evaluate(int face, const Real (&x)[2 + n], Real transmissivity, Real (&r)[1 + n]) const {
     Real p[1 + n];
     for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
@@ -123,7 +130,7 @@ class FractureFlow final : public assembly::Module {
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     if (parameters_.widens)
-      widening_assembler_->add_residual(WideningFace<n>(op_), state, r);
+      widening_assembler_->add_residual(WideningFace<n>(op_, state.coefficients), state, r);
     else
       assembler_->add_residual(op_, state, r);
     exchange_.add_residual(state, r);
@@ -135,10 +142,17 @@ class FractureFlow final : public assembly::Module {
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     if (parameters_.widens)
-      widening_assembler_->add_jacobian(WideningFace<n>(op_), state, J);
+      widening_assembler_->add_jacobian(WideningFace<n>(op_, state.coefficients), state, J);
     else
       assembler_->add_jacobian(op_, state, J);
     exchange_.add_jacobian(state, J);
+  }
+  /// Hydraulic apertures.
+  void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
+    if (!parameters_.widens) return;
+    const auto widening = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]);
+    for (std::size_t f = 0; f < values.size(); ++f)
+      values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
   }
   /// Widening leaves pressures alone without symmetry, and coupled systems have none in any case.
   bool symmetric(const assembly::State&) const override { return is_linear() || parameters_.widens; }
@@ -150,7 +164,8 @@ class FractureFlow final : public assembly::Module {
                        [](const auto& one) { return one.value.constant_in_time(); });
   }
 
-  void set_time(Real t, const assembly::Scales&) override {
+  void set_time(Real t, const assembly::Scales& scales) override {
+    open_ = of_displacement * scales.length;
     if (loaded_ && constant_load()) return;
     const auto facets = Kokkos::create_mirror_view(load_);
     Kokkos::deep_copy(facets, 0.0);
@@ -220,6 +235,7 @@ class FractureFlow final : public assembly::Module {
   }
 
  private:
+  static constexpr Real of_displacement = 1e-2;
   using Assembler = assembly::Assembler<Op>;
   using WideningAssembler = assembly::Assembler<WideningFace<n>>;
 
@@ -323,6 +339,7 @@ class FractureFlow final : public assembly::Module {
   RCP<const mesh::Mesh> mesh_;
   int block_ = -1, widening_ = -1;  // face pressure, widening
   Real size_ = 0;                   // largest extent of the domain, m
+  Real open_ = 0;  // aperture of a fracture that is wide open, m
   bool loaded_ = false;
   std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
   Op op_;

@@ -58,8 +58,9 @@ class DirectSolver : public LinearSolver {
       start(system);
     }
     matrix_ = system.matrix;
-    scalar_ = system.diagonal.size() == 1 && system.diagonal.front().block.n_components == 1 &&
-              !system.diagonal.front().block.coordinates.is_null();
+    flows_ = std::any_of(system.diagonal.begin(), system.diagonal.end(), [](const auto& part) {
+      return part.block.n_components == 1 && !part.block.coordinates.is_null();
+    });
     failure_.clear();
     fill_values();
     if (!analysed_ && run(analyse) < 0) return failure_ = message(mumps_);
@@ -114,13 +115,13 @@ class DirectSolver : public LinearSolver {
   const Teuchos::ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Relative residual that rounding leaves, of pressures, whose rows may differ by many orders of magnitude.
+  /// Relative residual that rounding leaves where there are pressures, whose rows may differ by many orders of magnitude.
   Real noise(const Vector& b, const Vector& x) const {
-    if (!scalar_) return 0;
+    if (!flows_) return 0;
     Vector Dx(x.getMap());
     matrix_->getLocalDiagCopy(Dx);
     Dx.elementWiseMultiply(1, x, Dx, 0);
-    return std::min(16 * std::numeric_limits<Real>::epsilon() * Dx.norm2() / b.norm2(), most_noise);
+    return std::min(64 * std::numeric_limits<Real>::epsilon() * Dx.norm2() / b.norm2(), most_noise);
   }
 
   int run(Job job) {
@@ -258,9 +259,9 @@ class DirectSolver : public LinearSolver {
   std::map<int, double> cntl_;  // from 0
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
-  bool ready_ = false, analysed_ = false, symmetric_ = false, scalar_ = false;
+  bool ready_ = false, analysed_ = false, symmetric_ = false, flows_ = false;
   bool gathers_ = false;  // rank 0 gets all of the matrix
-  static constexpr Real most_noise = 1e-2;
+  static constexpr Real most_noise = 0.5;
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
   std::vector<int> counts_, starts_;    // of the ranks' values

@@ -42,22 +42,52 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     return false;
   }
   std::optional<Trial> found;
-  if (solved) found = search(group, from, *dx);
+  const auto attempt = [&] { return picard_.lags() ? full(group, from, *dx) : search(group, from, *dx); };
+  if (solved) found = attempt();
   while (!found && damping_ < most_damping) {
     problem_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
     report_.damped = true;
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
-    if (solved) found = search(group, from, *dx);
+    if (solved) found = attempt();
   }
   if (!found) {
     if (solved) report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
     group = from;
     return false;
   }
+  if (picard_.possible() && takes_back(group, from, *found)) return true;
   step = found->a;
   if (step == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
   accept(group, step, found->merit);
   return true;
+}
+
+std::optional<LineSearch::Trial> LineSearch::full(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                                                  const NOX::Abstract::Vector& dx) const {
+  group.computeX(from, dx, 1);
+  group.computeF();
+  const Real merit = problem_.merit(solution_of(group), residual_of(group));
+  if (!std::isfinite(merit)) return {};
+  return Trial{1, merit};
+}
+
+/// Lets Picard look at a step. Where f changes, it is evaluated anew, and so is the merit.
+bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken) {
+  const bool lagged = picard_.lags();
+  bool back = false;
+  if (lagged) {
+    const auto x = solution_of(group);
+    back = picard_.follow(x, problem_.state_hash(problem_.states(x)) == pattern_);
+    if (!picard_.lags()) since_ = merits_.size();
+  } else if (!merits_.empty()) {
+    back = picard_.resume(solution_of(from), taken.a, taken.merit, merits_.back());
+  }
+  if (back) group = from;
+  if (!back && !lagged) return false;
+  group.setX(group.getX());
+  group.computeF();
+  taken.merit = problem_.merit(solution_of(group), residual_of(group));
+  return back;
 }
 
 std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
@@ -72,9 +102,9 @@ std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group,
 }
 
 Real LineSearch::limit() const {
-  if (merits_.empty()) return std::numeric_limits<Real>::infinity();
+  if (merits_.size() <= since_) return std::numeric_limits<Real>::infinity();
   if (monotone_) return merits_.back();
-  return *std::max_element(merits_.end() - std::min(memory, merits_.size()), merits_.end());
+  return *std::max_element(merits_.end() - std::min(memory, merits_.size() - since_), merits_.end());
 }
 
 /// Iterates before the first full step leave the linear part out of balance.
@@ -91,11 +121,22 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
   compare(problem_.states(x), merit);
   problem_.damp(damping_, swinging_);
   steps_.push_back(step);
-  if (problem_.stores() && steps_.size() >= short_steps)
-    report_.stagnant = std::accumulate(steps_.end() - short_steps, steps_.end(), 0.0) < least_way;
-  if (report_.stagnant || merits_.size() < trial_period) return;
+  report_.stagnant = is_stagnant();
+}
+
+bool LineSearch::is_stagnant() {
+  const int now = static_cast<int>(merits_.size()) - 1;
+  if (picard_.possible()) {
+    if (now == 0 || changed_ || merits_.back() < 0.5 * least_) progress_ = merits_.size();
+    least_ = now == 0 ? merits_.back() : std::min(least_, merits_.back());
+    return merits_.size() > progress_ + trial_period;
+  }
+  if (problem_.stores() && steps_.size() >= short_steps &&
+      std::accumulate(steps_.end() - short_steps, steps_.end(), 0.0) < least_way)
+    return true;
+  if (merits_.size() < trial_period) return false;
   const auto recent = merits_.end() - patience;
-  report_.stagnant = *std::min_element(recent, merits_.end()) > 0.5 * *std::min_element(merits_.begin(), recent);
+  return *std::min_element(recent, merits_.end()) > 0.5 * *std::min_element(merits_.begin(), recent);
 }
 
 void LineSearch::compare(const std::vector<char>& states, Real merit) {
@@ -110,10 +151,12 @@ void LineSearch::compare(const std::vector<char>& states, Real merit) {
     last = now;
   }
   states_ = states;
-  const auto pattern = problem_.state_hash(states);
-  const auto seen = visited_.find(pattern);
+  const auto before = pattern_;
+  pattern_ = problem_.state_hash(states);
+  changed_ = pattern_ != before;
+  const auto seen = visited_.find(pattern_);
   if (seen != visited_.end() && merit >= seen->second) monotone_ = true;
-  visited_[pattern] = merit;
+  visited_[pattern_] = merit;
 }
 
 }  // namespace sprekk::solve

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "solve/picard.hpp"
 #include "solve/thyra_model.hpp"
 
 namespace sprekk::solve {
@@ -16,7 +17,8 @@ struct SearchReport {
   std::string failure;  ///< why there was no step
   std::string loose;    ///< what nothing held in one of the iterates, the last such
   /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
-  /// steps together were below half of one of Newton's.
+  /// steps together were below half of one of Newton's. Where coefficients of fluxes depend on x: in ten iterates no
+  /// state changed, and no merit was below half the best before.
   bool stagnant = false;
   bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
   int n_accepted = 0;            ///< iterates but for the start
@@ -27,11 +29,12 @@ struct SearchReport {
 /// if none is, the step is taken anew with damping 0.1, 1, 10. Before that the step's share of motions that nothing
 /// resists is balanced. When a discrete state comes back and the merit is no better than then, iterates would go round
 /// in circles: from there on only the last merit counts. Entities whose state changes, and did in one of the two
-/// iterates before, are damped, by 0.3, in the next step.
+/// iterates before, are damped, by 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when
+/// there is a search, and which steps are taken back.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
-  LineSearch(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
-      : problem_(problem), model_(model), report_(report) {}
+  LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
+      : problem_(problem), model_(model), picard_(picard), report_(report) {}
 
   /// Fails, with step 0, where the direction does: after a linear solve that did; and when a body has found no
   /// resistance in four steps of a solve, which is what the report says then.
@@ -44,12 +47,17 @@ class LineSearch : public NOX::LineSearch::Generic {
   };
   std::optional<Trial> search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                               const NOX::Abstract::Vector& dx) const;
+  std::optional<Trial> full(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                            const NOX::Abstract::Vector& dx) const;
+  bool takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken);
   Real limit() const;
   void accept(NOX::Abstract::Group& group, Real step, Real merit);
   void compare(const std::vector<char>& states, Real merit);
+  bool is_stagnant();
 
   BlockProblem& problem_;
   const ThyraModel& model_;
+  Picard& picard_;
   SearchReport& report_;
   int n_unbalanced_ = 0;
   Real damping_ = 0;
@@ -57,6 +65,11 @@ class LineSearch : public NOX::LineSearch::Generic {
   std::vector<Real> swinging_;           // [as states()] damping of entities that go to and fro
   std::vector<Real> merits_;             // of all iterates
   std::vector<Real> steps_;              // to them
+  std::size_t since_ = 0;                // the first of merits_ that is one of f itself
+  std::size_t progress_ = 0;             // the last iterate with a state of its own, or half the least merit before
+  Real least_ = 0;                       // merit so far
+  std::size_t pattern_ = 0;              // hash of states_
+  bool changed_ = false;                 // it did in the last iterate
   std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
   bool monotone_ = false;
 };
@@ -64,15 +77,16 @@ class LineSearch : public NOX::LineSearch::Generic {
 /// Lets NOX make line searches for a problem.
 class LineSearchFactory : public NOX::LineSearch::UserDefinedFactory {
  public:
-  LineSearchFactory(BlockProblem& problem, const ThyraModel& model, SearchReport& report)
-      : problem_(problem), model_(model), report_(report) {}
+  LineSearchFactory(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
+      : problem_(problem), model_(model), picard_(picard), report_(report) {}
   RCP<NOX::LineSearch::Generic> buildLineSearch(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) const override {
-    return rcp(new LineSearch(problem_, model_, report_));
+    return rcp(new LineSearch(problem_, model_, picard_, report_));
   }
 
  private:
   BlockProblem& problem_;
   const ThyraModel& model_;
+  Picard& picard_;
   SearchReport& report_;
 };
 

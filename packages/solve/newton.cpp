@@ -7,6 +7,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
+#include <optional>
 
 #include "base/check.hpp"
 #include "base/parameters.hpp"
@@ -17,12 +18,15 @@ namespace {
 
 using NOX::StatusTest::StatusType;
 
+constexpr int most_lagged = 30;  // steps while coefficients of fluxes lag
+
 /// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is
 /// not finite, without progress, or out of iterations. Keeps the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const SearchReport& search, NewtonReport& report)
-      : problem_(problem), options_(options), search_(search), report_(report) {}
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const SearchReport& search,
+              NewtonReport& report)
+      : problem_(problem), options_(options), picard_(picard), search_(search), report_(report) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = solver.getSolutionGroup();
@@ -37,11 +41,11 @@ class MeasureTest : public NOX::StatusTest::Generic {
     status_ = NOX::StatusTest::Unconverged;
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
-    } else if (value <= options_.tolerance) {
+    } else if (value <= options_.tolerance && !(picard_.lags() && picard_.n_steps() > 0)) {
       status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
-    } else if (report_.iterations >= options_.max_iterations) {
+    } else if (picard_.n_steps() >= most_lagged || report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (search_.stagnant) {
@@ -66,13 +70,14 @@ class MeasureTest : public NOX::StatusTest::Generic {
 
   BlockProblem& problem_;
   const NewtonOptions& options_;
+  const Picard& picard_;
   const SearchReport& search_;
   NewtonReport& report_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
 RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem, const ThyraModel& model,
-                                           SearchReport& found) {
+                                           Picard& picard, SearchReport& found) {
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
   list->sublist("Direction").set("Method", "Newton");
@@ -82,7 +87,7 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   newton.sublist("Linear Solver").set("Tolerance", options.linear_solver.tolerance);
   auto& search = list->sublist("Line Search");
   search.set("Method", "User Defined");
-  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model, found));
+  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model, picard, found));
   search.set("User Defined Line Search Factory", factory);
   const int shown = NOX::Utils::OuterIteration + NOX::Utils::OuterIterationStatusTest + NOX::Utils::Error;
   auto& printing = list->sublist("Printing");
@@ -133,17 +138,20 @@ NewtonReport Newton::solve(BlockVector& x) {
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
   SearchReport search;
-  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, search, report));
-  const auto parameters = nox_parameters(options_, problem_, *model_, search);
+  std::optional<Picard> picard(std::in_place, problem_, x);
+  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, search, report));
+  const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
   const auto solver = NOX::Solver::buildSolver(group, test, parameters);
   report.converged = solver->solve() == NOX::StatusTest::Converged;
+  const bool lagged = picard->lags() && picard->n_steps() > 0;
+  picard.reset();
   refuse_unread(options_.nox, *parameters, "NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   report.linear_solves = model_->linear_history();
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.iterations > 0) {
-    const int here = search.damped;
+    const int here = search.damped || lagged;
     int anywhere = 0;
     Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
     factors_ = anywhere > 0 ? Factors::damped : Factors::good;

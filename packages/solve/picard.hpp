@@ -1,0 +1,46 @@
+// Fixed-point iteration on coefficients of fluxes, on the way to where Newton's method converges.
+#pragma once
+
+#include "fields/block_problem.hpp"
+
+namespace sprekk::solve {
+
+using fields::BlockProblem;
+using fields::BlockVector;
+
+/// The transmissivity of a fracture grows with the cube of its aperture. Where a fluid opens fractures, Newton's method
+/// linearises that at closed ones: the fluid of a step then stays in one face, which opens far too wide, in the next
+/// iterate in its neighbours, and so on; and a search for less residual forbids the way, for residuals of flow rise by
+/// orders of magnitude while volume moves. So f first takes transmissivities as given, see BlockProblem::lag(): a
+/// problem of contact and linear flow, of which one full Newton step is made for each new set of them. If the first step
+/// goes far, it is taken back, and transmissivities start from wide fractures: T ~ a^3 is convex, and iterates that come
+/// from above do not pass over the solution. Once apertures agree, Newton's method takes over; a step of it that comes
+/// no nearer is taken back, and the fixed-point iteration goes on, to a tenth of the distance. All members are
+/// collective but for those that return what is stored.
+class Picard {
+ public:
+  /// Refers to the problem, whose f lags from now on, at x, if it has such coefficients, until the end of its life.
+  Picard(BlockProblem& problem, const BlockVector& x);
+  ~Picard() { problem_.lag(BlockProblem::Lag::none, {}); }
+  Picard(const Picard&) = delete;
+  Picard& operator=(const Picard&) = delete;
+
+  bool possible() const { return possible_; }  ///< f has such coefficients
+  bool lags() const { return lags_; }          ///< they are not those of x: its zeros are not those of f
+  int n_steps() const { return n_; }           ///< while it lagged
+
+  /// After a full step of the f that lags, to x; `settled`: discrete states are those of the iterate before. True if the
+  /// step is to be taken back.
+  bool follow(const BlockVector& x, bool settled);
+  /// After a step of f itself from `from`, of which the search took the part `step`. True if it is to be taken back: f
+  /// lags again.
+  bool resume(const BlockVector& from, Real step, Real merit, Real merit_before);
+
+ private:
+  BlockProblem& problem_;
+  bool possible_, lags_;
+  Real near_ = 0.3;         // |ln| of the ratio of coefficients
+  int n_ = 0, n_held_ = 0;  // steps; those in a row after which coefficients stayed
+};
+
+}  // namespace sprekk::solve

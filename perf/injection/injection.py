@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Injection that opens joints: Newton iterations and cuts where water is pressed into a network of joints, at rates up to and above what keeps them closed.
+
+A step is one that the scene asks for; its Newton iterations are those of all its substeps, rejected ones too."""
+import argparse
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact"), str(ROOT / "perf/krylov")]
+
+import numpy as np  # noqa: E402
+
+import contact  # noqa: E402
+import linear  # noqa: E402
+from scenes import Scene  # noqa: E402
+
+END = 20 * 3600.0  # s
+MOST = 25          # Newton iterations of a step
+BOUNDS = {"failures": 0, "newton_median": 8, "newton_max": MOST}
+CUTS = 0.1         # of a run, per step
+MESHES = {2: "Mesh.cells={20, 20}", 3: "Mesh.cells={10, 10, 10}"}  # multiples of 20 and 10 fit the fractures
+RATES = {2: (6e-5, 2e-4, 3e-4, 5e-4, 2e-3), 3: (5e-3, 2e-2)}  # m^2/s, m^3/s; the least hardly opens a joint
+PERMEABILITIES = (1e-20, 1e-17, 1e-15)  # m^2
+JOINT = "Materials.rough joint."
+JOINTS = {"mated": (),                                    # 0.4 mm wide where nothing presses it
+          "closed": (JOINT + "initial aperture=0",),      # but for its residual aperture
+          "hard": (JOINT + "initial aperture=0", JOINT + "maximum closure=0", JOINT + "normal stiffness=0")}
+RUNS = tuple((solver, steps) for solver in ("direct", "iterative") for steps in (10, 40))
+COLUMNS = {"scene": "", "solver": "", "steps": "d", "done": "d", "median": "g", "max": "d", "above": "d", "cuts": "d", "open": ".2f", "violation": ".0e", "seconds": ".1f"}
+
+
+@dataclass
+class Case:
+    """One scene."""
+    dim: int
+    joint: str
+    permeability: float
+    rate: float
+
+    @property
+    def name(self):
+        return f"{self.dim}D, {self.joint}, k {self.permeability:g}, rate {self.rate:g}"
+
+    def scene(self, solver, steps):
+        sets = (MESHES[self.dim], f"Materials.granite.permeability={{{self.permeability:g}}}", f"Flow.Wells.injector.rate={self.rate:g}*min(t/7200, 1)",
+                f"Time.end={END:g}", f"Time.steps={steps}", f"Solver.Linear solver.type={solver}")
+        return Scene(f"{self.name}, {solver}, {steps}", f"poro/injection_{self.dim}d.xml", sets + JOINTS[self.joint])
+
+
+def cases():
+    """All in 2D; in 3D every combination of joint and rate, with one permeability each in turn."""
+    for k, (joint, rate) in enumerate((joint, rate) for joint in JOINTS for rate in RATES[3]):
+        yield Case(3, joint, PERMEABILITIES[k % len(PERMEABILITIES)], rate)
+    for joint in JOINTS:
+        for permeability in PERMEABILITIES:
+            for rate in RATES[2]:
+                yield Case(2, joint, permeability, rate)
+
+
+def asked(run, steps):
+    """What is not as it is asked for, besides failures."""
+    cuts = sum(step["cuts"] for step in run.steps)
+    if cuts > CUTS * steps:
+        yield f"{cuts} cuts in {steps} steps, asked is one in ten at most"
+    if max(run.newton, default=0) > MOST:
+        yield f"{max(run.newton)} Newton iterations in a step, asked are {MOST}"
+
+
+def opened(run):
+    """Fraction of the fractures' area that is open at the end."""
+    fractures = run.steps[-1]["fractures"].values()
+    return sum(f["area"] * f["fraction_open"] for f in fractures) / sum(f["area"] for f in fractures)
+
+
+def row(case, solver, steps, run):
+    if not run.steps:
+        return [case.name, solver, steps, 0, 0, 0, 0, 0, 0, 0, run.seconds]
+    worst = 0 if run.worst is None else float(run.worst.max())
+    return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MOST for n in run.newton), sum(step["cuts"] for step in run.steps),
+            opened(run), worst, run.seconds]
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="sprekk perf injection", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="four scenes, ten steps each; the status is 1 above a stated bound, too")
+    linear.add_only(parser, "scenes")
+    parser.add_argument("--output", type=Path, default=Path("output/perf/injection"), metavar="DIR")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    return parser.parse_args(words)
+
+
+def main(words):
+    options = arguments(words)
+    chosen = [(case, *how) for case in cases() for how in RUNS]
+    if options.quick:
+        chosen = [(case, solver, steps) for case, solver, steps in chosen if case.dim == 2 and case.permeability == 1e-17 and steps == 10
+                  and case.rate in (2e-4, 5e-4) and case.joint != "hard" and solver == ("direct" if case.joint == "closed" else "iterative")]
+    chosen = linear.matching(options, chosen, lambda run: run[0].scene(*run[1:]).name)
+    options.output.mkdir(parents=True, exist_ok=True)
+    table, runs, beyond = linear.Table(COLUMNS, 38), [], []
+    for case, solver, steps in chosen:
+        run = contact.judge(*contact.start(options, case.scene(solver, steps), 1))
+        if run.worst is not None and run.worst.max() > contact.BOUNDS["worst_violation"]:
+            run.failures.append(f"a law is violated by {run.worst.max():.0e}")
+        table.add(row(case, solver, steps, run), run.failures)
+        runs.append(run)
+        beyond += [f"{run.scene.name}: {what}" for what in asked(run, steps)]
+    table.write(options.output / "injection.csv")
+    newton = [n for run in runs for n in run.newton]
+    total = {"failures": sum(bool(run.failures) for run in runs), "newton_median": np.median(newton or [np.nan]), "newton_max": max(newton, default=0),
+             "cuts": sum(step["cuts"] for run in runs for step in run.steps)}
+    print(f"\n{len({case.name for case, *_ in chosen})} scenes, {len(runs)} runs, {len(newton)} steps in {sum(run.seconds for run in runs):.0f} s; injection.csv in {options.output}")
+    for what in beyond:
+        print("not as asked:", what)
+    print("failures={failures} newton_median={newton_median:g} newton_max={newton_max} cuts={cuts}".format(**total))
+    return 1 if total["failures"] or (options.quick and beyond) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
