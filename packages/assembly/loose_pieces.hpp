@@ -17,13 +17,15 @@ namespace sprekk::assembly {
 
 /// How the sides of a fracture face hold each other.
 struct Grip {
-  std::array<mesh::Vector, 3> held{};  ///< projector on the directions in which they resist, global frame
+  std::array<mesh::Vector, 3> held{};  ///< rows: jumps that are zero in all of them meet no resistance, global frame
   mesh::Vector excess{};  ///< what the traction, an unknown, is above the one that the law answers with, Pa, global
   mesh::Vector traction{}, jump{};  ///< Pa, m, global
   Real augmentation = 0;            ///< c of the face law, Pa/m
   Real modulus = 0;                 ///< Young's modulus of the softer side, Pa
   Real gap = 0;                     ///< how far the sides are from touching without traction, m
   mesh::Vector away{};              ///< derivative of the gap in the jump
+  Real limit = 0;                   ///< of friction, on the size of the tangential traction, Pa
+  mesh::Vector slip{};              ///< plastic tangential jump since the last accepted state, m, global
 };
 
 /// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
@@ -72,16 +74,32 @@ class LoosePieces {
   /// [group] Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions
   /// on the motion: zero in equilibrium under the tractions that the law answers with. N m (N in 2D).
   std::vector<Real> work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
+  /// A face that slides without changing any force, and may go on: `along` . [[v]] is what v adds to its slip `done`.
+  struct Slide {
+    LocalIndex face;  ///< owned
+    mesh::Vector along;
+    Real done;     ///< m
+    bool one_way;  ///< never below zero
+  };
   /// normal . [[v]] >= least on a fracture face, of a displacement v.
   struct Obstacle {
     LocalIndex face;  ///< owned
     mesh::Vector normal;
     Real least;
   };
-  /// The free motion v, [loose piece], for which `displacement` + v is smallest in the norm of proximal() among those
-  /// that satisfy the obstacles of all ranks; nothing, if none does. `unit`: a typical length, m. Unique.
-  std::optional<std::vector<RigidRow>> nearest(const fields::Vector& displacement,
-                                               const std::vector<Obstacle>& obstacles, Real unit) const;
+  /// All free motions v = nearest + sum_k x_k axes[k], [loose piece], in coordinates in which the distance is |x|.
+  struct Places {
+    std::vector<RigidRow> nearest;
+    std::vector<std::vector<RigidRow>> axes;
+    Real unit;  ///< of x, for v of about 1 m
+  };
+  /// First, sum_f |f| (along . [[v]] + done)^2 over the slides of all ranks is to be small; where that is left open,
+  /// `displacement` + v [owned unknown] in the norm of proximal().
+  Places places(const fields::Vector& displacement, const std::vector<Slide>& slides) const;
+  /// The free motion, [loose piece], nearest to x = 0 among those that satisfy the obstacles of all ranks; nothing, if
+  /// none does. Faces that no free motion moves that way are no obstacle. `unit`: a typical length, m. Unique.
+  std::optional<std::vector<RigidRow>> nearest(const Places& places, const std::vector<Obstacle>& obstacles,
+                                               Real unit) const;
   /// Jump of a free motion at the centre of an owned fracture face. Stored data.
   mesh::Vector jump(LocalIndex face, const std::vector<RigidRow>& motion) const;
   /// Whether a side of an owned fracture face is loose. Stored data.
@@ -111,6 +129,12 @@ class LoosePieces {
     int first;                             ///< of its loose pieces, which follow one another
     std::vector<std::vector<Real>> modes;  ///< [mode][loose piece * modes of a body + mode of the body]
   };
+  using Motions = std::vector<std::vector<RigidRow>>;  ///< [mode][loose piece]
+  /// z . matrix z + 2 z . vector, of z [mode].
+  struct Form {
+    std::vector<Real> matrix, vector;
+    explicit Form(std::size_t n) : matrix(n * n, 0), vector(n, 0) {}
+  };
   struct Neighbour {
     int pair, piece;
     bool first;  ///< this piece is the pair's a
@@ -126,6 +150,9 @@ class LoosePieces {
   std::vector<Real> resistance(const std::vector<int>& pieces) const;
   void find_motions(const std::vector<int>& pieces);
   int group_of(int number) const;
+  std::vector<Motions> motions_of_groups() const;
+  std::vector<Form> distance_form(const std::vector<Motions>& motions, const fields::Vector& displacement) const;
+  std::vector<Form> slip_form(const std::vector<Motions>& motions, const std::vector<Slide>& slides) const;
   const RigidBlock& block(int pair, int part) const { return pairs_sum_[3 * pair + part]; }
   mesh::Vector node(LocalIndex n) const;
   int dim() const { return mesh_->dim(); }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sprekk::assembly {
 
@@ -16,6 +17,12 @@ using mesh::Vector;
 using mesh::operator-;
 
 namespace {
+
+std::vector<Real> sum_over_ranks(const Comm& comm, const std::vector<Real>& here) {
+  std::vector<Real> all(here.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+  return all;
+}
 
 /// All ranks' rows of a length, those of the first rank first.
 std::vector<std::vector<Real>> gather_rows(const Comm& comm, const std::vector<std::vector<Real>>& here, int length) {
@@ -51,22 +58,27 @@ bool LoosePieces::is_beside(LocalIndex f) const {
          (loose_number_[mesh_->cell_piece[cell[0]]] >= 0 || loose_number_[mesh_->cell_piece[cell[1]]] >= 0);
 }
 
-/// With z the amplitudes of the free motions Q, u the displacement and P the proximal term, |u + Q z|_P is least:
-/// H = Q^T P Q = U^T U, and y = U z + U^-T Q^T P u is to be least in the Euclidean norm.
-std::optional<std::vector<RigidRow>> LoosePieces::nearest(const fields::Vector& displacement,
-                                                          const std::vector<Obstacle>& obstacles, Real unit) const {
+/// [group][mode][loose piece]
+std::vector<LoosePieces::Motions> LoosePieces::motions_of_groups() const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size());
-  std::vector<std::vector<RigidRow>> motions;  // [z][loose piece]
-  for (const auto& group : groups_)
+  std::vector<Motions> all;
+  for (const auto& group : groups_) {
+    all.emplace_back();
     for (const auto& mode : group.modes) {
-      motions.emplace_back(loose_.size(), RigidRow{});
-      for (std::size_t c = 0; c < mode.size(); ++c) motions.back()[group.first + c / m][modes[c % m]] = mode[c];
+      all.back().emplace_back(loose_.size(), RigidRow{});
+      for (std::size_t c = 0; c < mode.size(); ++c) all.back().back()[group.first + c / m][modes[c % m]] = mode[c];
     }
-  const int n = static_cast<int>(motions.size()), n_loose = static_cast<int>(loose_.size());
-  std::vector<Real> sums(n_loose * 42, 0);  // [loose piece] N^T P N, N^T P u
+  }
+  return all;
+}
+
+/// |u + v|^2 in the norm of the proximal term, [group]: from N^T P N and N^T P u of each piece.
+std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Motions>& motions,
+                                                          const fields::Vector& displacement) const {
   const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto p = proximal_->getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<Real> sums(loose_.size() * 42, 0);
   for (std::size_t k = 0; k < piece_of_.size(); ++k) {
     const int number = loose_number_[piece_of_[k]];
     for (int i = 0; i < dim() && number >= 0; ++i) {
@@ -78,54 +90,116 @@ std::optional<std::vector<RigidRow>> LoosePieces::nearest(const fields::Vector& 
       }
     }
   }
-  std::vector<Real> all(sums.size());
-  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_SUM, static_cast<int>(sums.size()), sums.data(), all.data());
-  std::vector<Real> H(static_cast<std::size_t>(n) * n, 0), z(n, 0);
-  for (int r = 0; r < n; ++r)
-    for (int l = 0; l < n_loose; ++l)
-      for (int a = 0; a < 6; ++a) {
-        const Real q = motions[r][l][a];
-        if (q == 0) continue;
-        z[r] += q * all[l * 42 + 36 + a];
-        for (int s = 0; s < n; ++s)
-          for (int b = 0; b < 6; ++b) H[r * n + s] += q * all[l * 42 + 6 * a + b] * motions[s][l][b];
-      }
-  Real size = 0;
-  for (int r = 0; r < n; ++r) size = std::max(size, H[r * n + r]);
-  const Real scale = std::sqrt(size) * unit;  // of y
-  Teuchos::LAPACK<int, Real> lapack;
-  int info = 0;
-  lapack.POTRF('U', n, H.data(), n, &info);
-  SPREKK_CHECK(info == 0, "rigid motions: LAPACK's POTRF failed with {}", info);
-  const auto solve = [&](char transpose, std::vector<Real>& x) {
-    lapack.TRTRS('U', transpose, 'N', n, 1, H.data(), n, x.data(), n, &info);
-    SPREKK_CHECK(info == 0, "rigid motions: LAPACK's TRTRS failed with {}", info);
-  };
-  solve('T', z);  // U^-T Q^T P u, at z = 0
+  sums = sum_over_ranks(*mesh_->comm, sums);
+  std::vector<Form> forms;
+  for (const auto& group : groups_) forms.emplace_back(group.modes.size());
+  for (std::size_t l = 0; l < loose_.size(); ++l) {
+    const int g = group_of(static_cast<int>(l));
+    const Real* sum = &sums[l * 42];
+    const std::size_t n = motions[g].size();
+    for (std::size_t s = 0; s < n; ++s) {
+      const auto& q = motions[g][s][l];
+      RigidRow moved{};
+      for (int a = 0; a < 6; ++a) moved[a] = std::inner_product(q.begin(), q.end(), sum + 6 * a, Real(0));
+      forms[g].vector[s] += std::inner_product(q.begin(), q.end(), sum + 36, Real(0));
+      for (std::size_t r = 0; r < n; ++r)
+        forms[g].matrix[r * n + s] += std::inner_product(moved.begin(), moved.end(), motions[g][r][l].begin(), Real(0));
+    }
+  }
+  return forms;
+}
+
+/// sum_f |f| (along . [[v]] + done)^2, [group].
+std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>& motions,
+                                                      const std::vector<Slide>& slides) const {
+  std::vector<Form> forms;
+  for (const auto& group : groups_) forms.emplace_back(group.modes.size());
+  for (const auto& slide : slides) {
+    if (!is_beside(slide.face)) continue;
+    const auto& face = mesh_->fracture_faces[slide.face];
+    const int group = group_of(
+        std::max(loose_number_[mesh_->cell_piece[face.cell[0]]], loose_number_[mesh_->cell_piece[face.cell[1]]]));
+    std::vector<Real> row;
+    for (const auto& motion : motions[group]) row.push_back(mesh::dot(slide.along, jump(slide.face, motion)));
+    const std::size_t n = row.size();
+    for (std::size_t r = 0; r < n; ++r) {
+      forms[group].vector[r] += face.area * row[r] * slide.done;
+      for (std::size_t s = 0; s < n && row[r] != 0; ++s) forms[group].matrix[r * n + s] += face.area * row[r] * row[s];
+    }
+  }
+  for (auto& form : forms) {
+    form.matrix = sum_over_ranks(*mesh_->comm, form.matrix);
+    form.vector = sum_over_ranks(*mesh_->comm, form.vector);
+  }
+  return forms;
+}
+
+/// Group by group, the generalised eigenvectors of the slips by the distances: in their coordinates both are diagonal.
+/// Vectors that change a slip have their share of it as weight; the others next to nothing, so that they give way where
+/// an obstacle concerns both.
+LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, const std::vector<Slide>& slides) const {
+  constexpr Real little = 1e-8;
+  const auto motions = motions_of_groups();
+  auto distance = distance_form(motions, displacement), slip = slip_form(motions, slides);
+  std::vector<std::vector<Real>> share;  // [group][eigenvector] of the slips
+  Real largest = 0, size = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const int n = static_cast<int>(motions[g].size()), n_work = 64 * n;
+    for (int r = 0; r < n; ++r) size = std::max(size, distance[g].matrix[r * n + r]);
+    std::vector<Real> values(n), work(n_work);
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().SYGV(1, 'V', 'U', n, slip[g].matrix.data(), n, distance[g].matrix.data(), n,
+                                      values.data(), work.data(), n_work, &info);
+    SPREKK_CHECK(info == 0, "rigid motions: LAPACK's SYGV failed with {}", info);
+    largest = std::max(largest, values[n - 1]);
+    share.push_back(values);
+  }
+  Places places{std::vector<RigidRow>(loose_.size(), RigidRow{}), {}, std::sqrt((largest > 0 ? largest : 1) * size)};
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t k = 0; k < motions[g].size(); ++k) {
+      const bool slips = share[g][k] > negligible * negligible * largest;
+      const auto& vector = slips ? slip[g].vector : distance[g].vector;
+      const Real* x = &slip[g].matrix[k * vector.size()];
+      const Real there = -std::inner_product(vector.begin(), vector.end(), x, Real(0)) / (slips ? share[g][k] : 1);
+      const Real weight = slips ? share[g][k] : largest > 0 ? little * largest : 1;
+      places.axes.emplace_back(loose_.size(), RigidRow{});
+      for (std::size_t r = 0; r < vector.size(); ++r)
+        for (std::size_t l = groups_[g].first;
+             l < loose_.size() && group_of(static_cast<int>(l)) == static_cast<int>(g); ++l)
+          for (int c = 0; c < 6; ++c) {
+            places.axes.back()[l][c] += x[r] / std::sqrt(weight) * motions[g][r][l][c];
+            places.nearest[l][c] += x[r] * there * motions[g][r][l][c];
+          }
+    }
+  return places;
+}
+
+std::optional<std::vector<RigidRow>> LoosePieces::nearest(const Places& places, const std::vector<Obstacle>& obstacles,
+                                                          Real unit) const {
+  const int n = static_cast<int>(places.axes.size());
+  const Real scale = places.unit * unit;
   std::vector<std::vector<Real>> here, G;
   for (const auto& obstacle : obstacles) {
     here.emplace_back();
-    for (const auto& motion : motions) here.back().push_back(mesh::dot(obstacle.normal, jump(obstacle.face, motion)));
-    here.back().push_back(obstacle.least);
+    for (const auto& axis : places.axes)
+      here.back().push_back(scale * mesh::dot(obstacle.normal, jump(obstacle.face, axis)));
+    here.back().push_back(obstacle.least - mesh::dot(obstacle.normal, jump(obstacle.face, places.nearest)));
   }
   std::vector<Real> h;
   for (auto& row : gather_rows(*mesh_->comm, here, n + 1)) {
-    Real least = row.back();
+    const Real least = row.back();
     row.pop_back();
-    solve('T', row);  // of y / scale
-    for (int k = 0; k < n; ++k) least += row[k] * z[k];
-    for (Real& value : row) value *= scale;
+    if (std::inner_product(row.begin(), row.end(), row.begin(), Real(0)) <= negligible * negligible * unit * unit)
+      continue;
     G.push_back(row);
     h.push_back(least);
   }
-  auto y = least_distance(std::move(G), std::move(h), n);
-  if (!y) return {};
-  for (int k = 0; k < n; ++k) z[k] = scale * (*y)[k] - z[k];
-  solve('N', z);
-  std::vector<RigidRow> motion(n_loose, RigidRow{});
-  for (int r = 0; r < n; ++r)
-    for (int l = 0; l < n_loose; ++l)
-      for (int c = 0; c < 6; ++c) motion[l][c] += z[r] * motions[r][l][c];
+  const auto x = least_distance(std::move(G), std::move(h), n);
+  if (!x) return {};
+  auto motion = places.nearest;
+  for (int k = 0; k < n; ++k)
+    for (std::size_t l = 0; l < motion.size(); ++l)
+      for (int c = 0; c < 6; ++c) motion[l][c] += scale * (*x)[k] * places.axes[k][l][c];
   return motion;
 }
 

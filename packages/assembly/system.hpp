@@ -139,7 +139,9 @@ class System : public fields::BlockProblem {
                             bool mode);
   std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
   bool linear_part_is_invariant() const;
-  std::optional<std::vector<RigidRow>> way_back(const fields::BlockVector& x, Real margin);
+  std::optional<std::vector<RigidRow>> way_back(const fields::BlockVector& x,
+                                                const std::vector<LoosePieces::Slide>& slides,
+                                                const std::vector<Real>& least);
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;

@@ -5,63 +5,93 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::assembly {
 
 using fields::BlockVector;
+using mesh::Vector;
+using mesh::operator+;
+using mesh::operator-;
+using mesh::operator*;
 
 namespace {
 
-constexpr Real loaded = 1e-10;  ///< share of the scale that a traction has at least
-constexpr Real margin = 1e-10;  ///< of the displacement scale, by which faces without load stay apart
+constexpr Real loaded = 1e-10;   ///< share of the scale that a traction has at least
+constexpr Real margin = 1e-10;   ///< of the displacement scale, by which faces without load stay apart
+constexpr Real at_limit = 1e-8;  ///< of friction, relative to it
+constexpr Real settled = 1e-10;  ///< of the displacement scale; what moves less stays
 
-/// What holds in a state of equilibrium whatever else changes: faces under load, but for frictionless sliding.
-void keep_loaded(std::vector<Grip>& grips, Real least) {
-  for (auto& grip : grips) {
-    if (!(mesh::norm(grip.traction) > least)) {
-      grip.held = {};
+/// Rows a b^T.
+std::array<Vector, 3> product(const Vector& a, const Vector& b) { return {a[0] * b, a[1] * b, a[2] * b}; }
+
+std::array<Vector, 3> identity() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; }
+
+/// What holds in a state of equilibrium as long as no traction changes. A face under load keeps its gap, and sticks;
+/// but at the limit of friction it may slide, along its shear traction if there is any. Appends those to `slides`.
+void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::vector<LoosePieces::Slide>& slides) {
+  for (std::size_t f = 0; f < grips.size(); ++f) {
+    auto& grip = grips[f];
+    grip.held = {};
+    if (!(mesh::norm(grip.traction) > least)) continue;
+    const auto& frame = mesh.fracture_faces[f].frame;
+    const Vector shear = grip.traction - mesh::dot(grip.traction, frame[0]) * frame[0];
+    const Real size = mesh::norm(shear);
+    if (size < (1 - at_limit) * grip.limit - least) {
+      grip.held = identity();
       continue;
     }
-    const mesh::Vector& n = grip.away;
-    const Real length = mesh::norm(n), pressure = std::abs(mesh::dot(n, grip.traction)) / length;
-    const bool slides =
-        length < 1 + 1e-12 && mesh::dot(grip.traction, grip.traction) - pressure * pressure < least * least;
-    if (slides) continue;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) grip.held[i][j] = i == j;
+    grip.held = product(frame[0], grip.away);
+    const auto add = [&](const Vector& along, bool one_way) {
+      slides.push_back({static_cast<LocalIndex>(f), along, mesh::dot(along, grip.slip), one_way});
+    };
+    if (!(size > least)) {
+      for (int k = 1; k < mesh.dim(); ++k) add(frame[k], false);
+      continue;
+    }
+    const Vector along = (1 / size) * shear;
+    add(along, true);
+    const Vector across = mesh::cross(frame[0], along);
+    const auto held = product(across, across);
+    for (int i = 0; i < 3 && mesh.dim() == 3; ++i) grip.held[i] = grip.held[i] + held[i];
   }
 }
 
 }  // namespace
 
-/// The free motion to the nearest state without load on the faces that are free of it; each pass adds the faces that
-/// would close in the last one, as they are seen from there.
-std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x, Real margin) {
+/// The free motion to the nearest state; each pass adds the faces whose gap would fall below `least` [face], as they
+/// are seen from the last one, and those that would slide against their traction.
+std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
+                                                      const std::vector<LoosePieces::Slide>& slides,
+                                                      const std::vector<Real>& least) {
   constexpr int most_passes = 30;
-  const auto move = [&](const std::vector<RigidRow>& q, fields::Vector& u) {
-    loose_->add(std::vector<Real>(loose_->n_groups(), 1), {q, {}}, u);
-  };
+  const Real slack = 0.1 * margin * scales_.length;
   auto there = fields::create_like(x);
   auto away = fields::Vector(*x[displacement_], Teuchos::Copy);
   away.update(-1, *committed_, 1);
-  refresh_ghosts(x, false);
-  std::vector<char> is_free;
-  for (const auto& grip : grips()) is_free.push_back(!(mesh::norm(grip.traction) > loaded * scales_.stress));
+  const auto places = loose_->places(away, slides);
   std::vector<LoosePieces::Obstacle> obstacles;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const auto motion = loose_->nearest(away, obstacles, scales_.length);
+    const auto motion = loose_->nearest(places, obstacles, scales_.length);
     if (!motion) return {};
     fields::copy(x, there);
-    move(*motion, *there[displacement_]);
+    loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *there[displacement_]);
     refresh_ghosts(there, false);
     const auto grips = this->grips();
-    int here = 0, anywhere = 0;
+    const auto n_before = obstacles.size();
     for (LocalIndex f = 0; f < static_cast<LocalIndex>(grips.size()); ++f) {
-      if (!is_free[f] || !loose_->is_beside(f) || grips[f].gap >= margin - 0.1 * std::abs(margin)) continue;
-      const Real least = margin - grips[f].gap + mesh::dot(grips[f].away, loose_->jump(f, *motion));
-      obstacles.push_back({f, grips[f].away, least});
-      here = 1;
+      const auto& grip = grips[f];
+      if (loose_->is_beside(f) && grip.gap < least[f] - slack)
+        obstacles.push_back({f, grip.away, least[f] - grip.gap + mesh::dot(grip.away, loose_->jump(f, *motion))});
     }
+    for (const auto& slide : slides) {
+      const Real back = -std::max(slide.done, Real(0));
+      if (slide.one_way && loose_->is_beside(slide.face) &&
+          mesh::dot(slide.along, loose_->jump(slide.face, *motion)) < back - slack)
+        obstacles.push_back({slide.face, slide.along, back});
+    }
+    const int here = obstacles.size() > n_before ? 1 : 0;
+    int anywhere = 0;
     Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
     if (!anywhere) return motion;
   }
@@ -72,13 +102,23 @@ bool System::settle(BlockVector& x) {
   if (!watches_pieces()) return false;
   refresh_ghosts(x, false);
   auto released = grips();
-  keep_loaded(released, loaded * scales_.stress);
+  std::vector<Real> apart, touching;
+  for (const auto& grip : released) {
+    const bool is_free = !(mesh::norm(grip.traction) > loaded * scales_.stress);
+    apart.push_back(is_free ? margin * scales_.length : -std::numeric_limits<Real>::infinity());
+    touching.push_back(std::min({apart.back(), grip.gap, Real(0)}));
+  }
+  std::vector<LoosePieces::Slide> slides;
+  release(*mesh_, loaded * scales_.stress, released, slides);
   loose_->find(released);
   if (!loose_->any()) return false;
-  auto motion = way_back(x, margin * scales_.length);
-  if (!motion) motion = way_back(x, -1e-2 * margin * scales_.length);  // it fits in between without room to spare
-  if (motion) loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *x[displacement_]);
-  return motion.has_value();
+  auto motion = way_back(x, slides, apart);
+  if (!motion) motion = way_back(x, slides, touching);  // it fits in between without room to spare
+  if (!motion) return false;
+  auto moved = fields::Vector(*x[displacement_], Teuchos::Copy);
+  loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *x[displacement_]);
+  moved.update(-1, *x[displacement_], 1);
+  return moved.normInf() > settled * scales_.length;
 }
 
 }  // namespace sprekk::assembly

@@ -117,8 +117,9 @@ void describe(const Model& model, base::Log& log) {
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
-  if (const auto doubt = dilation_doubt(model.scene(), mesh); !doubt.empty()) log.warning("{}", doubt);
   const auto& scene = model.scene();
+  for (const auto& doubt : {friction_doubt(scene), dilation_doubt(scene, mesh)})
+    if (!doubt.empty()) log.warning("{}", doubt);
   for (const auto& [name, material] : scene.materials)
     if (scene.flow && scene.deforms() && material.type == "elastic" && material.biot < material.porosity)
       log.warning(
@@ -144,7 +145,7 @@ void tell_loose(base::Log& log, Real t, const std::string& before, const std::st
   if (now.empty())
     log.info("t = {:.6g}: all rock is held again", t);
   else
-    log.warning("t = {:.6g}: {}, and nothing holds it; it lies as near as it can to where it was", t, now);
+    log.warning("t = {:.6g}: {}, and nothing holds it; of all such states the one nearest to the last is taken", t, now);
 }
 
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.

@@ -263,24 +263,33 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
   measures.push_back({"split of the jump", largest / scales.length});
 }
 
-/// Closed faces resist each other along the normal, sticking ones in all directions, sliding ones across their slip.
+/// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
-    const auto& gap = parameters_.joints[joint_of(f)].law.gap;
-    Real slip[dim - 1];
-    for (int k = 1; k < dim; ++k) slip[k - 1] = point.w[k];
-    const Real slipped = laws::norm(slip);
+    const auto& law = parameters_.joints[joint_of(f)].law;
+    Real p[dim - 1], shear[dim - 1], widening[dim] = {1};  // derivative of w_n - g in w
+    for (int k = 1; k < dim; ++k) {
+      shear[k - 1] = point.traction[k];
+      p[k - 1] = point.w[k] - law.elastic.compliance * shear[k - 1];
+    }
+    const Real slipped = laws::norm(p), sheared = laws::norm(shear);
+    const bool moved = laws::augmentation(law, point.constant).tangential * slipped > 1e-13 * sheared;
+    for (int k = 1; k < dim; ++k) {
+      const Real along = moved ? p[k - 1] / slipped : sheared > 0 ? shear[k - 1] / sheared : 0;
+      widening[k] = -law.gap.dilation(along);
+    }
     grips[f].augmentation += point.constant;
     grips[f].modulus = modulus_[f];
-    grips[f].gap += point.w[0] - gap(slipped, Real(0));
+    grips[f].gap += point.w[0] - law.gap(slipped, Real(0));
+    grips[f].limit += std::max(law.friction.bound(point.traction[0]), Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {
         grips[f].traction[i] += point.traction[k] * frame[k][i];
         grips[f].jump[i] += point.w[k] * frame[k][i];
-        const Real widening = k == 0 ? 1 : slipped > 0 ? -gap.dilation(Real(1)) * slip[k - 1] / slipped : 0;
-        grips[f].away[i] += widening * frame[k][i];
+        grips[f].away[i] += widening[k] * frame[k][i];
+        if (k > 0) grips[f].slip[i] += (p[k - 1] - point.p_old[k - 1]) * frame[k][i];
       }
     Real bound[dim - 1];  // the traction that the law answers with: along the slip where there is some
     for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
@@ -289,7 +298,7 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
       for (int i = 0; i < dim; ++i) grips[f].excess[i] += point.R[k] * frame[k][i];
     if (point.state == ContactState::open) return;
     Real held[dim][dim] = {};
-    held[0][0] = 1;
+    for (int k = 0; k < dim; ++k) held[0][k] = point.state == ContactState::slip || k == 0 ? widening[k] : 0;
     for (int k = 1; k < dim; ++k)
       for (int l = 1; l < dim; ++l)
         if (point.state == ContactState::stick)

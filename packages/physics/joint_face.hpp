@@ -98,9 +98,9 @@ struct JointFace {
     return laws::contact_residual<dim>(law(number(f)), constants(f), w, borne, old, R);
   }
 
-  /// Jump, traction, residual, state and constant of a face.
+  /// Jump, traction, residual, last plastic jump, state and constant of a face.
   struct Point {
-    Real w[dim], traction[dim], R[dim];
+    Real w[dim], traction[dim], R[dim], p_old[dim - 1];
     laws::ContactState state;
     Real constant;
   };
@@ -108,6 +108,7 @@ struct JointFace {
     Point p;
     jump(f, x, p.w);
     for (int i = 0; i < dim; ++i) p.traction[i] = x[lambda + i];
+    for (int i = 0; i < dim - 1; ++i) p.p_old[i] = p_old(f, i);
     p.state = evaluate(f, p.w, p.traction, p.R);
     p.constant = constant(f);
     return p;

@@ -9,7 +9,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_tether = 10, least_tether = 1e-3, most_tether = 1e4, weaker = 0.3, stronger = 10;
-constexpr int most_tethers = 60, least_cuts = 3;
+constexpr int most_tethers = 60, least_cuts = 3, most_settlings = 4;
 
 struct Release {
   BlockProblem& problem;
@@ -80,12 +80,15 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       fields::copy(committed, x);
       if (auto found = relax(x, report); found.converged) newton = std::move(found);
     }
-    if (newton.converged && problem_.settle(x))
+    int settlings = 0;
+    for (; settlings < most_settlings && newton.converged && problem_.settle(x); ++settlings)
       newton = solve(x, report);  // to the tolerance again: mostly no iteration
     report.measures = newton.measures;
     if (newton.converged) {
       problem_.commit(x);
       report.loose = problem_.loose();
+      if (settlings == most_settlings && !report.loose.empty())
+        report.loose += fmt::format(" (after {} attempts it may not be where it should come to lie)", settlings);
       fields::copy(x, committed);
       done += size;
       relaxed = false;

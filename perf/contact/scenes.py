@@ -121,8 +121,17 @@ def blocks():
                 yield Scene(f"contrast {dim}D {contrast}", f"contact/masonry_cross_{dim}d.xml",
                             (f"Materials.other.Young's modulus={contrast}",) + fine, quick=contrast == "1e6" and dim == 2)
         yield Scene(f"on one face {dim}D", f"contact/one_face_{dim}d.xml", exact=exact.hanging, quick=dim == 2)
+    yield Scene("layers 2D", "contact/layers_2d.xml", quick=True)
+    yield Scene("layers 2D 1e-3", "contact/layers_2d.xml", layers(0.001))
     yield Scene("sliver 2D", "contact/sliver_2d.xml", quick=True)
     yield Scene("sliver 3D", "contact/sliver_3d.xml")
+
+
+def layers(h):
+    """Entries for layers of this thickness in layers_2d.xml."""
+    corners = tuple(f"Mesh.fractures.joint {k}.{corner} corner={{{x}, {k * h}}}" for k in range(1, 5) for corner, x in (("lower", 0), ("upper", 1)))
+    return corners + (f"Mesh.upper corner={{1, {5 * h}}}", f"Tables.shear.values={{0, 0, {0.05 * h}, {-0.05 * h}}}",
+                      f"Tables.press.values={{0, {5e-4 * h}, {5e-4 * h}}}")
 
 
 def extremes():

@@ -394,13 +394,43 @@ TEST(LoosePieces, ComesToLieNearest) {
         obstacles.push_back({f, {0, sign, 0}, 0.1 + side * at[1]});
       }
       auto u = column.rigid(moved);
-      const auto motion = column.pieces.nearest(u, obstacles, 0.1);
+      const auto motion = column.pieces.nearest(column.pieces.places(u, {}), obstacles, 0.1);
       ASSERT_TRUE(motion);
       column.pieces.add({1}, {*motion, {}}, u);
       for (int mode : assembly::rigid_modes(column.mesh->dim()))
         EXPECT_NEAR(column.coordinate(u, 1, mode), mode == 1 ? -0.1 * side : 0, 1e-10) << cell << side << mode;
     }
   }
+}
+
+/// A block between two others on which it slides shares their slip equally, wherever it lies; but not so far that a
+/// slip turns back.
+TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
+  for (const auto& cell : all_cells)
+    for (const Real place : {0.0, 0.7}) {
+      Column column(column_box(cell), {"south", "north"});
+      column.find(slip, slip);
+      ASSERT_EQ(column.pieces.n_groups(), 1);
+      std::array<RigidRow, 3> moved{};
+      moved[1][0] = place;
+      std::vector<LoosePieces::Slide> slides;
+      std::vector<LoosePieces::Obstacle> obstacles;
+      for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces; ++f) {
+        const auto& face = column.mesh->fracture_faces[f];
+        const bool upper = column.mesh->fracture_names[face.fracture] == "upper";
+        const Vector along{face.frame[0][1] > 0 ? 1.0 : -1.0, 0, 0};  // of the block above, over the one below
+        slides.push_back({f, along, upper ? 0.5 : 0.1, true});
+        if (upper) obstacles.push_back({f, along, -0.15});
+      }
+      const auto u = column.rigid(moved);
+      const auto places = column.pieces.places(u, slides);
+      for (const bool blocked : {false, true}) {
+        const auto found = column.pieces.nearest(places, blocked ? obstacles : decltype(obstacles){}, 0.1);
+        ASSERT_TRUE(found);
+        for (int c = 0; c < 6; ++c)
+          EXPECT_NEAR((*found)[0][c], c == 0 ? (blocked ? 0.15 : 0.2) : 0, 1e-12) << cell << place << blocked;
+      }
+    }
 }
 
 /// Next to the softest block the proximal term is as small as in that one, and rigid motions leave nothing.

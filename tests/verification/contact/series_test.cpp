@@ -1,0 +1,88 @@
+// Joints in series, whose slip equilibrium leaves open: least in the sum of squares, whatever ranks and numbers are.
+#include "verification/scenes.hpp"
+
+#include <Teuchos_DefaultMpiComm.hpp>
+
+#include <numeric>
+
+namespace sprekk::tests {
+namespace {
+
+/// All at the limit of friction, so that the elastic part of the displacement is known: equal joints slip alike. Where
+/// they dilate, what is free is to slide and lift in one joint as much as to slide back and sink in another.
+TEST(JointsInSeries, EqualOnesShareTheSlip) {
+  constexpr Real shear = 0.5, G = 1, K_t = 2, mu = 0.5;
+  for (const int dim : {2, 3})
+    for (const int angle : {0, 5}) {
+      auto scene = read_scene(fmt::format("verification/stack_{}d.xml", dim),
+                              {fmt::format("Materials.middle.dilation angle={}", angle)});
+      for (auto& [name, fracture] : scene.fractures) fracture.material = "middle";
+      model::Model model(scene, Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged);
+      const auto report = model.step_to(2);
+      ASSERT_TRUE(report.converged) << report.reason;
+      EXPECT_NE(report.loose, "");
+      const Outputs out(model);
+      for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+        const auto traction = out.vector("traction local", f);
+        const Real tau = std::hypot(traction[1], traction[2]);
+        EXPECT_NEAR(tau, -mu * traction[0], 1e-11);
+        EXPECT_NEAR(out.scalar("slip", f), (shear - tau / G - 3 * tau / K_t) / 3, 1e-10) << dim << " " << angle;
+      }
+    }
+}
+
+/// Five layers of this thickness.
+model::Scene layers(Real h) {
+  std::vector<std::string> entries = {fmt::format("Mesh.upper corner={{1, {:.17g}}}", 5 * h),
+                                      fmt::format("Tables.shear.values={{0, 0, {0}, -{0}}}", 0.05 * h),
+                                      fmt::format("Tables.press.values={{0, {0}, {0}}}", 5e-4 * h)};
+  for (int k = 1; k < 5; ++k)
+    for (const auto& [corner, x] : {std::pair{"lower", 0}, {"upper", 1}})
+      entries.push_back(fmt::format("Mesh.fractures.joint {}.{} corner={{{}, {:.17g}}}", k, corner, x, k * h));
+  return read_scene("contact/layers_2d.xml", entries);
+}
+
+/// Jumps of all faces, upper side minus lower one, in the order of their places: joint by joint, from west to east.
+std::vector<Vector3> jumps_in_order(model::Model& model) {
+  const auto faces = gathered_faces(model, identity(), {0, 1, 0});
+  std::vector<std::size_t> order(faces.centre.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const auto &x = faces.centre[a], &y = faces.centre[b];
+    return std::abs(x[1] - y[1]) > 1e-9 ? x[1] < y[1] : x[0] < y[0];
+  });
+  std::vector<Vector3> jumps;
+  for (const auto f : order) jumps.push_back(faces.jump[f]);
+  return jumps;
+}
+
+/// Each joint of equal layers has the same mean slip, and each face the same jump on one rank and, with other numbers,
+/// on all of them; relative to the displacement of the top.
+TEST(JointsInSeries, LayersSlideAlike) {
+  for (const Real h : {0.1, 0.01, 0.001}) {
+    const auto scene = layers(h);
+    auto renumbered = scene;
+    renumbered.mesh.renumbering_seed = 7;
+    model::Model together(renumbered, Tpetra::getDefaultComm()),
+        single(scene, rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)));
+    std::vector<Vector3> before(40, Vector3{});
+    for (const Real t : scene.time.times()) {
+      for (auto* model : {&together, &single}) ASSERT_TRUE(model->step_to(t).converged) << h << " " << t;
+      const Real tolerance = 1e-8 * single.system().scales().length;
+      const auto jumps = jumps_in_order(single), others = jumps_in_order(together);
+      ASSERT_EQ(jumps.size(), before.size());
+      std::array<Real, 4> slid{};
+      for (std::size_t f = 0; f < jumps.size(); ++f) {
+        slid[f / 10] += (jumps[f][0] - before[f][0]) / 10;
+        for (int i = 0; i < 2; ++i)
+          EXPECT_NEAR(others[f][i], jumps[f][i], tolerance) << h << " " << t << " " << f << " " << i;
+      }
+      for (const Real mean : slid) EXPECT_NEAR(mean, slid[0], tolerance) << h << " " << t;
+      before = jumps;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
