@@ -377,7 +377,8 @@ void MeshFile::describe(base::Section& s) {
 
 void Scene::describe(base::Section& s) {
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
-  s.expressions_call(tables);
+  s.named_expressions(expressions, "Expressions", "what all other expressions may call by name, e.g. depth = 0.5 - y");
+  s.expressions_call(tables, expressions);
   s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
   if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
   s.named_sections(materials, "Materials",

@@ -194,6 +194,7 @@ struct Scene {
   Output output;
   /// Of physics::ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
   Real augmentation = physics::ElasticPlasticJumpParameters().augmentation;
+  base::Expression::Named expressions;  ///< that others call by name
 
   void describe(base::Section& section);
   /// The global mesh of either kind; if it is to be refined, as refined() takes it. Not collective.
