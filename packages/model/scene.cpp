@@ -45,7 +45,7 @@ void Material::for_each(const Visit& visit) const {
     optional("friction angle", friction_angle, 0, true, 90);
     visit("dilation angle", dilation_angle, 0, true, 90);
     visit("initial gap", initial_gap, none, false, infinite);
-    visit("maximum closure", maximum_closure, 0, true, infinite);
+    optional("maximum closure", maximum_closure, 0, true, infinite);
     visit("initial aperture", initial_aperture, 0, true, infinite);
     optional("normal stiffness", normal_stiffness, 0, false, infinite);
     visit("residual aperture", residual_aperture, 0, true, infinite);
@@ -87,6 +87,12 @@ void Material::describe(base::Section& s) {
   }
   if (type != "elastic") {
     s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
+    s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
+    s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
+    s.hint({"G"}, "Did you mean \"shear modulus\"?");
+    s.hint({"K"}, "Did you mean \"bulk modulus\"?");
+    s.hint({"lambda"}, "Did you mean \"Lame's first parameter\"?");
+    s.hint({"rho"}, "Did you mean \"density\"?");
             "K_t of the elastic part of the tangential jump (12); infinite: all tangential jump is plastic");
     s.entry(friction_coefficient, "friction coefficient", "-", base::at_least(0),
             "mu of the bound (13); or give the angle");
@@ -94,9 +100,10 @@ void Material::describe(base::Section& s) {
     s.entry(dilation_angle, "dilation angle", "degree", base::at_least(0).below(90),
             "theta: the gap grows by tan(theta)|u_t^p| (14)");
     s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
-    s.entry(maximum_closure, "maximum closure", "m", base::at_least(0), "Du of the normal closure in (14); 0: none");
+    s.entry(maximum_closure, "maximum closure", "m", base::at_least(0).or_infinite(),
+            "Du of the normal closure in (14); 0: none; infinite, or absent: closure is linear, the traction over K_n");
     s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(),
-            "K_n at zero traction; needed with a maximum closure");
+            "K_n at zero traction; absent: the joint does not close");
     s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
     s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
             "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
@@ -108,12 +115,20 @@ void Material::describe(base::Section& s) {
             "beside it");
     if (type == "joint" && s.complete()) {
       if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
-      const bool closes = !maximum_closure.is_constant() || maximum_closure({0, 0, 0}, 0) > 0;
+      const bool closes = maximum_closure && (!maximum_closure->is_constant() || (*maximum_closure)({}, 0) > 0);
       if (closes && !normal_stiffness)
         s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
     }
   }
   for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
+    s.hint({"kn", "jkn"}, "Did you mean \"normal stiffness\"?");
+    s.hint({"ks", "kt", "jks", "shear stiffness"}, "Did you mean \"tangential stiffness\"?");
+    s.hint({"phi", "friction"}, "Did you mean \"friction angle\"?");
+    s.hint({"mu"}, "Did you mean \"friction coefficient\"?");
+    s.hint({"psi", "dilatancy", "dilatancy angle"}, "Did you mean \"dilation angle\"?");
+    s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
+    s.hint({"JRC", "JCS"},
+           "Friction has a \"friction angle\" or \"friction coefficient\", independent of the traction");
   for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
 }
 
@@ -199,7 +214,9 @@ physics::JointParameters Material::joint(const Point& x) const {
   joint.law.friction.coefficient = friction(x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
-  joint.law.gap.closure = {maximum_closure(x, 0), normal_stiffness ? (*normal_stiffness)(x, 0) : 1};
+  if (normal_stiffness)
+    joint.law.gap.closure = {maximum_closure ? (*maximum_closure)(x, 0) : std::numeric_limits<Real>::infinity(),
+                             (*normal_stiffness)(x, 0)};
   joint.initial_aperture = initial_aperture(x, 0);
   return joint;
 }

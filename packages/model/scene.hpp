@@ -40,8 +40,9 @@ struct Material {
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
-  Value dilation_angle = 0, initial_gap = 0, maximum_closure = 0, initial_aperture = 0;
-  std::optional<Value> normal_stiffness;  ///< needed where there is closure
+  Value dilation_angle = 0, initial_gap = 0, initial_aperture = 0;
+  std::optional<Value> normal_stiffness;  ///< needed where there is closure; absent: none
+  std::optional<Value> maximum_closure;   ///< absent: infinite, closure is linear
   Value residual_aperture = 0;
   std::optional<Value> tangential_permeability;  ///< absent: the cubic law
   Value normal_permeability = std::numeric_limits<Real>::infinity();
