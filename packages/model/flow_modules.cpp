@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 #include "model/properties.hpp"
 #include "physics/darcy_flow.hpp"
 #include "physics/fluid_storage.hpp"
@@ -42,7 +43,7 @@ Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) 
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return material(region).flows_uniformly(); },
       [&](int region, int cell) {
-        const auto x = cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell);
+        const auto x = cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell);
         return at_place(scene, material(region),
                         [&] { return material(region).mobility(mesh.dim(), scene.flow->viscosity, x); });
       });

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
 #include "model/flow_modules.hpp"
@@ -61,7 +62,7 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   if (force.gravity.empty()) return force;
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
     force.density_of_cell.push_back(
-        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(centre(mesh, cell), 0));
+        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
   return force;
 }
 
@@ -97,7 +98,8 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = elasticity(scene, mesh);
-  physics::BulkMomentumParameters bulk{rock.values, body_force(scene, mesh), {}, scene.initial_stress(), rock.number};
+  physics::BulkMomentumParameters bulk{
+      rock.values, body_force(scene, mesh), {}, scene.initial_stress(mesh.region_names), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,

@@ -24,6 +24,14 @@ void check_constant_in_time(base::Section& s, const std::string& entry, const ba
     s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
 }
 
+void describe_initial_stress(base::Section& s, std::vector<base::Expression>& stress, const std::string& whose) {
+  s.entry(stress, "initial stress", "Pa",
+          "stress at zero displacement" + whose +
+              ", tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of x, y, "
+              "z");
+  for (const auto& component : stress) check_constant_in_time(s, "initial stress", component);
+}
+
 }  // namespace
 
 template <class Visit>
@@ -79,6 +87,12 @@ void Material::describe(base::Section& s) {
         biot, "Biot coefficient", "-", base::between(0, 1),
         "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
         "grow by alpha div u");
+    s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
+    s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
+    s.hint({"G"}, "Did you mean \"shear modulus\"?");
+    s.hint({"K"}, "Did you mean \"bulk modulus\"?");
+    s.hint({"lambda"}, "Did you mean \"Lame's first parameter\"?");
+    s.hint({"rho"}, "Did you mean \"density\"?");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
     if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
@@ -87,12 +101,6 @@ void Material::describe(base::Section& s) {
   }
   if (type != "elastic") {
     s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
-    s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
-    s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
-    s.hint({"G"}, "Did you mean \"shear modulus\"?");
-    s.hint({"K"}, "Did you mean \"bulk modulus\"?");
-    s.hint({"lambda"}, "Did you mean \"Lame's first parameter\"?");
-    s.hint({"rho"}, "Did you mean \"density\"?");
             "K_t of the elastic part of the tangential jump (12); infinite: all tangential jump is plastic");
     s.entry(friction_coefficient, "friction coefficient", "-", base::at_least(0),
             "mu of the bound (13); or give the angle");
@@ -113,14 +121,6 @@ void Material::describe(base::Section& s) {
     s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
             "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
             "beside it");
-    if (type == "joint" && s.complete()) {
-      if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
-      const bool closes = maximum_closure && (!maximum_closure->is_constant() || (*maximum_closure)({}, 0) > 0);
-      if (closes && !normal_stiffness)
-        s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
-    }
-  }
-  for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
     s.hint({"kn", "jkn"}, "Did you mean \"normal stiffness\"?");
     s.hint({"ks", "kt", "jks", "shear stiffness"}, "Did you mean \"tangential stiffness\"?");
     s.hint({"phi", "friction"}, "Did you mean \"friction angle\"?");
@@ -129,6 +129,14 @@ void Material::describe(base::Section& s) {
     s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
     s.hint({"JRC", "JCS"},
            "Friction has a \"friction angle\" or \"friction coefficient\", independent of the traction");
+    if (type == "joint" && s.complete()) {
+      if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
+      const bool closes = maximum_closure && (!maximum_closure->is_constant() || (*maximum_closure)({}, 0) > 0);
+      if (closes && !normal_stiffness)
+        s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
+    }
+  }
+  for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
   for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
 }
 
@@ -226,10 +234,7 @@ void Bulk::describe(base::Section& s) {
   s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
   s.entry(gravity, "gravity", "m/s^2", base::any(),
           "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
-  s.entry(initial_stress, "initial stress", "Pa",
-          "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values "
-          "or expressions of x, y, z");
-  for (const auto& component : initial_stress) check_constant_in_time(s, "initial stress", component);
+  describe_initial_stress(s, initial_stress, "");
   s.section(lithostatic_stress, "lithostatic stress",
             "initial stress of rock at rest under gravity along the last coordinate");
   if (s.complete() && lithostatic_stress && !initial_stress.empty())
@@ -275,7 +280,10 @@ void Well::describe(base::Section& s) {
 }
 
 void Region::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
+  s.entry(material, "material", "-",
+          "name of an elastic material, of this scene or of the library; absent: that of \"Bulk\"");
+  describe_initial_stress(s, initial_stress, ", in place of that of \"Bulk\"");
+  if (s.complete() && !material && initial_stress.empty()) s.fail("give a \"material\" or an \"initial stress\"");
 }
 
 void Fracture::describe(base::Section& s) {
@@ -402,7 +410,7 @@ void Scene::describe(base::Section& s) {
                    "rock and joints, by names of your choice; those of the material library need no section");
   s.section(bulk, "Bulk", "the rock");
   s.section(flow, "Flow", "a fluid that flows through the rock");
-  s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
+  s.named_sections(regions, "Regions", "what regions of the mesh have of their own, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
   s.named_sections(boundary_conditions, "Boundary conditions",
                    "by names of your choice; boundaries without one are free of traction");
@@ -411,25 +419,43 @@ void Scene::describe(base::Section& s) {
   s.section(output, "Output", "what is written beside results.json");
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
   std::vector<std::string> used = {bulk.material};
-  for (const auto& [name, region] : regions) used.push_back(region.material);
+  for (const auto& [name, region] : regions)
+    if (region.material) used.push_back(*region.material);
   for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
   add_library_materials(materials, used);
 }
 
-physics::InitialStress Scene::initial_stress() const {
-  if (!bulk.lithostatic_stress) return {bulk.initial_stress};
-  const int dim = static_cast<int>(bulk.gravity.size());
-  const int up = dim - 1;
-  const Real weight =
-      -(*material_of("bulk").density)({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
+namespace {
+
+std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
+  const auto& [surface, horizontal_ratio] = *scene.bulk.lithostatic_stress;
+  const auto& gravity = scene.bulk.gravity;
+  const int dim = static_cast<int>(gravity.size()), up = dim - 1;
+  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: it points down
   std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
-    const Real factor = weight * (i == up ? 1 : bulk.lithostatic_stress->horizontal_ratio);
-    stress[i] =
-        base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
+    const Real factor = weight * (i == up ? 1 : horizontal_ratio);
+    stress[i] = base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], surface));
   }
   for (auto& component : stress) component.compile();
-  return {stress};
+  return stress;
+}
+
+}  // namespace
+
+physics::InitialStress Scene::initial_stress(const std::vector<std::string>& region_names) const {
+  const auto common = bulk.lithostatic_stress ? lithostatic_stress(*this) : bulk.initial_stress;
+  physics::InitialStress stress;
+  std::size_t n_components = 0;
+  for (const auto& name : region_names) {
+    const auto region = regions.find(name);
+    const bool own = region != regions.end() && !region->second.initial_stress.empty();
+    n_components =
+        std::max(n_components, stress.value.emplace_back(own ? region->second.initial_stress : common).size());
+  }
+  if (n_components == 0) return {};
+  for (auto& components : stress.value) components.resize(n_components, base::Expression(0));
+  return stress;
 }
 
 base::Expression Scene::initial_pressure() const {
@@ -453,7 +479,7 @@ physics::FluidPressure Scene::fluid_pressure(const std::vector<std::string>& fra
 
 const Material& Scene::material_of(const std::string& region) const {
   const auto found = regions.find(region);
-  return materials.at(found == regions.end() ? bulk.material : found->second.material);
+  return materials.at(found == regions.end() ? bulk.material : found->second.material.value_or(bulk.material));
 }
 
 namespace {

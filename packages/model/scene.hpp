@@ -130,8 +130,10 @@ struct HostFluid {
   Real initial_pressure = 0;  ///< under which the initial state is one of rest, Pa
 };
 
+/// What a part of the rock has of its own, in place of what Bulk says.
 struct Region {
-  std::string material;
+  std::optional<std::string> material;
+  std::vector<base::Expression> initial_stress;
   void describe(base::Section& section);
 };
 
@@ -190,12 +192,12 @@ struct Scene {
   std::map<std::string, Fracture> fractures;
   std::map<std::string, BoundaryCondition> boundary_conditions;
   base::Tables tables;
+  base::Expression::Named expressions;  ///< that others call by name
   Time time;
   solve::NewtonOptions solver;
   Output output;
   /// Of physics::ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
   Real augmentation = physics::ElasticPlasticJumpParameters().augmentation;
-  base::Expression::Named expressions;  ///< that others call by name
 
   void describe(base::Section& section);
   /// The global mesh of either kind; if it is to be refined, as refined() takes it. Not collective.
@@ -209,7 +211,8 @@ struct Scene {
   bool has_unknown_pressure() const { return flow || (host_fluid && host_fluid->unknown); }
   base::Expression initial_pressure() const;  ///< of the fluid in rock and fractures; 0 without
   bool deforms() const { return !flow || !flow->rigid_rock; }
-  physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
+  /// As given, or the lithostatic one; of a region its own, where it has one.
+  physics::InitialStress initial_stress(const std::vector<std::string>& region_names) const;
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;
 };
 

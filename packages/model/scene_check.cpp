@@ -90,19 +90,27 @@ class Comparison {
       fail(place, fmt::format("has {}, must have {}", base::counted(n, "value"), *wanted));
   }
 
+  void check_stress(const std::string& section, const std::vector<base::Expression>& stress) {
+    std::optional<int> wanted;
+    if (names_.dim) wanted = *names_.dim == 2 ? 4 : 6;
+    check_length(section + " > \"initial stress\"", stress.size(), wanted);
+    if (!scene_.deforms() && !stress.empty())
+      fail(section + " > \"initial stress\"", "is of rock that \"Flow > rigid rock\" says does not deform");
+  }
+
   void compare_bulk() {
     check_material("Bulk", scene_.bulk.material, "elastic");
     check_length("Bulk > \"body force\"", scene_.bulk.body_force.size(), names_.dim);
     check_length("Bulk > \"gravity\"", scene_.bulk.gravity.size(), names_.dim);
-    std::optional<int> n_stresses;
-    if (names_.dim) n_stresses = *names_.dim == 2 ? 4 : 6;
-    check_length("Bulk > \"initial stress\"", scene_.bulk.initial_stress.size(), n_stresses);
+    check_stress("Bulk", scene_.bulk.initial_stress);
   }
 
   void compare_regions() {
     for (const auto& [name, region] : scene_.regions)
-      if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions))
-        check_material("Regions > " + name, region.material, "elastic");
+      if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions)) {
+        if (region.material) check_material("Regions > " + name, *region.material, "elastic");
+        check_stress("Regions > " + name, region.initial_stress);
+      }
   }
 
   void compare_fractures() {
@@ -160,7 +168,8 @@ class Comparison {
   /// The material of a region, if it is rock.
   const Material* rock_of(const std::string& region) const {
     const auto own = scene_.regions.find(region);
-    const auto found = scene_.materials.find(own == scene_.regions.end() ? scene_.bulk.material : own->second.material);
+    const auto found = scene_.materials.find(
+        own == scene_.regions.end() ? scene_.bulk.material : own->second.material.value_or(scene_.bulk.material));
     return found == scene_.materials.end() || found->second.type != "elastic" ? nullptr : &found->second;
   }
 
@@ -197,7 +206,7 @@ class Comparison {
     }
     if (!scene_.flow) return;
     const auto& bulk = scene_.bulk;
-    if (!scene_.deforms() && (!bulk.body_force.empty() || !bulk.initial_stress.empty() || bulk.lithostatic_stress))
+    if (!scene_.deforms() && (!bulk.body_force.empty() || bulk.lithostatic_stress))
       fail("Bulk", "has a force or stress of the rock, which \"Flow > rigid rock\" says does not deform");
     if (scene_.output.error_estimate)
       fail("Output > \"error estimate\"", "is of stress and jumps without a fluid; not available with \"Flow\"");

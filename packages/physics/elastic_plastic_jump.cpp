@@ -16,7 +16,7 @@ using mesh::Shape;
 
 namespace {
 
-/// mean(sigma_0 n) + p n in the frames of owned faces, Pa; zero without initial stress.
+/// mean(sigma_0 n) + p n in the frames of owned faces, Pa, of both sides in the mean; zero without initial stress.
 std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
                                                    const ElasticPlasticJumpParameters& parameters) {
   std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
@@ -25,9 +25,11 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f)
     mesh::for_shape(mesh.shape, [&](auto shape) {
       const auto& face = mesh.fracture_faces[f];
-      const auto mean = mean_initial_traction<shape()>(stress, mesh, face, mesh::minus);
-      for (int k = 0; k < mesh.dim(); ++k)
-        for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i];
+      for (const int side : {mesh::minus, mesh::plus}) {
+        const auto mean = mean_initial_traction<shape()>(stress, mesh, face, side);
+        for (int k = 0; k < mesh.dim(); ++k)
+          for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i] / 2;
+      }
       if (!fluid.empty())
         tractions[f][0] += mean_fluid_pressure<shape()>(fluid, mesh, face, mesh::minus, parameters.start);
     });

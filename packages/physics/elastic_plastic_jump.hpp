@@ -38,11 +38,11 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// rows the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
 ///   w = w_0 + mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
 /// w_0 is the jump that the joint has under the initial stress, (g0 + B(lambda_n), lambda_t/K_t) with lambda =
-/// mean(sigma_0 n) + p n, p the fluid's pressure at the start, so that the initial state is one of rest; zero without
-/// initial stress. History: the plastic
-/// tangential jump p_old [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t -
-/// lambda_t/K_t where it slips. Outputs on fracture faces, local and global: total, elastic and plastic jump, traction;
-/// opening, slip, aperture (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
+/// mean(sigma_0 n) + p n, of both sides in the mean, p the fluid's pressure at the start, so that the initial state is
+/// one of rest where sigma_0 is in equilibrium; zero without initial stress. History: the plastic tangential jump p_old
+/// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips.
+/// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
+/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(mesh::Shape shape, ElasticPlasticJumpParameters parameters);
 
 }  // namespace sprekk::physics
