@@ -103,7 +103,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   const auto chosen = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
-  darcy.deforms = scene.deforms();
+  darcy.deforms = scene.deforms() || std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& region) {
+                    return region.second.pressure;  // pressures of cells are prescribed: they stay in linear solves
+                  });
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};

@@ -204,6 +204,10 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
 
 void Model::start_solver() {
   const auto scope = timers_->scope("set-up of the solver");
+  for (const auto& [name, region] : scene_.regions)
+    for (const char* field : {"pressure", "face pressure"})
+      if (region.pressure)
+        conditions.push_back({"Regions > " + name, field, -1, {*region.pressure}, index_of(mesh->region_names, name)});
   stepper_.reset();
   newton_.reset();
   newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);

@@ -283,7 +283,11 @@ void Region::describe(base::Section& s) {
   s.entry(material, "material", "-",
           "name of an elastic material, of this scene or of the library; absent: that of \"Bulk\"");
   describe_initial_stress(s, initial_stress, ", in place of that of \"Bulk\"");
-  if (s.complete() && !material && initial_stress.empty()) s.fail("give a \"material\" or an \"initial stress\"");
+  s.entry(
+      pressure, "pressure", "Pa", base::any(),
+      "of the fluid in its cells and in fractures inside of it, with \"Flow\": a value or an expression of x, y, z, t");
+  if (s.complete() && !material && initial_stress.empty() && !pressure)
+    s.fail("give a \"material\", an \"initial stress\" or a \"pressure\"");
 }
 
 void Fracture::describe(base::Section& s) {

@@ -134,6 +134,7 @@ struct HostFluid {
 struct Region {
   std::optional<std::string> material;
   std::vector<base::Expression> initial_stress;
+  std::optional<base::Expression> pressure;  ///< of the fluid, at all times
   void describe(base::Section& section);
 };
 

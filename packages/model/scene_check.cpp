@@ -110,6 +110,8 @@ class Comparison {
       if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions)) {
         if (region.material) check_material("Regions > " + name, *region.material, "elastic");
         check_stress("Regions > " + name, region.initial_stress);
+        if (region.pressure && !scene_.flow && is_absent(draft_, "Flow"))
+          fail("Regions > " + name + " > \"pressure\"", "needs the section \"Flow\"");
       }
   }
 
@@ -236,11 +238,14 @@ class Comparison {
     const auto& conditions = scene_.boundary_conditions;
     const auto& wells = scene_.flow->wells;
     const bool given = std::any_of(wells.begin(), wells.end(), [](const auto& w) { return w.second.pressure; }) ||
-                       std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
-                         const auto& c = named.second;
-                         const auto& k = c.conductance;
-                         return c.pressure && !(k && k->is_constant() && (*k)({}, 0) == 0);
-                       });
+                       std::any_of(conditions.begin(), conditions.end(),
+                                   [](const auto& named) {
+                                     const auto& c = named.second;
+                                     const auto& k = c.conductance;
+                                     return c.pressure && !(k && k->is_constant() && (*k)({}, 0) == 0);
+                                   }) ||
+                       std::any_of(scene_.regions.begin(), scene_.regions.end(),
+                                   [](const auto& region) { return region.second.pressure; });
     if (!names_.regions || !names_.fractures) return;
     const bool in_fractures = !names_.fractures->empty() && (scene_.flow->compressibility > 0 || scene_.deforms());
     const Real fluid = scene_.flow->compressibility;
@@ -254,7 +259,8 @@ class Comparison {
         is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
       fail("Flow",
-           "nothing says how high the pressure is: give a \"pressure\" on a boundary or in a well, or storage "
+           "nothing says how high the pressure is: give a \"pressure\" on a boundary, in a well or in a region, or "
+           "storage "
            "(\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
            "\"compressibility\" of the fluid)");
   }

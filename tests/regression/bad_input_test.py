@@ -274,6 +274,7 @@ class Scenes(BadInput):
             self.assertEqual(err.count("\n"), 1, err)
 
     def test_what_regions_have_of_their_own(self):
+        self.refuse_set(['Regions > bulk > "pressure": needs the section "Flow"'], "Regions.bulk.pressure=1")
         self.refuse_set(['Regions > bulk > "initial stress": has 2 values, must have 4'], "Regions.bulk.initial stress={0, 0}")
         self.refuse_set(['Regions > bulk > "initial stress": is "t"; it may depend on x, y, z, not on t'], "Regions.bulk.initial stress={0, t, 0, 0}")
 
