@@ -302,6 +302,11 @@ void Fracture::describe(base::Section& s) {
       cuts, "cuts", "-",
       "names of fractures that it divides where they meet: what flows from one part to the other crosses it, by its "
       "normal permeability, with \"Flow\"");
+  s.entry(
+      plastic_jump, "plastic jump", "m", base::any(),
+      "tangential plastic jump at the start, in the frame of the face: t in 2D, t1, t2 in 3D; values or expressions "
+      "of x, y, z");
+  for (const auto& component : plastic_jump) check_constant_in_time(s, "plastic jump", component);
 }
 
 void BoundaryCondition::describe(base::Section& s) {

@@ -141,8 +141,9 @@ struct Region {
 struct Fracture {
   std::string material;
   base::Expression fluid_pressure = 0;
-  base::Expression source = 0;    ///< of fluid
-  std::vector<std::string> cuts;  ///< names of fractures that its filling divides
+  base::Expression source = 0;                 ///< of fluid
+  std::vector<std::string> cuts;               ///< names of fractures that its filling divides
+  std::vector<base::Expression> plastic_jump;  ///< tangential, at the start, in the frame of the face
   void describe(base::Section& section);
 };
 

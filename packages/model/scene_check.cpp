@@ -122,6 +122,10 @@ class Comparison {
       if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures)) {
         check_material("Fractures > " + name, fracture.material, "joint");
         compare_joint(name, fracture);
+        const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
+        check_length(jump, fracture.plastic_jump.size(), names_.dim ? std::optional(*names_.dim - 1) : std::nullopt);
+        if (!scene_.deforms() && !fracture.plastic_jump.empty())
+          fail(jump, "is of rock that \"Flow > rigid rock\" says does not deform");
         for (const auto& other : fracture.cuts) {
           const std::string place = fmt::format("Fractures > {} > \"cuts\"", name);
           if (check_name("Fractures > " + name, place, other, names_.fractures) && other == name)

@@ -237,6 +237,20 @@ TEST(InitialStress, StepDoesNotAskForTheOrderOfSides) {
   EXPECT_NEAR(jumps[0], jumps[1], 1e-9 * std::abs(jumps[0]));
 }
 
+/// A fault that has slipped before is at rest under the initial stress, wider by its dilation.
+TEST(InitialStress, AfterAPlasticJump) {
+  auto scene = read_scene("verification/lithostatic_2d.xml", {"Materials.joint.dilation angle=5"});
+  scene.fractures.at("fracture").plastic_jump = expressions({"-0.2"});
+  model::Model model(scene, Tpetra::getDefaultComm());
+  expect_displacement(model, 1e-13, [](const auto&...) { return Vector3{}; });
+  const Outputs out(model);
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    EXPECT_NEAR(out.vector("plastic jump local", f)[1], -0.2, 1e-12);
+    EXPECT_NEAR(out.scalar("aperture", f), 0.2 * std::tan(5 * M_PI / 180), 1e-12);
+    EXPECT_EQ(out.scalar("state", f), 1);
+  }
+}
+
 /// Without the initial stress the same weight does move the rock, so that the test above is one.
 TEST(InitialStress, IsNeededForRest) {
   auto scene = read_scene("verification/lithostatic_2d.xml");
