@@ -68,6 +68,37 @@ Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                    [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
 }
 
+/// Of a field on cells, at their centres.
+Held find_held_cells(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
+                     const std::vector<DirichletCondition>& conditions) {
+  Held held;
+  Collector collector(held, n_owned);
+  for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
+    for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell)
+      for (int c = 0; c < n_components; ++c)
+        if (mesh.cell_region[cell] == conditions[k].region && conditions[k].values[c])
+          collector.add({GlobalIndex(cell) * n_components + c, k, c, mesh::cell_centre(mesh, cell)});
+  return held;
+}
+
+/// Calls visit(facet, centre) for the facets in a region, once or twice.
+template <class Visit>
+void for_each_facet_in(const mesh::Mesh& mesh, int region, const Visit& visit) {
+  const int n_faces = mesh::n_faces(mesh.shape);
+  const auto& of_cell = mesh.facets->of_cell;
+  std::vector<int> outside(mesh.facets->id.size(), 1);  // cells that are missing for it to be in the region
+  for (const LocalIndex facet : mesh.facets->fracture_face) outside[facet] = 2;
+  std::vector<int> cells(outside.size(), 0);
+  for (std::size_t face = 0; face < of_cell.size(); ++face) {
+    ++cells[of_cell[face]];
+    outside[of_cell[face]] -= mesh.cell_region[face / n_faces] == region;
+  }
+  for (std::size_t face = 0; face < of_cell.size(); ++face)
+    if (cells[of_cell[face]] == 2 && outside[of_cell[face]] <= 0)
+      visit(of_cell[face], mesh::face_centre(mesh::face_corners(mesh, static_cast<LocalIndex>(face) / n_faces,
+                                                                static_cast<int>(face) % n_faces)));
+}
+
 /// Of a field on facets, at the mean of their corners.
 Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
                       const std::vector<DirichletCondition>& conditions) {
@@ -79,6 +110,10 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k) {
     const auto& [name, field, boundary, values, region, fracture] = conditions[k];
+    if (boundary < 0) {
+      for_each_facet_in(mesh, region, [&](LocalIndex facet, const mesh::Vector& x) { add(k, facet, x); });
+      continue;
+    }
     for (const auto& face : mesh.boundary_faces)
       if (fracture < 0 && face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region))
         add(k, mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face],
@@ -96,6 +131,8 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
 Held find_held(const mesh::Mesh& mesh, const fields::Layout& layout,
                const std::vector<DirichletCondition>& conditions) {
   const int n_components = layout.field().n_components;
+  if (layout.field().entity == fields::Entity::cell)
+    return find_held_cells(mesh, n_components, layout.n_owned(), conditions);
   if (layout.field().entity == fields::Entity::facet)
     return find_held_facets(mesh, n_components, layout.n_owned(), conditions);
   if (layout.field().entity != fields::Entity::enriched_node)
@@ -133,10 +170,11 @@ std::vector<Real> prescribed_values(const Held& held, const std::vector<Dirichle
     found.try_emplace(
         {condition, entry.condition, entry.component},
         fmt::format(
-            "boundary conditions \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; "
-            "where they meet they must agree or leave the component free",
-            conditions[condition].name, conditions[entry.condition].name, first, second, "xyz"[entry.component],
-            conditions[condition].field, entry.x[0], entry.x[1], entry.x[2], t));
+            "{} \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; where they meet "
+            "they must agree or leave the component free",
+            conditions[condition].boundary < 0 ? "conditions" : "boundary conditions", conditions[condition].name,
+            conditions[entry.condition].name, first, second, "xyz"[entry.component], conditions[condition].field,
+            entry.x[0], entry.x[1], entry.x[2], t));
   }
   for (const auto& [place, conflict] : found) conflicts.push_back(conflict);
   return values;

@@ -1,4 +1,4 @@
-// Prescribed values of unknowns on boundaries.
+// Prescribed values of unknowns, on boundaries and in regions.
 #pragma once
 
 #include "base/expression.hpp"
@@ -12,11 +12,13 @@
 
 namespace sprekk::assembly {
 
-/// Values of a field on nodes or facets on a boundary, per component; a component without value is free.
+/// Values of a field on nodes or facets on a boundary, or of one on cells or facets in a region, per component; a
+/// component without value is free. Facets in a region are those between two cells of which one is in it, or both where
+/// a fracture is between them: what flows through the boundary of the domain is left to conditions there.
 struct DirichletCondition {
   std::string name;  ///< how messages call it
   std::string field;
-  int boundary;  ///< number of the mesh's boundary
+  int boundary;  ///< number of the mesh's boundary; -1: all of the region
   std::vector<std::optional<base::Expression>> values;
   int region = -1;    ///< only on faces of cells of this region; -1: all
   int fracture = -1;  ///< only where this fracture ends; -1: on faces, and, if no region is named, where fractures end

@@ -149,6 +149,8 @@ class Module {
   virtual bool constant_load() const { return true; }
   /// Sets unknowns [field](owned unknown) of the initial state that are known to differ from zero.
   virtual void initial(const Rows& x) const {}
+  /// Sets histories [number](entity, component) of the initial state that differ from zero.
+  virtual void initial_history(const std::vector<View<Real**>>& history) const {}
   /// Called at the start of a step, before any residual at its end t.
   virtual void set_time(Real t, const Scales& scales) {}
   /// Moves the histories on to `state`.

@@ -257,6 +257,7 @@ void System::bind_modules() {
     history_.emplace_back();
     for (const auto& h : declarations_[m].history)
       history_[m].emplace_back(h.name, fields::n_entities(*mesh_, h.entity, false), h.n_components);
+    modules_[m]->initial_history(history_[m]);
   }
 }
 

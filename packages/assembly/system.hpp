@@ -27,6 +27,7 @@ struct Reaction {
   std::string condition, field;
   std::vector<Real> force;       ///< [component] N; N/m in 2D
   std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D the last alone, N
+  int region = -1;               ///< that a condition holds in; -1: on a boundary
 };
 
 class System : public fields::BlockProblem {

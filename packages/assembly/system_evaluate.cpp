@@ -519,6 +519,7 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
     for (std::size_t c = 0; c < conditions.size(); ++c) {
       const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
       result.push_back({conditions[c].name, conditions[c].field, {sums, sums + n_components}});
+      if (conditions[c].boundary < 0) result.back().region = conditions[c].region;
       std::copy_n(sums + n_components, 3, result.back().moment.begin());
     }
   }

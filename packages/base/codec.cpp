@@ -115,7 +115,7 @@ void decode_expression(Reading& reading, const std::string& suffix, const std::s
     return reading.fail(suffix, fmt::format("is \"{}\", neither a number nor an expression{}", text, hint));
   try {
     Expression expression(text, reading.place + suffix);
-    if (reading.tables && reading.bounds.word() != text) expression.compile(reading.tables);
+    if (reading.tables && reading.bounds.word() != text) expression.compile(reading.tables, reading.named);
     target = expression;
   } catch (const Error& error) {
     reading.errors.push_back(error.what());

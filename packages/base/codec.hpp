@@ -18,6 +18,7 @@ struct Reading {
       unit;  ///< that numbers are kept in, "-" for none; "m, Pa" if the elements of an array have different ones
   const Bounds& bounds;
   std::shared_ptr<const Tables> tables;  ///< that expressions may call; null: they are not compiled
+  const Expression::Named& named;        ///< the same
   std::vector<std::string>& errors;
 
   void fail(const std::string& suffix, const std::string& what) { errors.push_back(place + suffix + ": " + what); }

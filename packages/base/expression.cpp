@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
@@ -16,12 +17,27 @@ struct Expression::Compiled {
   Real x = 0, y = 0, z = 0, t = 0;
   std::shared_ptr<const Tables> tables;
 
+  /// An expression that this one calls by name.
+  struct Call {
+    const Compiled* from;
+    Expression expression;
+  };
+  std::map<std::string, Call> calls;
+
+  /// Called by muParser.
+  static double evaluate_named(void* call) {
+    const auto& [from, expression] = *static_cast<const Call*>(call);
+    return expression({from->x, from->y, from->z}, from->t);
+  }
+
   void define_names() {
     parser.DefineVar("x", &x);
     parser.DefineVar("y", &y);
     parser.DefineVar("z", &z);
     parser.DefineVar("t", &t);
     parser.DefineConst("pi", 3.14159265358979323846);
+    parser.DefineFun("erf", static_cast<double (*)(double)>(std::erf));
+    parser.DefineFun("erfc", static_cast<double (*)(double)>(std::erfc));
   }
 };
 
@@ -53,34 +69,45 @@ std::vector<std::string> known_names(const mu::Parser& parser) {
   return names;
 }
 
+/// Refuses names that cannot be called, or have a meaning already.
+void check_new_name(const mu::Parser& parser, const char* what, const std::string& name) {
+  const bool taken = parser.GetFunDef().count(name) || parser.GetVar().count(name) || parser.GetConst().count(name);
+  SPREKK_CHECK(!taken, "{} must not be named \"{}\", which has a meaning in expressions", what, name);
+  SPREKK_CHECK(is_identifier(name), "{} \"{}\": a name must consist of letters, digits and _ to be called", what, name);
+}
+
 void define_tables(mu::Parser& parser, const Tables& tables) {
   for (const auto& named_table : tables) {
     const auto& [name, table] = named_table;
-    const bool taken = parser.GetFunDef().count(name) || parser.GetVar().count(name) || parser.GetConst().count(name);
-    SPREKK_CHECK(!taken, "a table must not be named \"{}\", which has a meaning in expressions", name);
-    SPREKK_CHECK(is_identifier(name), "table \"{}\": a name must consist of letters, digits and _ to be called", name);
+    check_new_name(parser, "a table", name);
     const std::string defect = table.defect();
     SPREKK_CHECK(defect.empty(), "table \"{}\" {}", name, defect);
     parser.DefineFunUserData(name, evaluate_table, const_cast<Tables::value_type*>(&named_table), false);
   }
 }
 
-/// Refuses names that nothing has. An "e" in a number is no name, as it follows a digit.
-void check_names(const std::string& text, const mu::Parser& parser) {
-  const auto names = known_names(parser);
+/// Calls visit(name, position) for each name in a text. An "e" in a number is no name, as it follows a digit.
+template <class Visit>
+void for_each_name(const std::string& text, const Visit& visit) {
   const auto in_word = [](char c) { return is_letter(c) || is_digit(c) || c == '.'; };
   for (auto word = text.begin(); word != text.end();) {
     const auto end = std::find_if_not(word, text.end(), in_word);
-    const std::string name(word, end);
+    if (is_letter(*word)) visit(std::string(word, end), word - text.begin());
+    word = std::max(end, word + 1);
+  }
+}
+
+/// Refuses names that nothing has.
+void check_names(const std::string& text, const mu::Parser& parser) {
+  const auto names = known_names(parser);
+  for_each_name(text, [&](const std::string& name, std::size_t position) {
     const bool known = std::count(names.begin(), names.end(), name) || parser.GetConst().count(name);
     const auto help = [&] {
       const bool is_unit = defect_of_unit(name).empty();
       return is_unit ? fmt::format("; {}", no_units_in_expressions) : did_you_mean(name, names);
     };
-    SPREKK_CHECK(name.empty() || !is_letter(name[0]) || known, "unknown name \"{}\" at position {}{}", name,
-                 word - text.begin(), help());
-    word = std::max(end, word + 1);
-  }
+    SPREKK_CHECK(known, "unknown name \"{}\" at position {}{}", name, position, help());
+  });
 }
 
 std::string syntax_error(const mu::ParserError& error) {
@@ -101,6 +128,25 @@ void check_single_value(const std::string& text) {
   }
 }
 
+/// The text with "name()" for every "name".
+std::string with_call(const std::string& text, const std::string& called) {
+  std::string result;
+  std::size_t done = 0;
+  for_each_name(text, [&](const std::string& name, std::size_t position) {
+    if (name != called) return;
+    result += text.substr(done, position - done) + name + "()";
+    done = position + name.size();
+  });
+  return result + text.substr(done);
+}
+
+/// Whether all expressions that one calls have a property.
+template <class Compiled>
+bool calls_all(const Compiled& compiled, bool (Expression::*has)() const) {
+  return std::all_of(compiled.calls.begin(), compiled.calls.end(),
+                     [&](const auto& call) { return (call.second.expression.*has)(); });
+}
+
 }  // namespace
 
 Expression::Expression(Real constant) : constant_(constant) {
@@ -112,7 +158,7 @@ Expression::Expression(std::string text, std::string place) : text_(std::move(te
   if (const auto number = parse_number(text_)) *this = Expression(*number);
 }
 
-void Expression::compile(std::shared_ptr<const Tables> tables) {
+void Expression::compile(std::shared_ptr<const Tables> tables, const Named& named) {
   if (text_.empty()) return;
   auto compiled = std::make_shared<Compiled>();
   auto& parser = compiled->parser;
@@ -124,12 +170,26 @@ void Expression::compile(std::shared_ptr<const Tables> tables) {
     compiled->define_names();
     define_tables(parser, *tables);
     compiled->tables = std::move(tables);
+    for (const auto& [name, expression] : named) {  // first as variables, so that positions in messages are right
+      check_new_name(parser, "an expression", name);
+      parser.DefineVar(name, &compiled->x);
+    }
     check_single_value(text_);
     check_names(text_, parser);
     parser.SetExpr(text_);
     for (const auto& variable : parser.GetUsedVar())  // muParser takes what it cannot read for a variable
       SPREKK_CHECK(parser.GetVar().count(variable.first), "cannot read \"{}\"", variable.first);
-    constant_at_compile_ = parser.GetUsedVar().empty();
+    std::string text = text_;
+    const auto used = parser.GetUsedVar();
+    for (const auto& [name, expression] : named) {
+      parser.RemoveVar(name);
+      if (!used.count(name)) continue;
+      auto& call = compiled->calls.emplace(name, Compiled::Call{compiled.get(), expression}).first->second;
+      parser.DefineFunUserData(name, Compiled::evaluate_named, &call, false);
+      text = with_call(text, name);
+    }
+    parser.SetExpr(text);
+    constant_at_compile_ = parser.GetUsedVar().empty() && calls_all(*compiled, &Expression::is_constant);
   } catch (const mu::ParserError& error) {
     fail(syntax_error(error));
   } catch (const Error& error) {
@@ -139,11 +199,51 @@ void Expression::compile(std::shared_ptr<const Tables> tables) {
   if (constant_at_compile_) constant_ = evaluate({}, 0);
 }
 
-std::string defect_of_table_name(const std::string& name) {
+Expression::Named Expression::compile_all(Named pending, const std::shared_ptr<const Tables>& tables,
+                                          std::vector<std::string>& errors) {
+  Named ready;
+  const auto first_pending = [&](const std::string& text) {  // of those that a text calls
+    std::string first;
+    for_each_name(text, [&](const std::string& name, std::size_t) {
+      if (first.empty() && pending.count(name)) first = name;
+    });
+    return first;
+  };
+  const auto finish = [&](const std::string& name, const std::string& error) {
+    if (!error.empty()) {
+      errors.push_back(error);
+      (pending[name] = Expression("x")).compile();
+    }
+    ready.insert(pending.extract(name));
+  };
+  while (!pending.empty()) {
+    std::string path, name = pending.begin()->first, next;
+    std::set<std::string> seen;
+    for (; seen.insert(name).second && !(next = first_pending(pending[name].text_)).empty(); name = next)
+      path += fmt::format("\"{}\" calls ", name);
+    const auto& expression = pending[name];
+    if (!next.empty()) {  // the name came back
+      path = path.substr(path.find(fmt::format("\"{}\" calls ", name)));
+      finish(name,
+             fmt::format("{}: in \"{}\": calls itself: {}\"{}\"", expression.place_, expression.text_, path, name));
+      continue;
+    }
+    std::string error;
+    try {
+      pending[name].compile(tables, ready);
+    } catch (const Error& defect) {
+      error = defect.what();
+    }
+    finish(name, error);
+  }
+  return ready;
+}
+
+std::string defect_of_name(const char* what, const std::string& name) {
   Expression::Compiled names;
   names.define_names();
   try {
-    define_tables(names.parser, {{name, {{0, 1}, {0, 1}}}});
+    check_new_name(names.parser, what, name);
   } catch (const Error& error) {
     return error.what();
   }
@@ -155,7 +255,8 @@ Real Expression::operator()(const std::array<Real, 3>& x, Real t) const {
 }
 
 bool Expression::constant_in_time() const {
-  return is_constant() || (compiled_ && !compiled_->parser.GetUsedVar().count("t"));
+  return is_constant() || (compiled_ && !compiled_->parser.GetUsedVar().count("t") &&
+                           calls_all(*compiled_, &Expression::constant_in_time));
 }
 
 std::string Expression::text() const { return text_.empty() ? number_text(constant_) : text_; }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/table.hpp"
 #include "base/types.hpp"
@@ -11,10 +13,12 @@
 namespace sprekk::base {
 
 /// A scalar function of x, y, z and t: a constant, or a text such as "-0.1*ramp(t)*sin(pi*x)". A text must be compiled
-/// before it is evaluated, because the tables that it calls are read from the same input. Copies share what was
-/// compiled.
+/// before it is evaluated, because the tables and expressions that it calls by name are read from the same input.
+/// Copies share what was compiled.
 class Expression {
  public:
+  using Named = std::map<std::string, Expression>;
+
   /// Throws an Error if `constant` is not a number; infinity is one.
   Expression(Real constant = 0);
 
@@ -23,8 +27,13 @@ class Expression {
   explicit Expression(std::string text, std::string place = "expression");
 
   /// Reads the text; constants need no compiling. A text without x, y, z and t becomes a constant. Throws an Error with
-  /// the text, the position and the names that are allowed.
-  void compile(std::shared_ptr<const Tables> tables = std::make_shared<Tables>());
+  /// the text, the position and the names that are allowed. Those of `named` that it calls must be compiled, and are
+  /// evaluated where the text needs their value: not in the branch of "? :" that is not taken.
+  void compile(std::shared_ptr<const Tables> tables = std::make_shared<Tables>(), const Named& named = {});
+
+  /// Compiles expressions that may call each other. What cannot be, or calls itself through others, gets a line in
+  /// `errors`, and something of which only the name counts in its place.
+  static Named compile_all(Named named, const std::shared_ptr<const Tables>& tables, std::vector<std::string>& errors);
 
   /// The value at the point x (metre) and time t (second). Throws an Error with point and time if it is not finite, if
   /// a table's range is left, or if the text was not compiled.
@@ -37,7 +46,7 @@ class Expression {
 
  private:
   struct Compiled;
-  friend std::string defect_of_table_name(const std::string& name);
+  friend std::string defect_of_name(const char* what, const std::string& name);
 
   Real evaluate(const std::array<Real, 3>& x, Real t) const;
 
@@ -47,7 +56,7 @@ class Expression {
   std::shared_ptr<Compiled> compiled_;
 };
 
-/// Why expressions cannot call a table by this name; empty if they can.
-std::string defect_of_table_name(const std::string& name);
+/// Why expressions cannot call something, "a table" or "an expression", by this name; empty if they can.
+std::string defect_of_name(const char* what, const std::string& name);
 
 }  // namespace sprekk::base

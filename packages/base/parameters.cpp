@@ -34,18 +34,49 @@ void Section::refuse_units(const Teuchos::ParameterList& list, const std::string
   }
 }
 
-void Section::expressions_call(const Tables& tables) {
+void Section::hint(const std::vector<std::string>& names, const std::string& what) {
+  for (const auto& name : names) hints_[without_separators(name)] = ". " + what;
+}
+
+void Section::named_expressions(Expression::Named& target, const std::string& name, const std::string& meaning) {
+  names_.push_back(name);
+  Section middle = child(name);
+  if (mode_ == Mode::document) {
+    const std::string what = "an expression of x, y, z, t, and of other names";
+    specification_.sections.push_back(
+        {name, meaning, {{"", type_name(Expression()), "-", "absent", what, any(), false, {}}}, {}});
+  } else if (mode_ == Mode::write) {
+    for (const auto& [key, value] : target) encode(output_->sublist(name), key, value);
+  } else if (const auto* input = find_list(name)) {
+    const auto bounds = any();
+    const Expression::Named none;
+    for (const auto& named_entry : *input)
+      if (const auto& key = named_entry.first; !is_unreadable(named_entry.second))
+        decode(named_entry.second, {middle.place(key), "-", bounds, nullptr, none, report_->errors}, target[key]);
+    middle.note_defects();
+  }
+}
+
+void Section::expressions_call(const Tables& tables, Expression::Named& named) {
   if (mode_ != Mode::read) return;
   const Table nothing{{-1e9, 1e9}, {0, 0}};  // in place of a table whose defect is reported, so that names are known
   auto callable = std::make_shared<Tables>();
   for (const auto& [name, table] : tables) {
-    const std::string defect = defect_of_table_name(name);
+    const std::string defect = defect_of_name("a table", name);
     if (defect.empty())
       callable->emplace(name, table.defect().empty() ? table : nothing);
     else
       fail(defect);
   }
   tables_ = callable;
+  for (auto named_one = named.begin(); named_one != named.end();) {
+    const auto& name = named_one->first;
+    const std::string defect =
+        tables.count(name) ? "is the name of a table, too" : defect_of_name("an expression", name);
+    if (!defect.empty()) fail_inside(fmt::format("Expressions > \"{}\": {}", name, defect));
+    named_one = defect.empty() ? std::next(named_one) : named.erase(named_one);
+  }
+  named = named_ = Expression::compile_all(std::move(named), tables_, report_->errors);
 }
 
 void Section::fail(const std::string& what) {
@@ -65,6 +96,7 @@ Section Section::child(const std::string& name) const {
   inner.file_ = file_;
   inner.report_ = report_;
   inner.tables_ = tables_;
+  inner.named_ = named_;
   if (report_) inner.n_errors_before_ = report_->errors.size();
   return inner;
 }
@@ -130,7 +162,8 @@ void Section::finish(const std::string& meaning) {
   if (mode_ != Mode::read) return;
   for (const auto& name : unknown_names()) {
     if (is_unreadable(*input_->getEntryPtr(name)) && name[0] == '<') continue;  // it has no name
-    std::string help = did_you_mean(name, names_);
+    const auto hint = hints_.find(without_separators(name));
+    std::string help = hint == hints_.end() ? did_you_mean(name, names_) : hint->second;
     if (help.empty()) help = names_.empty() ? "; nothing is allowed here" : "; allowed are " + quoted_list(names_);
     fail(name, "unknown" + help);
     report_->with_unknown_names.insert(path_);

@@ -84,8 +84,14 @@ class Section {
   /// A section of sections with names that the user chooses.
   template <class S>
   void named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning);
+  /// A section of expressions with names that the user chooses, which expressions_call() may compile.
+  void named_expressions(Expression::Named& target, const std::string& name, const std::string& meaning);
   /// A section that is handed on as it is.
   void passthrough(Teuchos::ParameterList& target, const std::string& name, const std::string& meaning);
+
+  /// What to say of names that are unknown here but common elsewhere, compared without_separators(): `Did you mean
+  /// "normal stiffness"?` of "kn".
+  void hint(const std::vector<std::string>& names, const std::string& what);
 
   /// Reports what no single entry can tell, e.g. that two of them contradict each other; heard only while reading.
   void fail(const std::string& what);
@@ -93,9 +99,10 @@ class Section {
   /// The same of something further inside: `what` opens with its path, e.g. `Bulk > "material": is ...`.
   void fail_inside(const std::string& what);
 
-  /// The tables that the expressions of all later entries may call, and with which they are compiled. Without this call
-  /// expressions are not compiled.
-  void expressions_call(const Tables& tables);
+  /// The tables and named expressions that the expressions of all later entries may call, and with which they are
+  /// compiled; the named ones are compiled here, and may call each other. Without this call expressions are not
+  /// compiled.
+  void expressions_call(const Tables& tables, Expression::Named& named);
 
   /// Whether this section was read without an error and has no name that is not yet described: so that describe() can
   /// compare entries after the last of them. A misspelt entry is not also told as a missing one.
@@ -142,14 +149,16 @@ class Section {
   void note_defects();                      ///< that were reported since this section was opened
 
   Mode mode_;
-  std::string path_;                ///< `Sprekk > Materials > joint`
-  std::vector<std::string> names_;  ///< of all entries and sections described so far
+  std::string path_;                          ///< `Sprekk > Materials > joint`
+  std::vector<std::string> names_;            ///< of all entries and sections described so far
+  std::map<std::string, std::string> hints_;  ///< what to say of unknown names, without separators
   // reading
   std::string file_;
   const Teuchos::ParameterList* input_ = nullptr;
   Report* report_ = nullptr;
   std::size_t n_errors_before_ = 0;
   std::shared_ptr<const Tables> tables_;
+  Expression::Named named_;
   // writing
   Teuchos::ParameterList* output_ = nullptr;
   // documenting
@@ -195,7 +204,7 @@ void Section::visit(T& target, const Spec& spec) {
   if (mode_ == Mode::read) {
     const auto* entry = find(spec);
     if (entry && is_a_choice(spec, *entry))
-      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, report_->errors}, target);
+      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, named_, report_->errors}, target);
   } else if (mode_ == Mode::write) {
     encode(*output_, spec.name, target);
   } else {

@@ -21,8 +21,8 @@ std::string row(const EntrySpecification& entry) {
                         : numeric              ? entry.bounds.text()
                                                : std::string("any");
   if (entry.bounds.size()) allowed += ", " + entry.bounds.length_text();
-  return fmt::format("| {} | {} | {} | {} | {} | {} |\n", entry.name, entry.type, cell(entry.unit), cell(entry.value),
-                     cell(allowed), cell(entry.meaning));
+  return fmt::format("| {} | {} | {} | {} | {} | {} |\n", entry.name.empty() ? "NAME" : entry.name, entry.type,
+                     cell(entry.unit), cell(entry.value), cell(allowed), cell(entry.meaning));
 }
 
 }  // namespace

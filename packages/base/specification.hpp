@@ -10,7 +10,8 @@ namespace sprekk::base {
 
 /// An entry of a section.
 struct EntrySpecification {
-  std::string name, type, unit;
+  std::string name;  ///< empty if the user chooses it
+  std::string type, unit;
   std::string value;  ///< the default, "absent" or "required"
   std::string meaning;
   Bounds bounds;

@@ -44,13 +44,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-std::string without_separators(const std::string& name) {
-  std::string result = lower(name);
-  const auto separator = [](char c) { return c == ' ' || c == '_' || c == '-'; };
-  result.erase(std::remove_if(result.begin(), result.end(), separator), result.end());
-  return result;
-}
-
 std::string_view unquoted(std::string_view text) {
   text = trimmed(text);
   const bool quotes = text.size() > 1 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0] &&
@@ -176,6 +169,13 @@ std::optional<std::size_t> where_not_utf8(std::string_view text) {
     i += n + 1;
   }
   return std::nullopt;
+}
+
+std::string without_separators(const std::string& name) {
+  std::string result = lower(name);
+  const auto separator = [](char c) { return c == ' ' || c == '_' || c == '-'; };
+  result.erase(std::remove_if(result.begin(), result.end(), separator), result.end());
+  return result;
 }
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed) {

@@ -41,6 +41,9 @@ std::string hint_on_digits(std::string_view text);
 /// Where `text` stops being UTF-8; nothing if it is UTF-8 from end to end.
 std::optional<std::size_t> where_not_utf8(std::string_view text);
 
+/// In lower case, without blanks, "-" and "_".
+std::string without_separators(const std::string& name);
+
 /// `. Did you mean "..."?` for the nearest of `allowed`, case, blanks, "-" and "_" aside; empty if none is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed);
 

@@ -47,17 +47,18 @@ struct CoulombFriction {
   }
 };
 
-/// Normal closure under compression, the last term of (14) (Barton and Bandis): B = Du lambda_n/(Du K_n - lambda_n),
-/// continued as lambda_n/K_n, once continuously differentiable, for the tensile tractions that iterates visit.
+/// Normal closure under compression, the last term of (14) (Barton and Bandis): B = lambda_n/(K_n - lambda_n/Du),
+/// continued as lambda_n/K_n, once continuously differentiable, for the tensile tractions that iterates visit. An
+/// infinite Du makes it lambda_n/K_n throughout.
 struct BartonBandisClosure {
-  Real maximum = 0;    ///< Du, m; 0 is a joint that does not close
+  Real maximum = 0;    ///< Du, m; 0 is a joint that does not close, infinite one that closes linearly
   Real stiffness = 1;  ///< K_n at zero traction, Pa/m
 
   template <class T>
   KOKKOS_INLINE_FUNCTION T operator()(const T& lambda_n) const {
     if (maximum == 0) return T(0);
     if (lambda_n > 0) return lambda_n / stiffness;
-    return maximum * lambda_n / (maximum * stiffness - lambda_n);
+    return lambda_n / (stiffness - lambda_n / maximum);
   }
   KOKKOS_INLINE_FUNCTION Real initial_compliance() const { return maximum == 0 ? 0 : 1 / stiffness; }
 };

@@ -85,6 +85,14 @@ Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face) {
   return face_centre(corners_of(mesh, cell, local_face));
 }
 
+Vector cell_centre(const Mesh& mesh, LocalIndex cell) {
+  Vector x{};
+  const int n = n_corners(mesh.shape), dim = mesh.dim();
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < dim; ++i) x[i] += mesh.coordinates[mesh.cells[cell * mesh.nodes_per_cell() + k] * dim + i] / n;
+  return x;
+}
+
 std::array<Vector, 3> face_frame(const Vector& direction, int dim) {
   const Vector n = (1 / norm(direction)) * direction;
   if (dim == 2) return {n, Vector{n[1], -n[0], 0}, Vector{}};

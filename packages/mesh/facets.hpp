@@ -78,6 +78,9 @@ Real ridge_length(const Mesh& mesh, LocalIndex face, int k);
 Vector face_centre(const FaceCorners& corners);
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
+/// Mean of the corners of a cell.
+Vector cell_centre(const Mesh& mesh, LocalIndex cell);
+
 /// Rows n, t1, t2 of the frame whose normal n points along `direction`. 2D: t1 = (n_y, -n_x), t2 = 0.
 /// 3D: t1 = a x n/|a x n| with a = e_z if |n_z| < 0.9 else e_x, t2 = n x t1.
 std::array<Vector, 3> face_frame(const Vector& direction, int dim);

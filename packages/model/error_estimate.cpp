@@ -95,8 +95,9 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
-  physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda], model_.scene().initial_stress(),
-                                   *model_.state()[lambda], stress.forces);
+  physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda],
+                                   model_.scene().initial_stress(mesh.region_names), *model_.state()[lambda],
+                                   stress.forces);
   try {
     prescribe(right_side);
   } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none

@@ -84,6 +84,7 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
   if (const auto& host = scene.host_fluid) result["host_fluid"] = {host->unknown, host->initial_pressure};
   for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
     result[name] = base::to_xml(sections.sublist(name));
+  if (!scene.expressions.empty()) result["Expressions"] = base::to_xml(sections.sublist("Expressions"));
   if (scene.flow) result["Flow"] = base::to_xml(sections.sublist("Flow"));
   for (const auto& module : system.modules())
     result["module \"" + module->name() + "\""].push_back(module->fingerprint());

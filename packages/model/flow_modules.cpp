@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 #include "model/properties.hpp"
 #include "physics/darcy_flow.hpp"
 #include "physics/fluid_storage.hpp"
@@ -42,7 +43,7 @@ Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) 
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return material(region).flows_uniformly(); },
       [&](int region, int cell) {
-        const auto x = cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell);
+        const auto x = cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell);
         return at_place(scene, material(region),
                         [&] { return material(region).mobility(mesh.dim(), scene.flow->viscosity, x); });
       });
@@ -102,7 +103,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   const auto chosen = physics::flux_scheme(flow.scheme, mesh, rock.values, rock.number);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
-  darcy.deforms = scene.deforms();
+  darcy.deforms = scene.deforms() || std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& region) {
+                    return region.second.pressure;  // pressures of cells are prescribed: they stay in linear solves
+                  });
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!flow.source.is_constant() || flow.source({}, 0) != 0) darcy.source = {flow.source};

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
 #include "model/flow_modules.hpp"
@@ -36,20 +37,29 @@ Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const Ma
   return sum / total;
 }
 
-/// The law of a face is that at its centre, with the mean of its gap: jumps are means, too.
+/// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
+/// means, too.
 Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int fracture) -> const Material& {
-    return scene.materials.at(scene.fractures.at(mesh.fracture_names[fracture]).material);
+  const auto section = [&](int fracture) -> const Fracture& {
+    return scene.fractures.at(mesh.fracture_names[fracture]);
   };
+  const auto material = [&](int fracture) -> const Material& { return scene.materials.at(section(fracture).material); };
   std::vector<int> fracture_of;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_of.push_back(mesh.fracture_faces[f].fracture);
   return properties<physics::JointParameters>(
       static_cast<int>(mesh.fracture_names.size()), fracture_of,
-      [&](int fracture) { return material(fracture).is_uniform(); },
+      [&](int fracture) {
+        const auto& jump = section(fracture).plastic_jump;
+        return material(fracture).is_uniform() &&
+               std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
+      },
       [&](int fracture, int f) {
-        if (f < 0) return material(fracture).joint({});
+        const auto& jump = section(fracture).plastic_jump;
+        auto joint = material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
+        for (std::size_t k = 0; k < jump.size(); ++k)
+          joint.plastic_jump[k] = f < 0 ? jump[k]({}, 0) : mean(mesh, mesh.fracture_faces[f], jump[k]);
+        if (f < 0) return joint;
         const auto& face = mesh.fracture_faces[f];
-        auto joint = material(fracture).joint(face.centre);
         if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
           joint.law.gap.initial = mean(mesh, face, gap);
         return joint;
@@ -61,7 +71,7 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   if (force.gravity.empty()) return force;
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
     force.density_of_cell.push_back(
-        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(centre(mesh, cell), 0));
+        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
   return force;
 }
 
@@ -97,7 +107,8 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = elasticity(scene, mesh);
-  physics::BulkMomentumParameters bulk{rock.values, body_force(scene, mesh), {}, scene.initial_stress(), rock.number};
+  physics::BulkMomentumParameters bulk{
+      rock.values, body_force(scene, mesh), {}, scene.initial_stress(mesh.region_names), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
@@ -193,6 +204,10 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   for (const char* field : {"displacement", "face pressure"})
     for (auto& condition : dirichlet_conditions(scene_.boundary_conditions, group_names(*mesh), field))
       conditions.push_back(std::move(condition));
+  for (const auto& [name, region] : scene_.regions)
+    for (const char* field : {"pressure", "face pressure"})
+      if (region.pressure)
+        conditions.push_back({"Regions > " + name, field, -1, {*region.pressure}, index_of(mesh->region_names, name)});
   system_ = std::make_unique<assembly::System>(
       mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);

@@ -227,7 +227,8 @@ void PointPath::describe(base::Section& s) {
 
 void PointScene::describe(base::Section& s) {
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name");
-  s.expressions_call(tables);
+  s.named_expressions(expressions, "Expressions", "what all other expressions may call by name");
+  s.expressions_call(tables, expressions);
   s.named_sections(materials, "Materials", "joints, by names of your choice");
   s.section(time, "Time", "steps");
   s.section(point, "Point", "what drives the point");

@@ -21,6 +21,7 @@ struct PointPath {
 struct PointScene {
   std::map<std::string, Material> materials;
   base::Tables tables;
+  base::Expression::Named expressions;  ///< that others call by name
   Time time;
   PointPath point;
   void describe(base::Section& section);

@@ -1,17 +1,10 @@
 #include "model/properties.hpp"
 
+#include "mesh/facets.hpp"
+
 #include <Teuchos_CommHelpers.hpp>
 
 namespace sprekk::model {
-
-std::array<Real, 3> centre(const mesh::Mesh& mesh, LocalIndex cell) {
-  std::array<Real, 3> x{};
-  const int n = mesh::n_corners(mesh.shape);
-  for (int k = 0; k < n; ++k)
-    for (int i = 0; i < mesh.dim(); ++i)
-      x[i] += mesh.coordinates[mesh.cells[cell * mesh.nodes_per_cell() + k] * mesh.dim() + i] / n;
-  return x;
-}
 
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
@@ -19,7 +12,7 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return material(region).is_uniform(); },
       [&](int region, int cell) {
-        return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : centre(mesh, cell));
+        return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell));
       });
 }
 
@@ -28,7 +21,7 @@ Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
     if (cell > 0 && material.is_uniform() && mesh.cell_region[cell] == mesh.cell_region[cell - 1]) continue;
-    here = std::max(here, material.elasticity(centre(mesh, cell)).youngs_modulus());
+    here = std::max(here, material.elasticity(mesh::cell_centre(mesh, cell)).youngs_modulus());
   }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
   return modulus;

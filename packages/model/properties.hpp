@@ -15,8 +15,6 @@ inline int index_of(const std::vector<std::string>& names, const std::string& na
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-std::array<Real, 3> centre(const mesh::Mesh& mesh, LocalIndex cell);
-
 /// The different values of a property, and which of them each entity has; no list of numbers where the group of an
 /// entity (region, fracture) tells.
 template <class T>

@@ -302,11 +302,15 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
 
 /// Forces and moments of the supports and what flows in, by boundary, and what modules have to tell.
 json Results::reactions() const {
-  json forces = json::object(), moments = json::object(), flows = json::object();
+  json forces = json::object(), moments = json::object(), flows = json::object(), into_regions = json::object();
   const auto add = [](json& sum, const auto& values) {
     for (std::size_t i = 0; i < values.size(); ++i) sum[i] = values[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
   };
   for (const auto& reaction : model_.system().reactions(model_.state())) {
+    if (reaction.region >= 0) {
+      add(into_regions[model_.mesh().region_names[reaction.region]], reaction.force);
+      continue;
+    }
     const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;
     const auto& m = reaction.moment;
     if (reaction.field != "displacement") {
@@ -318,6 +322,7 @@ json Results::reactions() const {
   }
   json all = {{"reactions", forces}, {"reaction_moments", moments}};
   if (!flows.empty()) all["inflows"] = flows;
+  if (!into_regions.empty()) all["region_inflows"] = into_regions;
   for (const auto& total : model_.system().totals(model_.state())) {
     json* place = &all;
     for (const auto& name : total.names) place = &(*place)[name];

@@ -24,6 +24,14 @@ void check_constant_in_time(base::Section& s, const std::string& entry, const ba
     s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
 }
 
+void describe_initial_stress(base::Section& s, std::vector<base::Expression>& stress, const std::string& whose) {
+  s.entry(stress, "initial stress", "Pa",
+          "stress at zero displacement" + whose +
+              ", tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of x, y, "
+              "z");
+  for (const auto& component : stress) check_constant_in_time(s, "initial stress", component);
+}
+
 }  // namespace
 
 template <class Visit>
@@ -45,7 +53,7 @@ void Material::for_each(const Visit& visit) const {
     optional("friction angle", friction_angle, 0, true, 90);
     visit("dilation angle", dilation_angle, 0, true, 90);
     visit("initial gap", initial_gap, none, false, infinite);
-    visit("maximum closure", maximum_closure, 0, true, infinite);
+    optional("maximum closure", maximum_closure, 0, true, infinite);
     visit("initial aperture", initial_aperture, 0, true, infinite);
     optional("normal stiffness", normal_stiffness, 0, false, infinite);
     visit("residual aperture", residual_aperture, 0, true, infinite);
@@ -79,6 +87,12 @@ void Material::describe(base::Section& s) {
         biot, "Biot coefficient", "-", base::between(0, 1),
         "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
         "grow by alpha div u");
+    s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
+    s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
+    s.hint({"G"}, "Did you mean \"shear modulus\"?");
+    s.hint({"K"}, "Did you mean \"bulk modulus\"?");
+    s.hint({"lambda"}, "Did you mean \"Lame's first parameter\"?");
+    s.hint({"rho"}, "Did you mean \"density\"?");
     const int n = E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value();
     if (type == "elastic" && s.complete() && n != 2 && (n != 0 || permeability.empty()))
       s.fail(fmt::format("{} elastic constants given, exactly two are needed", n));
@@ -94,9 +108,10 @@ void Material::describe(base::Section& s) {
     s.entry(dilation_angle, "dilation angle", "degree", base::at_least(0).below(90),
             "theta: the gap grows by tan(theta)|u_t^p| (14)");
     s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
-    s.entry(maximum_closure, "maximum closure", "m", base::at_least(0), "Du of the normal closure in (14); 0: none");
+    s.entry(maximum_closure, "maximum closure", "m", base::at_least(0).or_infinite(),
+            "Du of the normal closure in (14); 0: none; infinite, or absent: closure is linear, the traction over K_n");
     s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(),
-            "K_n at zero traction; needed with a maximum closure");
+            "K_n at zero traction; absent: the joint does not close");
     s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
     s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
             "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
@@ -106,9 +121,17 @@ void Material::describe(base::Section& s) {
     s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
             "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
             "beside it");
+    s.hint({"kn", "jkn"}, "Did you mean \"normal stiffness\"?");
+    s.hint({"ks", "kt", "jks", "shear stiffness"}, "Did you mean \"tangential stiffness\"?");
+    s.hint({"phi", "friction"}, "Did you mean \"friction angle\"?");
+    s.hint({"mu"}, "Did you mean \"friction coefficient\"?");
+    s.hint({"psi", "dilatancy", "dilatancy angle"}, "Did you mean \"dilation angle\"?");
+    s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
+    s.hint({"JRC", "JCS"},
+           "Friction has a \"friction angle\" or \"friction coefficient\", independent of the traction");
     if (type == "joint" && s.complete()) {
       if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
-      const bool closes = !maximum_closure.is_constant() || maximum_closure({0, 0, 0}, 0) > 0;
+      const bool closes = maximum_closure && (!maximum_closure->is_constant() || (*maximum_closure)({}, 0) > 0);
       if (closes && !normal_stiffness)
         s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
     }
@@ -199,7 +222,9 @@ physics::JointParameters Material::joint(const Point& x) const {
   joint.law.friction.coefficient = friction(x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
-  joint.law.gap.closure = {maximum_closure(x, 0), normal_stiffness ? (*normal_stiffness)(x, 0) : 1};
+  if (normal_stiffness)
+    joint.law.gap.closure = {maximum_closure ? (*maximum_closure)(x, 0) : std::numeric_limits<Real>::infinity(),
+                             (*normal_stiffness)(x, 0)};
   joint.initial_aperture = initial_aperture(x, 0);
   return joint;
 }
@@ -209,10 +234,7 @@ void Bulk::describe(base::Section& s) {
   s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
   s.entry(gravity, "gravity", "m/s^2", base::any(),
           "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
-  s.entry(initial_stress, "initial stress", "Pa",
-          "stress at zero displacement, tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values "
-          "or expressions of x, y, z");
-  for (const auto& component : initial_stress) check_constant_in_time(s, "initial stress", component);
+  describe_initial_stress(s, initial_stress, "");
   s.section(lithostatic_stress, "lithostatic stress",
             "initial stress of rock at rest under gravity along the last coordinate");
   if (s.complete() && lithostatic_stress && !initial_stress.empty())
@@ -258,7 +280,14 @@ void Well::describe(base::Section& s) {
 }
 
 void Region::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
+  s.entry(material, "material", "-",
+          "name of an elastic material, of this scene or of the library; absent: that of \"Bulk\"");
+  describe_initial_stress(s, initial_stress, ", in place of that of \"Bulk\"");
+  s.entry(
+      pressure, "pressure", "Pa", base::any(),
+      "of the fluid in its cells and in fractures inside of it, with \"Flow\": a value or an expression of x, y, z, t");
+  if (s.complete() && !material && initial_stress.empty() && !pressure)
+    s.fail("give a \"material\", an \"initial stress\" or a \"pressure\"");
 }
 
 void Fracture::describe(base::Section& s) {
@@ -273,6 +302,11 @@ void Fracture::describe(base::Section& s) {
       cuts, "cuts", "-",
       "names of fractures that it divides where they meet: what flows from one part to the other crosses it, by its "
       "normal permeability, with \"Flow\"");
+  s.entry(
+      plastic_jump, "plastic jump", "m", base::any(),
+      "tangential plastic jump at the start, in the frame of the face: t in 2D, t1, t2 in 3D; values or expressions "
+      "of x, y, z");
+  for (const auto& component : plastic_jump) check_constant_in_time(s, "plastic jump", component);
 }
 
 void BoundaryCondition::describe(base::Section& s) {
@@ -377,14 +411,15 @@ void MeshFile::describe(base::Section& s) {
 
 void Scene::describe(base::Section& s) {
   s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
-  s.expressions_call(tables);
+  s.named_expressions(expressions, "Expressions", "what all other expressions may call by name, e.g. depth = 0.5 - y");
+  s.expressions_call(tables, expressions);
   s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
   if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
   s.named_sections(materials, "Materials",
                    "rock and joints, by names of your choice; those of the material library need no section");
   s.section(bulk, "Bulk", "the rock");
   s.section(flow, "Flow", "a fluid that flows through the rock");
-  s.named_sections(regions, "Regions", "materials of regions of the mesh, by their names");
+  s.named_sections(regions, "Regions", "what regions of the mesh have of their own, by their names");
   s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
   s.named_sections(boundary_conditions, "Boundary conditions",
                    "by names of your choice; boundaries without one are free of traction");
@@ -393,25 +428,43 @@ void Scene::describe(base::Section& s) {
   s.section(output, "Output", "what is written beside results.json");
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
   std::vector<std::string> used = {bulk.material};
-  for (const auto& [name, region] : regions) used.push_back(region.material);
+  for (const auto& [name, region] : regions)
+    if (region.material) used.push_back(*region.material);
   for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
   add_library_materials(materials, used);
 }
 
-physics::InitialStress Scene::initial_stress() const {
-  if (!bulk.lithostatic_stress) return {bulk.initial_stress};
-  const int dim = static_cast<int>(bulk.gravity.size());
-  const int up = dim - 1;
-  const Real weight =
-      -(*material_of("bulk").density)({0, 0, 0}, 0) * bulk.gravity[up];  // positive where gravity points down
+namespace {
+
+std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
+  const auto& [surface, horizontal_ratio] = *scene.bulk.lithostatic_stress;
+  const auto& gravity = scene.bulk.gravity;
+  const int dim = static_cast<int>(gravity.size()), up = dim - 1;
+  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: it points down
   std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
-    const Real factor = weight * (i == up ? 1 : bulk.lithostatic_stress->horizontal_ratio);
-    stress[i] =
-        base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], bulk.lithostatic_stress->surface));
+    const Real factor = weight * (i == up ? 1 : horizontal_ratio);
+    stress[i] = base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], surface));
   }
   for (auto& component : stress) component.compile();
-  return {stress};
+  return stress;
+}
+
+}  // namespace
+
+physics::InitialStress Scene::initial_stress(const std::vector<std::string>& region_names) const {
+  const auto common = bulk.lithostatic_stress ? lithostatic_stress(*this) : bulk.initial_stress;
+  physics::InitialStress stress;
+  std::size_t n_components = 0;
+  for (const auto& name : region_names) {
+    const auto region = regions.find(name);
+    const bool own = region != regions.end() && !region->second.initial_stress.empty();
+    n_components =
+        std::max(n_components, stress.value.emplace_back(own ? region->second.initial_stress : common).size());
+  }
+  if (n_components == 0) return {};
+  for (auto& components : stress.value) components.resize(n_components, base::Expression(0));
+  return stress;
 }
 
 base::Expression Scene::initial_pressure() const {
@@ -435,7 +488,7 @@ physics::FluidPressure Scene::fluid_pressure(const std::vector<std::string>& fra
 
 const Material& Scene::material_of(const std::string& region) const {
   const auto found = regions.find(region);
-  return materials.at(found == regions.end() ? bulk.material : found->second.material);
+  return materials.at(found == regions.end() ? bulk.material : found->second.material.value_or(bulk.material));
 }
 
 namespace {

@@ -40,8 +40,9 @@ struct Material {
 
   Value tangential_stiffness = std::numeric_limits<Real>::infinity();
   std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
-  Value dilation_angle = 0, initial_gap = 0, maximum_closure = 0, initial_aperture = 0;
-  std::optional<Value> normal_stiffness;  ///< needed where there is closure
+  Value dilation_angle = 0, initial_gap = 0, initial_aperture = 0;
+  std::optional<Value> normal_stiffness;  ///< needed where there is closure; absent: none
+  std::optional<Value> maximum_closure;   ///< absent: infinite, closure is linear
   Value residual_aperture = 0;
   std::optional<Value> tangential_permeability;  ///< absent: the cubic law
   Value normal_permeability = std::numeric_limits<Real>::infinity();
@@ -129,16 +130,20 @@ struct HostFluid {
   Real initial_pressure = 0;  ///< under which the initial state is one of rest, Pa
 };
 
+/// What a part of the rock has of its own, in place of what Bulk says.
 struct Region {
-  std::string material;
+  std::optional<std::string> material;
+  std::vector<base::Expression> initial_stress;
+  std::optional<base::Expression> pressure;  ///< of the fluid, at all times
   void describe(base::Section& section);
 };
 
 struct Fracture {
   std::string material;
   base::Expression fluid_pressure = 0;
-  base::Expression source = 0;    ///< of fluid
-  std::vector<std::string> cuts;  ///< names of fractures that its filling divides
+  base::Expression source = 0;                 ///< of fluid
+  std::vector<std::string> cuts;               ///< names of fractures that its filling divides
+  std::vector<base::Expression> plastic_jump;  ///< tangential, at the start, in the frame of the face
   void describe(base::Section& section);
 };
 
@@ -189,6 +194,7 @@ struct Scene {
   std::map<std::string, Fracture> fractures;
   std::map<std::string, BoundaryCondition> boundary_conditions;
   base::Tables tables;
+  base::Expression::Named expressions;  ///< that others call by name
   Time time;
   solve::NewtonOptions solver;
   Output output;
@@ -207,7 +213,8 @@ struct Scene {
   bool has_unknown_pressure() const { return flow || (host_fluid && host_fluid->unknown); }
   base::Expression initial_pressure() const;  ///< of the fluid in rock and fractures; 0 without
   bool deforms() const { return !flow || !flow->rigid_rock; }
-  physics::InitialStress initial_stress() const;  ///< as given, or the lithostatic one
+  /// As given, or the lithostatic one; of a region its own, where it has one.
+  physics::InitialStress initial_stress(const std::vector<std::string>& region_names) const;
   physics::FluidPressure fluid_pressure(const std::vector<std::string>& fracture_names) const;
 };
 

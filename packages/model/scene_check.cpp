@@ -90,19 +90,29 @@ class Comparison {
       fail(place, fmt::format("has {}, must have {}", base::counted(n, "value"), *wanted));
   }
 
+  void check_stress(const std::string& section, const std::vector<base::Expression>& stress) {
+    std::optional<int> wanted;
+    if (names_.dim) wanted = *names_.dim == 2 ? 4 : 6;
+    check_length(section + " > \"initial stress\"", stress.size(), wanted);
+    if (!scene_.deforms() && !stress.empty())
+      fail(section + " > \"initial stress\"", "is of rock that \"Flow > rigid rock\" says does not deform");
+  }
+
   void compare_bulk() {
     check_material("Bulk", scene_.bulk.material, "elastic");
     check_length("Bulk > \"body force\"", scene_.bulk.body_force.size(), names_.dim);
     check_length("Bulk > \"gravity\"", scene_.bulk.gravity.size(), names_.dim);
-    std::optional<int> n_stresses;
-    if (names_.dim) n_stresses = *names_.dim == 2 ? 4 : 6;
-    check_length("Bulk > \"initial stress\"", scene_.bulk.initial_stress.size(), n_stresses);
+    check_stress("Bulk", scene_.bulk.initial_stress);
   }
 
   void compare_regions() {
     for (const auto& [name, region] : scene_.regions)
-      if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions))
-        check_material("Regions > " + name, region.material, "elastic");
+      if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions)) {
+        if (region.material) check_material("Regions > " + name, *region.material, "elastic");
+        check_stress("Regions > " + name, region.initial_stress);
+        if (region.pressure && !scene_.flow && is_absent(draft_, "Flow"))
+          fail("Regions > " + name + " > \"pressure\"", "needs the section \"Flow\"");
+      }
   }
 
   void compare_fractures() {
@@ -112,6 +122,10 @@ class Comparison {
       if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures)) {
         check_material("Fractures > " + name, fracture.material, "joint");
         compare_joint(name, fracture);
+        const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
+        check_length(jump, fracture.plastic_jump.size(), names_.dim ? std::optional(*names_.dim - 1) : std::nullopt);
+        if (!scene_.deforms() && !fracture.plastic_jump.empty())
+          fail(jump, "is of rock that \"Flow > rigid rock\" says does not deform");
         for (const auto& other : fracture.cuts) {
           const std::string place = fmt::format("Fractures > {} > \"cuts\"", name);
           if (check_name("Fractures > " + name, place, other, names_.fractures) && other == name)
@@ -160,7 +174,8 @@ class Comparison {
   /// The material of a region, if it is rock.
   const Material* rock_of(const std::string& region) const {
     const auto own = scene_.regions.find(region);
-    const auto found = scene_.materials.find(own == scene_.regions.end() ? scene_.bulk.material : own->second.material);
+    const auto found = scene_.materials.find(
+        own == scene_.regions.end() ? scene_.bulk.material : own->second.material.value_or(scene_.bulk.material));
     return found == scene_.materials.end() || found->second.type != "elastic" ? nullptr : &found->second;
   }
 
@@ -197,7 +212,7 @@ class Comparison {
     }
     if (!scene_.flow) return;
     const auto& bulk = scene_.bulk;
-    if (!scene_.deforms() && (!bulk.body_force.empty() || !bulk.initial_stress.empty() || bulk.lithostatic_stress))
+    if (!scene_.deforms() && (!bulk.body_force.empty() || bulk.lithostatic_stress))
       fail("Bulk", "has a force or stress of the rock, which \"Flow > rigid rock\" says does not deform");
     if (scene_.output.error_estimate)
       fail("Output > \"error estimate\"", "is of stress and jumps without a fluid; not available with \"Flow\"");
@@ -227,11 +242,14 @@ class Comparison {
     const auto& conditions = scene_.boundary_conditions;
     const auto& wells = scene_.flow->wells;
     const bool given = std::any_of(wells.begin(), wells.end(), [](const auto& w) { return w.second.pressure; }) ||
-                       std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
-                         const auto& c = named.second;
-                         const auto& k = c.conductance;
-                         return c.pressure && !(k && k->is_constant() && (*k)({}, 0) == 0);
-                       });
+                       std::any_of(conditions.begin(), conditions.end(),
+                                   [](const auto& named) {
+                                     const auto& c = named.second;
+                                     const auto& k = c.conductance;
+                                     return c.pressure && !(k && k->is_constant() && (*k)({}, 0) == 0);
+                                   }) ||
+                       std::any_of(scene_.regions.begin(), scene_.regions.end(),
+                                   [](const auto& region) { return region.second.pressure; });
     if (!names_.regions || !names_.fractures) return;
     const bool in_fractures = !names_.fractures->empty() && (scene_.flow->compressibility > 0 || scene_.deforms());
     const Real fluid = scene_.flow->compressibility;
@@ -245,7 +263,8 @@ class Comparison {
         is_sound("Boundary conditions") && (!conditions.empty() || is_absent(draft_, "Boundary conditions"));
     if (!given && !stored && known && is_sound("Materials") && is_sound("Flow"))
       fail("Flow",
-           "nothing says how high the pressure is: give a \"pressure\" on a boundary or in a well, or storage "
+           "nothing says how high the pressure is: give a \"pressure\" on a boundary, in a well or in a region, or "
+           "storage "
            "(\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
            "\"compressibility\" of the fluid)");
   }

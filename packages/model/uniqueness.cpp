@@ -13,7 +13,7 @@ namespace {
 std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   if (!scene.deforms()) return {};
   std::vector<const Material*> rocks = {&scene.materials.at(scene.bulk.material)};
-  for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.materials.at(region.material));
+  for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.material_of(name));
   Real shear = 0, uniaxial = std::numeric_limits<Real>::infinity();
   for (const auto* rock : rocks) {
     if (!rock->is_uniform()) return {};

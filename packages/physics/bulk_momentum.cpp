@@ -99,7 +99,9 @@ class BulkMomentum final : public assembly::Module {
       std::array<Real, 3> x{};
       std::copy_n(mesh_->coordinates.begin() + mesh_->cells[c * n] * dim, dim, x.begin());
       for (int i = 0; i < dim; ++i) force = std::max(force, std::abs(parameters_.body_force(i, c, x, t)));
-      largest = std::max(largest, largest_initial_stress(x));
+      if (parameters_.initial_stress.empty()) continue;
+      for (const auto& component : parameters_.initial_stress.of_cell(*mesh_, c))
+        largest = std::max(largest, std::abs(component(mesh::cell_centre(*mesh_, c), 0)));
     }
     return std::max(largest, force * size_);
   }
@@ -126,13 +128,6 @@ class BulkMomentum final : public assembly::Module {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
   }
 
-  Real largest_initial_stress(const std::array<Real, 3>& x) const {
-    Real largest = 0;
-    for (const auto& component : parameters_.initial_stress.value)
-      largest = std::max(largest, std::abs(component(x, 0)));
-    return largest;
-  }
-
   template <class Host>
   void add_body_force(Real t, const Host& load) const {
     if (parameters_.body_force.empty()) return;
@@ -154,7 +149,7 @@ class BulkMomentum final : public assembly::Module {
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
       assembly::gather_host<shape>(*mesh_, c, X);
       assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
-        parameters_.initial_stress.at(x, sigma);
+        parameters_.initial_stress.at(*mesh_, c, x, sigma);
         Op::Cell::gradients(xi, dN);
         const assembly::CellPoint<shape> point(X, dN);
         for (int a = 0; a < n; ++a) {
@@ -225,8 +220,8 @@ class BulkMomentum final : public assembly::Module {
     Op::Cell::shape_functions(xi, N);
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i) x[i] += N[a] * X[a][i];
-    for (std::size_t k = 0; k < parameters_.initial_stress.value.size(); ++k)
-      values[values.size() - 6 + k] += parameters_.initial_stress.component(static_cast<int>(k), x);
+    const auto& initial = parameters_.initial_stress.of_cell(*mesh_, c);
+    for (std::size_t k = 0; k < initial.size(); ++k) values[values.size() - 6 + k] += initial[k](x, 0);
   }
 
   BulkMomentumParameters parameters_;

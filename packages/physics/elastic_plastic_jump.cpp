@@ -16,7 +16,7 @@ using mesh::Shape;
 
 namespace {
 
-/// mean(sigma_0 n) + p n in the frames of owned faces, Pa; zero without initial stress.
+/// mean(sigma_0 n) + p n in the frames of owned faces, Pa, of both sides in the mean; zero without initial stress.
 std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
                                                    const ElasticPlasticJumpParameters& parameters) {
   std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
@@ -25,9 +25,11 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f)
     mesh::for_shape(mesh.shape, [&](auto shape) {
       const auto& face = mesh.fracture_faces[f];
-      const auto mean = mean_initial_traction<shape()>(stress, mesh, face, mesh::minus);
-      for (int k = 0; k < mesh.dim(); ++k)
-        for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i];
+      for (const int side : {mesh::minus, mesh::plus}) {
+        const auto mean = mean_initial_traction<shape()>(stress, mesh, face, side);
+        for (int k = 0; k < mesh.dim(); ++k)
+          for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i] / 2;
+      }
       if (!fluid.empty())
         tractions[f][0] += mean_fluid_pressure<shape()>(fluid, mesh, face, mesh::minus, parameters.start);
     });
@@ -78,6 +80,7 @@ class ElasticPlasticJump final : public assembly::Module {
     faces_->add_jacobian(op, state, J);
   }
   void initial(const assembly::Rows& x) const override;
+  void initial_history(const std::vector<View<Real**>>& history) const override;
   void commit(assembly::State& state) const override;
   void measure(const assembly::State& state, const assembly::Scales& scales,
                std::vector<fields::Measure>& measures) const override;
@@ -167,6 +170,14 @@ void ElasticPlasticJump<shape, tips>::initial(const assembly::Rows& x) const {
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
     for (int k = 0; k < dim; ++k) traction(f * dim + k) = known[f][0] < 0 ? known[f][k] : 0;
   Kokkos::deep_copy(x[fields_[2]], traction);
+}
+
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::initial_history(const std::vector<View<Real**>>& history) const {
+  const auto p = Kokkos::create_mirror_view(history[0]);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+    for (int k = 0; k < dim - 1; ++k) p(f, k) = parameters_.joints[joint_of(f)].plastic_jump[k];
+  Kokkos::deep_copy(history[0], p);
 }
 
 template <Shape shape, bool tips>
@@ -375,10 +386,10 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
   auto jumps = initial_tractions(mesh, parameters);
   if (parameters.initial_stress.empty()) return jumps;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    const auto& law = parameters.joints[joint_of(parameters, mesh, f)].law;
+    const auto& [law, aperture, plastic] = parameters.joints[joint_of(parameters, mesh, f)];
     const Real pressed = jumps[f][0];
-    jumps[f][0] = law.gap.initial + (pressed < 0 ? law.gap.closure(pressed) : 0);
-    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] *= law.elastic.compliance;
+    jumps[f][0] = law.gap(std::hypot(plastic[0], plastic[1]), std::min(pressed, Real(0)));
+    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] = plastic[k - 1] + law.elastic.compliance * jumps[f][k];
   }
   return jumps;
 }

@@ -6,6 +6,7 @@
 #include "laws/joint.hpp"
 #include "physics/loads.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace sprekk::physics {
 /// The joint of one fracture.
 struct JointParameters {
   laws::Joint law;
-  Real initial_aperture = 0;  ///< a0 of (15), m
+  Real initial_aperture = 0;           ///< a0 of (15), m
+  std::array<Real, 2> plastic_jump{};  ///< tangential, at the start, in the frame of the face, m
 };
 
 struct ElasticPlasticJumpParameters {
@@ -37,12 +39,13 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// Declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension positive) and writes in its
 /// rows the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
 ///   w = w_0 + mean over the face of R (u+ - u-), bubbles included: shares of the nodes + mean(b) R (beta+ - beta-).
-/// w_0 is the jump that the joint has under the initial stress, (g0 + B(lambda_n), lambda_t/K_t) with lambda =
-/// mean(sigma_0 n) + p n, p the fluid's pressure at the start, so that the initial state is one of rest; zero without
-/// initial stress. History: the plastic
-/// tangential jump p_old [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t -
-/// lambda_t/K_t where it slips. Outputs on fracture faces, local and global: total, elastic and plastic jump, traction;
-/// opening, slip, aperture (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
+/// w_0 is the jump that the joint has under the initial stress after the plastic jump p_0 that it starts with,
+/// (g0 + tan(theta) |p_0| + B(lambda_n), p_0 + lambda_t/K_t) with lambda =
+/// mean(sigma_0 n) + p n, of both sides in the mean, p the fluid's pressure at the start, so that the initial state is
+/// one of rest where sigma_0 is in equilibrium; zero without initial stress. History: the plastic tangential jump p_old
+/// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips.
+/// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
+/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(mesh::Shape shape, ElasticPlasticJumpParameters parameters);
 
 }  // namespace sprekk::physics

@@ -192,7 +192,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     Real X[n][dim], dN[n][dim], db[dim], gb[dim], sigma[dim][dim];
     assembly::gather_host<shape>(*mesh_, cell, X);
     assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real volume, const auto& x) {
-      stress.at(x, sigma);
+      stress.at(*mesh_, cell, x, sigma);
       Op::Cell::gradients(xi, dN);
       Op::Cell::bubble(local_face, xi, db);
       assembly::CellPoint<shape>(X, dN).gradient(db, gb);
@@ -202,7 +202,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
     const auto nodes = mesh::face_nodes(shape)[local_face];
     assembly::for_each_face_point<shape>(*mesh_, cell, local_face, [&](const auto& N, Real area, const auto& x) {
-      const auto traction = stress.template traction<dim>(x, face.frame[0]);
+      const auto traction = stress.template traction<dim>(*mesh_, cell, x, face.frame[0]);
       for (int i = 0; i < dim; ++i) {
         const Real deviation = sign * area * (traction[i] - mean[i]);
         force(i) -= assembly::face_bubble<shape>(N) * deviation;

@@ -4,6 +4,7 @@
 #include "assembly/geometry.hpp"
 #include "base/expression.hpp"
 #include "base/types.hpp"
+#include "mesh/facets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,29 +31,40 @@ struct BodyForce {
 /// Stress sigma_0 of the rock at zero displacement, Pa, tension positive: sigma = sigma_0 + 2 G eps + lambda tr(eps) I.
 /// Components XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D. Empty: none.
 struct InitialStress {
-  std::vector<base::Expression> value = {};
+  std::vector<std::vector<base::Expression>> value = {};  ///< [region, component]
 
   bool empty() const { return value.empty(); }
-  Real component(int k, const std::array<Real, 3>& x) const { return value[k](x, 0); }
+  const std::vector<base::Expression>& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const {
+    return value[mesh.cell_region[cell]];
+  }
+  /// At a point inside of a cell.
   template <int dim>
-  void at(const std::array<Real, 3>& x, Real (&sigma)[dim][dim]) const {
-    sigma[0][0] = component(0, x);
-    sigma[1][1] = component(1, x);
-    sigma[0][1] = sigma[1][0] = component(3, x);
+  void at(const mesh::Mesh& mesh, LocalIndex cell, const std::array<Real, 3>& x, Real (&sigma)[dim][dim]) const {
+    const auto& component = of_cell(mesh, cell);
+    sigma[0][0] = component[0](x, 0);
+    sigma[1][1] = component[1](x, 0);
+    sigma[0][1] = sigma[1][0] = component[3](x, 0);
     if constexpr (dim == 3) {
-      sigma[2][2] = component(2, x);
-      sigma[1][2] = sigma[2][1] = component(4, x);
-      sigma[0][2] = sigma[2][0] = component(5, x);
+      sigma[2][2] = component[2](x, 0);
+      sigma[1][2] = sigma[2][1] = component[4](x, 0);
+      sigma[0][2] = sigma[2][0] = component[5](x, 0);
     }
   }
-  /// The traction sigma_0 n.
+  /// The traction sigma_0 n at a point x of a face of a cell, on the cell's side of it. Where sigma_0 steps across the
+  /// face, rounding would say on which side x lies; so it is continued from inside of the cell, with d = 1e-6 (centre -
+  /// x) as 2 sigma_0(x + d) - sigma_0(x + 2 d), which is exact where it is linear.
   template <int dim, class Normal>
-  std::array<Real, 3> traction(const std::array<Real, 3>& x, const Normal& n) const {
-    Real sigma[dim][dim];
-    at(x, sigma);
-    std::array<Real, 3> t{};
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j) t[i] += sigma[i][j] * n[j];
+  std::array<Real, 3> traction(const mesh::Mesh& mesh, LocalIndex cell, const std::array<Real, 3>& x,
+                               const Normal& n) const {
+    const auto centre = mesh::cell_centre(mesh, cell);
+    std::array<Real, 3> t{}, inside = x;
+    for (const Real weight : {2.0, -1.0}) {
+      for (int i = 0; i < dim; ++i) inside[i] += 1e-6 * (centre[i] - x[i]);
+      Real sigma[dim][dim];
+      at(mesh, cell, inside, sigma);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) t[i] += weight * sigma[i][j] * n[j];
+    }
     return t;
   }
 };
@@ -91,7 +103,7 @@ std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mes
   Real total = 0;
   assembly::for_each_face_point<shape>(
       mesh, face.cell[side], face.local_face[side], [&](const auto&, Real area, const auto& x) {
-        const auto traction = stress.template traction<mesh::dimension(shape)>(x, face.frame[0]);
+        const auto traction = stress.template traction<mesh::dimension(shape)>(mesh, face.cell[side], x, face.frame[0]);
         for (int i = 0; i < 3; ++i) sum[i] += area * traction[i];
         total += area;
       });

@@ -283,7 +283,7 @@ class TipEnrichment final : public assembly::Module {
     if (parameters_.body_force.empty() && stress.empty()) return;
     Real sigma[dim][dim] = {};
     tip(cell).for_each_point([&](const auto&, Real volume, const auto& x, const auto& v) {
-      if (!stress.empty()) stress.at(x, sigma);
+      if (!stress.empty()) stress.at(*mesh_, cell, x, sigma);
       for (int i = 0; i < dim; ++i) {
         const Real force = parameters_.body_force.empty() ? 0 : parameters_.body_force(i, cell, x, t);
         for (int a = 0; a < n; ++a) {
@@ -321,7 +321,7 @@ class TipEnrichment final : public assembly::Module {
     const Real sign = side == mesh::plus ? 1 : -1;
     tip(cell).for_each_face_point(face.local_face[side],
                                   [&](const auto&, const auto& psi, const auto& area, const auto& x) {
-                                    const auto traction = stress.template traction<dim>(x, face.frame[0]);
+                                    const auto traction = stress.template traction<dim>(*mesh_, cell, x, face.frame[0]);
                                     for (int k = 0; k < Tip::n_face; ++k)
                                       for (int i = 0; i < dim; ++i)
                                         add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i,

@@ -32,12 +32,12 @@ class Unresolved {
       for (int k = 0; k < dim; ++k)
         for (int i = 0; i < dim; ++i) t[i] += face.frame[k][i] * lambda(f * dim + k, 0);
       size_.push_back(std::sqrt(std::inner_product(t.begin(), t.end(), t.begin(), 0.0)));
-      if (!initial.empty()) {
-        const int side = face.cell[mesh::minus] >= 0 ? mesh::minus : mesh::plus;
+      for (const int side : {mesh::minus, mesh::plus}) {
+        Vector& own = traction_.emplace_back(t);
+        if (initial.empty() || face.cell[side] < 0) continue;
         const auto mean = mean_initial_traction<shape>(initial, mesh, face, side);
-        for (int i = 0; i < dim; ++i) t[i] -= mean[i];
+        for (int i = 0; i < dim; ++i) own[i] -= mean[i];
       }
-      traction_.push_back(t);
       for (const auto& nodes : face.nodes)
         for (const LocalIndex node : nodes)
           if (node >= 0) faces_at_[node].push_back(f);
@@ -111,7 +111,7 @@ class Unresolved {
         const Real along = mesh_.fracture_faces[other].centre[j] - face.centre[j];
         for (int i = 0; i < dim; ++i) {
           normal[j][i] += along * (mesh_.fracture_faces[other].centre[i] - face.centre[i]);
-          G[i][j] += along * (traction_[other][i] - traction_[f][i]);
+          G[i][j] += along * (traction_[2 * other + side][i] - traction_[2 * f + side][i]);
         }
       }
     Real trace = 0;
@@ -123,7 +123,7 @@ class Unresolved {
   }
 
   const mesh::Mesh& mesh_;
-  std::vector<Vector> traction_;  // [local face], in global components, without that of the initial stress
+  std::vector<Vector> traction_;  // [local face, side], in global components, without that of the initial stress
   std::vector<Real> size_;        // [local face] of the whole traction
   std::map<LocalIndex, std::vector<LocalIndex>> faces_at_;
 };

@@ -273,6 +273,17 @@ class Scenes(BadInput):
             err = self.refuse([f'"{new}": unknown. Did you mean "{old}"?'], "check", "a.xml")
             self.assertEqual(err.count("\n"), 1, err)
 
+    def test_what_regions_have_of_their_own(self):
+        self.refuse_set(['Regions > bulk > "pressure": needs the section "Flow"'], "Regions.bulk.pressure=1")
+        self.refuse_set(['Regions > bulk > "initial stress": has 2 values, must have 4'], "Regions.bulk.initial stress={0, 0}")
+        self.refuse_set(['Regions > bulk > "initial stress": is "t"; it may depend on x, y, z, not on t'], "Regions.bulk.initial stress={0, t, 0, 0}")
+
+    def test_names_of_other_programs_are_known(self):
+        for name, told in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
+                           ("K_s", 'Did you mean "tangential stiffness"?'), ("Cohesion", "A joint has neither cohesion nor tensile strength"),
+                           ("JRC", "friction coefficient")):
+            self.refuse_set([f'joint > "{name}": unknown. ', told], f"Materials.joint.{name}=1")
+
     def test_types_and_lengths(self):
         moved = "Boundary conditions.moved.displacement"
         self.refuse_set(['"cells": is the array {2, 2.5}, expected integers'], "Mesh.cells={2, 2.5}")

@@ -35,6 +35,50 @@ TEST(Expression, evaluates_place_and_time) {
   EXPECT_DOUBLE_EQ(compiled("max(x, y, z)")(p, 0), 5);
 }
 
+TEST(Expression, knows_the_error_function) {
+  EXPECT_DOUBLE_EQ(compiled("erf(x)")({0.5, 0, 0}, 0), std::erf(0.5));
+  EXPECT_DOUBLE_EQ(compiled("erfc(x/(2*sqrt(t)))")({2, 0, 0}, 4), std::erfc(0.5));
+  EXPECT_TRUE(compiled("erf(1)").is_constant());
+}
+
+/// An expression that may call others.
+Expression calling(const std::string& text, const Expression::Named& others) {
+  std::vector<std::string> errors;
+  const auto named = Expression::compile_all(others, std::make_shared<Tables>(), errors);
+  EXPECT_TRUE(errors.empty()) << errors.front();
+  Expression expression(text, "place");
+  expression.compile(std::make_shared<Tables>(), named);
+  return expression;
+}
+
+TEST(Expression, calls_others_by_name) {
+  const Expression::Named named = {{"depth", Expression("0.5 - y")},
+                                   {"weight", Expression("density*depth")},
+                                   {"density", 3},
+                                   {"late", Expression("t - 1")}};
+  EXPECT_DOUBLE_EQ(calling("2*weight^2 - weight", named)({0, 0.1, 0}, 0), 2 * 1.44 - 1.2);
+  EXPECT_DOUBLE_EQ(calling("depth*depths", {{"depth", 2}, {"depths", Expression("x")}})({5, 0, 0}, 0), 10);
+  EXPECT_TRUE(calling("2*density", named).is_constant());
+  EXPECT_DOUBLE_EQ(calling("2*density", named)({}, 0), 6);
+  EXPECT_TRUE(calling("weight", named).constant_in_time());
+  EXPECT_FALSE(calling("weight + late", named).constant_in_time());
+  EXPECT_EQ(calling("x + late", named).text(), "x + late");
+}
+
+TEST(Expression, evaluates_others_only_where_they_count) {
+  const auto guarded = calling("x > 0 ? root : 0", {{"root", Expression("sqrt(x)", "there")}});
+  EXPECT_EQ(guarded({4, 0, 0}, 0), 2);
+  EXPECT_EQ(guarded({-4, 0, 0}, 0), 0);
+  const auto bare = calling("1 + root", {{"root", Expression("sqrt(x)", "there")}});
+  EXPECT_CONTAINS(message_of([&] { bare({-4, 0, 0}, 2); }), "place: \"1 + root\" at x = (-4, 0, 0), t = 2: there: ");
+}
+
+TEST(Expression, names_positions_as_they_are_written) {
+  EXPECT_CONTAINS(message_of([] { calling("once + once + q", {{"once", 1}}); }), "unknown name \"q\" at position 14");
+  EXPECT_CONTAINS(message_of([] { calling("once + )", {{"once", 1}}); }), "position 7");
+  EXPECT_CONTAINS(message_of([] { calling("onc", {{"once", 1}}); }), "Did you mean \"once\"?");
+}
+
 TEST(Expression, knows_what_it_depends_on) {
   EXPECT_TRUE(compiled("2*pi").is_constant());
   EXPECT_DOUBLE_EQ(compiled("2*pi")({}, 0), 2 * M_PI);

@@ -258,12 +258,14 @@ TEST(Parameters, all_errors_are_reported_at_once) {
 
 struct Loaded {
   Tables tables;
+  Expression::Named expressions;
   Expression force = 1;
   std::vector<Expression> moved;
   ParameterList solver;
   void describe(Section& s) {
     s.named_sections(tables, "Tables", "functions");
-    s.expressions_call(tables);
+    s.named_expressions(expressions, "Expressions", "by name");
+    s.expressions_call(tables, expressions);
     s.required(force, "force", "N", positive(), "on the top");
     s.entry(moved, "moved", "m", any().or_word("free"), "of the side");
     s.passthrough(solver, "solver", "as it is");
@@ -278,6 +280,40 @@ TEST(Parameters, expressions_are_compiled_with_the_tables) {
   EXPECT_EQ(loaded.force({}, 0.25), 2);
   EXPECT_EQ(loaded.moved[0].text(), "free");
   EXPECT_EQ(loaded.moved[1]({7, 0, 0}, 0), 7);
+}
+
+TEST(Parameters, expressions_call_each_other_by_name) {
+  ParameterList list;
+  list.set("force", "2*twice").set("moved", array<std::string>({"free", "limit"}));
+  list.sublist("Expressions").set("twice", "2*once + f(0.25)").set("once", "x + t").set("limit", 3).set("unused", "y");
+  list.sublist("Tables").sublist("f").set("arguments", array<double>({0, 1})).set("values", array<int>({0, 4}));
+  auto loaded = read<Loaded>(list, "f", "R");
+  EXPECT_EQ(loaded.force({7, 0, 0}, 1), 2 * (2 * 8 + 1));
+  EXPECT_TRUE(loaded.moved[1].is_constant());
+  EXPECT_EQ(loaded.moved[1]({}, 0), 3);
+  const auto again = read<Loaded>(effective(loaded, "R"), "f", "R");  // the echo
+  EXPECT_EQ(again.force({7, 0, 0}, 1), 2 * (2 * 8 + 1));
+  EXPECT_EQ(again.expressions.size(), 4u);
+}
+
+TEST(Parameters, named_expressions_that_are_wrong_are_told_once) {
+  ParameterList list;
+  list.set("force", "a + b + wrong + sin").set("moved", array<std::string>({"free"}));
+  auto& named = list.sublist("Expressions");
+  named.set("a", "1 + b").set("b", "c*2").set("c", "a").set("self", "self + 1").set("after", "a + wrong");
+  named.set("wrong", "x + q").set("sin", "x").set("two words", "x").set("f", "x").set("unit", "3 m");
+  list.sublist("Tables").sublist("f").set("arguments", array<double>({0, 1})).set("values", array<int>({0, 4}));
+  const std::string errors = message_of([&] { read<Loaded>(list, "f", "R"); });
+  for (const char* part :
+       {"Expressions > \"a\": in \"1 + b\": calls itself: \"a\" calls \"b\" calls \"c\" calls \"a\"",
+        "Expressions > \"self\": in \"self + 1\": calls itself: \"self\" calls \"self\"",
+        "Expressions > \"wrong\": in \"x + q\": unknown name \"q\" at position 4",
+        "Expressions > \"sin\": an expression must not be named \"sin\"",
+        "Expressions > \"two words\": an expression \"two words\": a name must consist of letters",
+        "Expressions > \"f\": is the name of a table, too", "Expressions > \"unit\": is \"3 m\", has the unit \"m\"",
+        "\"force\": in \"a + b + wrong + sin\""})
+    EXPECT_CONTAINS(errors, part);
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 7) << errors;
 }
 
 TEST(Parameters, all_expressions_that_are_wrong_are_told_and_no_follow_ups) {

@@ -91,8 +91,9 @@ struct Rock {
   Expression stiffness = 1;
   std::vector<Expression> traction, path;
   Teuchos::ParameterList library;
+  Expression::Named named;
   void describe(Section& s) {
-    s.expressions_call({});
+    s.expressions_call({}, named);
     s.entry(modulus, "modulus", "Pa", positive(), "E");
     s.entry(ratio, "ratio", "-", between(0, 0.5), "nu");
     s.entry(end, "end", "s", "of the run");

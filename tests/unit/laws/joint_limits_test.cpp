@@ -221,6 +221,18 @@ TEST(BartonBandisClosure, IsOnceContinuouslyDifferentiableAtZero) {
   EXPECT_EQ((BartonBandisClosure{0, 5}.initial_compliance()), 0);
 }
 
+TEST(BartonBandisClosure, OfNoMaximumIsLinear) {
+  using Fad = Sacado::Fad::SFad<Real, 1>;
+  const BartonBandisClosure linear{std::numeric_limits<Real>::infinity(), 50e9}, nearly{1e12, 50e9};
+  for (Real traction : {-2e6, -1.0, 0.0, 1.0}) {
+    const Fad value = linear(Fad(1, 0, traction));
+    EXPECT_DOUBLE_EQ(value.val(), traction / 50e9);
+    EXPECT_DOUBLE_EQ(value.dx(0), 1 / 50e9);
+    EXPECT_NEAR(nearly(traction), value.val(), 1e-15 * std::abs(value.val()));
+  }
+  EXPECT_DOUBLE_EQ(linear.initial_compliance(), 1 / 50e9);
+}
+
 /// Along the slip, by how much R_n changes with lambda_n, of c_n: the compliance B' + mu dp/K_t of the face, where dp
 /// is what dilation adds for slip along its traction. An iterate with p = -0.2 slides against it.
 template <int dim>

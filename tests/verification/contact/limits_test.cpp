@@ -26,6 +26,8 @@ const std::vector<Limit> limits = {
      [](auto& joint, Real) { joint.friction_coefficient = 0; }},
     {"no closure", [](auto& joint, Real e) { joint.maximum_closure = 1e-2 * e; },
      [](auto& joint, Real) { joint.maximum_closure = 0; }},
+    {"linear closure", [](auto& joint, Real e) { joint.maximum_closure = 1e-4 / e; },
+     [](auto& joint, Real) { joint.maximum_closure.reset(); }},
     {"rigid under pressure", [](auto& joint, Real e) { joint.normal_stiffness = 1 / e; },
      [](auto& joint, Real) { joint.maximum_closure = 0; }},
 };

@@ -73,9 +73,11 @@ TEST(Uniqueness, IsToldOfAScene) {
                                                           testing::HasSubstr("above 10.49 the")));
   }
   // closure of compliance 1/5 at most raises the limit to tan(theta) = (1/3 + 1/5)/1.8
-  const std::vector<std::string> closes = {"Materials.joint.maximum closure=0.1"};
-  EXPECT_EQ(doubt(2, 0.999 * (1 / 3.0 + 0.2) / 1.8, closes), "");
-  EXPECT_NE(doubt(2, 1.001 * (1 / 3.0 + 0.2) / 1.8, closes), "");
+  for (const std::string closure : {"0.1", "infinite"}) {
+    const std::vector<std::string> closes = {"Materials.joint.maximum closure=" + closure};
+    EXPECT_EQ(doubt(2, 0.999 * (1 / 3.0 + 0.2) / 1.8, closes), "");
+    EXPECT_NE(doubt(2, 1.001 * (1 / 3.0 + 0.2) / 1.8, closes), "");
+  }
 }
 
 /// A step that fails names both; here it may take no iteration.

@@ -71,6 +71,24 @@ model::Scene gmsh_scene(const std::string& file, int n_fractures) {
   return scene;
 }
 
+/// A named fracture of a file starts with the mean over each face of the plastic jump that is given for it.
+TEST(Gmsh, FractureStartsWithAPlasticJump) {
+  auto scene = gmsh_scene("planes", 2);
+  scene.materials["rock"].G = scene.materials["rock"].lambda = base::Expression(1);
+  scene.materials["joint"].friction_coefficient = base::Expression(0.6);
+  prescribe(scene, "bottom", {"0", "0", "0"});
+  scene.fractures["f1"].plastic_jump = {base::Expression("0.1 + x - 2*y"), base::Expression(0.3)};
+  model::Model model(scene, Tpetra::getDefaultComm());
+  const auto jump = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(),
+                                                        model.field("elastic-plastic jump: plastic jump").values);
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    const auto& face = model.mesh().fracture_faces[f];
+    const bool given = model.mesh().fracture_names[face.fracture] == "f1";
+    EXPECT_NEAR(jump(f, 0), given ? 0.1 + face.centre[0] - 2 * face.centre[1] : 0, 1e-14);
+    EXPECT_NEAR(jump(f, 1), given ? 0.3 : 0, 1e-14);
+  }
+}
+
 /// Poisson's ratio 0, pressed from above: fractures along the load see nothing of it, those across pass it on.
 TEST(Gmsh, TetrahedraUnderPressure) {
   const Real E = 2e6, pressure = 1e3;

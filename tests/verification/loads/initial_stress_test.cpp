@@ -137,6 +137,120 @@ TEST(InitialStress, FractureThatReachesTheSurface) {
   for (const auto& cells : discretisations(3)) expect_rest_at_surface(cells, solid);
 }
 
+/// How the initial stress of an upper block is told apart from none in the lower one.
+enum class Step { above, from, region };
+
+/// A unit block that a fracture parts in the middle, turned as a whole; the upper half has the initial stress -p I. The
+/// boundary is at rest. With lambda + 2 G = 3000, rock moves along the normal by -p/6000 times its distance from the
+/// boundary: the traction is -p/2 on both sides of every face, whatever side rounding puts its points on.
+void expect_half_the_stress(const Discretisation& cells, int dim, Real degrees, Step step, bool swap) {
+  SCOPED_TRACE(fmt::format("{} in {}D, {} degrees, step {}, {}", cells.name(), dim, degrees, static_cast<int>(step),
+                           swap ? "swapped" : "as it is"));
+  const Real p = 1.5, a = p / 6000;
+  const Vector3 axis = dim == 2 ? Vector3{0, 0, 1} : Vector3{1, 0.3, 0.2};
+  const Matrix3 Q = rotation(degrees, axis);
+  const int up = dim - 1;
+  const Vector3 n = times(Q, dim == 2 ? Vector3{0, 1, 0} : Vector3{0, 0, 1});
+  auto scene = box_of_rock(cells, std::vector<Real>(dim, 1), std::vector<int>(dim, dim == 2 ? 8 : 4), "1");
+  scene.materials["rock"].E = scene.materials["rock"].nu = std::nullopt;
+  scene.materials["rock"].G = scene.materials["rock"].lambda = base::Expression(1000);
+  scene.mesh.rotation = degrees;
+  scene.mesh.rotation_axis = {axis[0], axis[1], axis[2]};
+  std::vector<Real> middle(dim, 0), corner(dim, 1);
+  middle[up] = 0.5;
+  scene.mesh.regions["upper"] = {middle, corner};
+  corner[up] = 0.5;
+  std::vector<Real> normal(dim, 0);
+  normal[up] = 1;
+  scene.mesh.fractures["f"] = {middle, corner, normal, swap};
+  scene.materials["joint"].type = "joint";
+  scene.materials["joint"].friction_coefficient = base::Expression(10);
+  scene.fractures["f"].material = "joint";
+  const std::string height = fmt::format("({:.17g}*x + {:.17g}*y + {:.17g}*z)", n[0], n[1], n[2]);
+  const auto number = fmt::format("{:.17g}", -p);
+  const auto stressed = step == Step::region  ? number
+                        : step == Step::above ? "(" + height + " > 0.5 ? " + number + " : 0)"
+                                              : "(" + height + " >= 0.5 ? " + number + " : 0)";
+  auto& stress = step == Step::region ? scene.regions["upper"].initial_stress : scene.bulk.initial_stress;
+  stress = expressions(dim == 2 ? std::vector<std::string>{stressed, stressed, stressed, "0"}
+                                : std::vector<std::string>{stressed, stressed, stressed, "0", "0", "0"});
+  for (const std::string region : {"bulk", "upper"}) {
+    const auto distance = region == "bulk" ? height : "(1 - " + height + ")";
+    std::vector<std::string> u;
+    for (int i = 0; i < dim; ++i) u.push_back(fmt::format("{:.17g}*{}", -a * n[i], distance));
+    for (const std::string side : {"west", "east", "south", "north", "bottom", "top"})
+      if ((dim == 3 || (side != "bottom" && side != "top")) &&
+          side != (region == "bulk" ? (dim == 2 ? "north" : "top") : (dim == 2 ? "south" : "bottom")))
+        prescribe(scene, side, u, region);
+  }
+  model::Model model(scene, Tpetra::getDefaultComm());
+  expect_displacement(model, 1e-12, [&](const Vector3& x, const std::string& region) {
+    const Real distance = region == "bulk" ? dot(n, x) : 1 - dot(n, x);
+    return Vector3{-a * n[0] * distance, -a * n[1] * distance, -a * n[2] * distance};
+  });
+  const Outputs out(model);
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    const auto traction = out.vector("traction local", f);
+    EXPECT_NEAR(traction[0], -p / 2, 1e-12) << "face " << f;
+    EXPECT_NEAR(norm({0, traction[1], traction[2]}), 0, 1e-12) << "face " << f;
+  }
+}
+
+TEST(InitialStress, StepsAcrossAnInclinedFracture) {
+  for (const int dim : {2, 3})
+    for (const auto& cells : discretisations(dim))
+      for (const Real degrees : {30, 45, 17})
+        expect_half_the_stress(cells, dim, degrees, degrees == 45 ? Step::from : Step::above, false);
+}
+
+TEST(InitialStress, OfARegion) {
+  for (const int dim : {2, 3})
+    for (const bool swap : {false, true})
+      expect_half_the_stress(discretisations(dim).front(), dim, 30, Step::region, swap);
+}
+
+/// A region's own stress takes the place of the lithostatic one: here it is the same, and the rock is at rest.
+TEST(InitialStress, OfARegionReplacesTheLithostatic) {
+  auto scene = read_scene("verification/lithostatic_2d.xml");
+  scene.mesh.regions["west"] = {{0, 0}, {1, 3}};
+  scene.regions["west"].initial_stress =
+      expressions({"0.5*2700*9.81*(y - 3)", "2700*9.81*(y - 3)", "0.5*2700*9.81*(y - 3)", "0"});
+  model::Model model(scene, Tpetra::getDefaultComm());
+  expect_displacement(model, 1e-13, [](const auto&...) { return Vector3{}; });
+}
+
+/// A joint that closes does so from the same state whichever side of it is called minus.
+TEST(InitialStress, StepDoesNotAskForTheOrderOfSides) {
+  std::vector<Real> jumps;
+  for (const bool swap : {false, true}) {
+    auto scene = read_scene("verification/lithostatic_2d.xml");
+    scene.mesh.regions["west"] = {{0, 0}, {1, 3}};
+    scene.regions["west"].initial_stress = expressions({"-2e5", "-2e5", "-2e5", "0"});
+    scene.mesh.fractures["fracture"].swap_sides = swap;
+    scene.materials["joint"].maximum_closure = base::Expression(0.1);
+    scene.materials["joint"].normal_stiffness = base::Expression(1e6);
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged);
+    jumps.push_back(mean(model, Outputs(model)["jump local"], 0));
+  }
+  EXPECT_LT(jumps[0], -1e-3);
+  EXPECT_NEAR(jumps[0], jumps[1], 1e-9 * std::abs(jumps[0]));
+}
+
+/// A fault that has slipped before is at rest under the initial stress, wider by its dilation.
+TEST(InitialStress, AfterAPlasticJump) {
+  auto scene = read_scene("verification/lithostatic_2d.xml", {"Materials.joint.dilation angle=5"});
+  scene.fractures.at("fracture").plastic_jump = expressions({"-0.2"});
+  model::Model model(scene, Tpetra::getDefaultComm());
+  expect_displacement(model, 1e-13, [](const auto&...) { return Vector3{}; });
+  const Outputs out(model);
+  for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+    EXPECT_NEAR(out.vector("plastic jump local", f)[1], -0.2, 1e-12);
+    EXPECT_NEAR(out.scalar("aperture", f), 0.2 * std::tan(5 * M_PI / 180), 1e-12);
+    EXPECT_EQ(out.scalar("state", f), 1);
+  }
+}
+
 /// Without the initial stress the same weight does move the rock, so that the test above is one.
 TEST(InitialStress, IsNeededForRest) {
   auto scene = read_scene("verification/lithostatic_2d.xml");

@@ -27,6 +27,21 @@ TEST(Control, TractionsBelowTheFrictionBoundAreElastic) {
   }
 }
 
+/// Without a maximum closure 2 MPa close a joint of 50 GPa/m by 0.04 mm, whatever closes it, and 4 MPa twice as far.
+TEST(Control, ClosureWithoutAMaximumIsLinear) {
+  for (const auto& [control, path] : {std::pair{"{traction, jump}", "{-2e6*t, 0}"}, {"{jump, jump}", "{-4e-5*t, 0}"}}) {
+    const auto states =
+        drive("cyclic_shear.xml", {"Materials.joint.normal stiffness=50 GPa/m", "Time.end=2", "Time.steps=2",
+                                   std::string("Point.control=") + control, std::string("Point.path=") + path});
+    for (const auto& s : states) {
+      EXPECT_EQ(s.contact, laws::ContactState::stick);
+      EXPECT_NEAR(s.jump[0], -4e-5 * s.t, 1e-18) << control;
+      EXPECT_NEAR(s.elastic[0], -4e-5 * s.t, 1e-18) << control;
+      EXPECT_NEAR(s.traction[0], -2e6 * s.t, 1e-7) << control;
+    }
+  }
+}
+
 TEST(Control, JumpOfARigidJointIsPlastic) {
   const auto states = drive("cyclic_shear.xml", {"Materials.joint.tangential stiffness=infinite", "Time.steps=80",
                                                  "Point.control={traction, jump}", "Point.path={-1e7, 1e-3*sin(t)}"});

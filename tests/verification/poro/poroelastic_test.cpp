@@ -222,5 +222,21 @@ TEST(Poroelasticity, NoFluidIsLost) {
     }
 }
 
+/// A pressure that is given in all of the rock moves it as one that was found: pressed by P on all sides, the strain is
+/// that of the effective stress alpha p - P, and fractures bear p - P.
+TEST(Poroelasticity, PressureOfARegion) {
+  const Real P = 2, p = 1.2;
+  for (const std::string cell : all_cells) {
+    SCOPED_TRACE(cell);
+    auto scene = deforming_box(cell);
+    scene.regions["bulk"].pressure = base::Expression(p);
+    press(scene, P);
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged);
+    const int dim = model.mesh().dim();
+    expect_uniform(model, (biot * p - P) / (2 * G + dim * lambda), p, p - P, 1e-11);
+  }
+}
+
 }  // namespace
 }  // namespace sprekk::tests

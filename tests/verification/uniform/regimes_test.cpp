@@ -64,6 +64,28 @@ TEST(JointRegimes, ExactStates) {
         }
 }
 
+/// What follows slip is also what one step finds from the plastic jump that slip leaves: along t in 2D, t2 in 3D.
+TEST(JointRegimes, FromAPlasticJump) {
+  for (const int dim : {2, 3})
+    for (const auto& r : regimes) {
+      if (!r.follows_slip) continue;
+      SCOPED_TRACE(fmt::format("{}D: {}", dim, r.name));
+      auto scene = read_scene(
+          fmt::format("verification/regimes_{}d.xml", dim),
+          {"Solver.tolerance=1e-13", values("tangential", {0, r.d_t, 0, 0}), values("normal", {0, r.d_n, 0, 0}),
+           values("shear", {0, r.l_t, 0, 0}), values("lateral", {0, r.l_n / 3, 0, 0})});
+      for (auto& [name, fracture] : scene.fractures) {
+        fracture.plastic_jump.assign(dim - 1, base::Expression(0));
+        fracture.plastic_jump.back() = base::Expression(slip.u_p);
+      }
+      model::Model model(scene, Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged);
+      auto e = expected(r, {1, 0, 0}, dim);
+      e.tolerance = e.traction_tolerance = 1e-12;
+      expect_joint(model, e);
+    }
+}
+
 /// The chain of the scene as it is: slip, unloaded to stick, reverse slip.
 TEST(JointRegimes, Scene) {
   for (const int dim : {2, 3}) {
