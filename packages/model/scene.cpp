@@ -467,6 +467,7 @@ base::Draft<Scene> prepared(const Scene& scene) {
   auto draft = from_list(list, scene.origin);
   draft.value.augmentation = scene.augmentation;
   draft.value.host_fluid = scene.host_fluid;
+  draft.value.solver.should_stop = scene.solver.should_stop;
   return draft;
 }
 
