@@ -1,6 +1,7 @@
 #include "model/model.hpp"
 
 #include "assembly/geometry.hpp"
+#include "base/any_rank.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
@@ -49,7 +50,7 @@ Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh
       [&](int fracture, int f) {
         if (f < 0) return material(fracture).joint({});
         const auto& face = mesh.fracture_faces[f];
-        auto joint = material(fracture).joint(face.centre);
+        auto joint = at_place(scene, material(fracture), [&] { return material(fracture).joint(face.centre); });
         if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
           joint.law.gap.initial = mean(mesh, face, gap);
         return joint;
@@ -213,9 +214,13 @@ solve::StepReport Model::step_to(Real t) {
   const auto scope = timers_->scope("time steps");
   beginning_ = beginning();
   auto report = stepper_->advance(x_, time_, t);
-  if (report.converged) return report;
-  for (const auto& doubt : {friction_doubt(scene_), dilation_doubt(scene_, mesh())})
-    if (!doubt.empty()) report.reason += "; " + doubt;
+  if (report.converged || report.stopped) return report;
+  if (const auto doubt = friction_doubt(scene_); !doubt.empty()) report.reason += "; " + doubt;
+  const bool changes = base::any_rank(*mesh().comm, [&] {
+    return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();
+  });
+  if (!changes) return report;  // it fails for another reason
+  if (const auto doubt = dilation_doubt(scene_, mesh()); !doubt.empty()) report.reason += "; " + doubt;
   return report;
 }
 
