@@ -130,7 +130,7 @@ class Restart(ProgramTest):
         while not (results.exists() and self.results()["status"] == "running"):
             self.assertIsNone(run.poll())
             time.sleep(0.01)
-        time.sleep(0.2)  # some steps
+        time.sleep(0.1)  # some steps
         return run
 
     def expect_interrupted(self, run, n_steps):
@@ -145,7 +145,7 @@ class Restart(ProgramTest):
         self.assertEqual(self.last()[0]["time"], results["steps"][-1]["time"])
 
     def test_interrupted(self):
-        n_steps = 150
+        n_steps = 300
         scene = [CYCLIC, f"Time.steps={n_steps}", QUIET]
         self.go(*scene, EVERY_STEP, output="whole")
         for number, every in ((signal.SIGINT, EVERY_STEP), (signal.SIGTERM, "Output.checkpoints.minutes=1000")):
