@@ -1,6 +1,7 @@
 // The program: starts MPI and Kokkos, reads the command line, runs.
 #include "base/check.hpp"
 #include "base/heap.hpp"
+#include "base/memory.hpp"
 #include "model/material_library.hpp"
 #include "model/network.hpp"
 #include "model/point.hpp"
@@ -36,7 +37,7 @@ void ask_to_stop(int) {
 
 void ask_to_stop_aloud(int signal) {
   ask_to_stop(signal);
-  constexpr char words[] = "sprekk: stopping after this step; a second signal stops at once\n";
+  constexpr char words[] = "sprekk: stopping; a second signal stops at once\n";
   [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, words, sizeof words - 1);
 }
 
@@ -62,12 +63,13 @@ void declare(CLI::App& app, Arguments& arguments) {
   mesh_info->add_option("--fractures", arguments.fractures, "physical groups that are fractures, a,b,c")
       ->delimiter(',');
   auto* network = app.add_subcommand("network", "print a scene's fracture network, checked and with all defaults");
-  for (auto* command : {run, check, point, network}) {
+  auto* directory = app.add_subcommand("directory", "print the directory that run writes to without --output");
+  for (auto* command : {run, check, point, network, directory}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
         ->allow_extra_args(false);
   }
-  run->add_option("--output", options.output, "directory for the results; default output/SCENE")
+  run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
 }
@@ -105,6 +107,7 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
     const auto description = model::network_description(*comm, options.scene, options.overrides);
     if (speaks) std::cout << description;
   }
+  if (command == "directory" && speaks) std::cout << model::default_directory(options) << '\n';
   if (command == "check") {
     model::check(options, comm);
     if (speaks) std::cout << options.scene << ": no errors\n";
@@ -115,8 +118,12 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
 int run_command(int argc, char** argv, RCP<const Comm> comm) {
   const bool speaks = comm->getRank() == 0;
   Arguments arguments;
-  const char* terminal = std::getenv("SPREKK_TERMINAL");
-  arguments.options.terminal = terminal && std::string(terminal) == "1";
+  const auto is_set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value && std::string(value) == "1";
+  };
+  arguments.options.terminal = is_set("SPREKK_TERMINAL");
+  arguments.options.reserved = is_set("SPREKK_RESERVED");  // ./sprekk holds the lock of the directory
   CLI::App app{"Sprekk: deformation of fractured rock", "sprekk"};
   declare(app, arguments);
   try {
@@ -131,7 +138,9 @@ int run_command(int argc, char** argv, RCP<const Comm> comm) {
     if (speaks) std::cerr << "sprekk: " << error.what() << std::endl;
     return 1;
   } catch (const std::exception& error) {  // perhaps here alone: the others must not wait
-    std::cerr << "sprekk: rank " << comm->getRank() << ": " << error.what() << std::endl;
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error);
+    std::cerr << "sprekk: rank " << comm->getRank() << ": " << (no_memory ? base::out_of_memory() : error.what())
+              << std::endl;
     MPI_Abort(MPI_COMM_WORLD, 1);
     return 1;
   }

@@ -2,6 +2,11 @@
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <filesystem>
+#include <new>
+
+#include "base/memory.hpp"
+
 namespace sprekk::base {
 
 void collectively(const Comm& comm, const std::function<void()>& work) {
@@ -9,6 +14,12 @@ void collectively(const Comm& comm, const std::function<void()>& work) {
   int failing_rank = comm.getSize();
   try {
     work();
+  } catch (const std::filesystem::filesystem_error& error) {
+    message = fmt::format("{}: {}", error.path1().string(), error.code().message());
+    failing_rank = comm.getRank();
+  } catch (const std::bad_alloc&) {
+    message = out_of_memory();
+    failing_rank = comm.getRank();
   } catch (const std::exception& error) {
     message = error.what();
     failing_rank = comm.getRank();

@@ -1,6 +1,8 @@
 #include "base/codec.hpp"
 
 #include <Teuchos_Array.hpp>
+#include <cmath>
+#include <limits>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
@@ -28,7 +30,11 @@ void wrong_type(const ParameterEntry& entry, Reading& reading, const std::string
 }
 
 bool inside(Reading& reading, const std::string& suffix, Real value) {
-  if (reading.bounds.contains(value)) return true;
+  constexpr Real smallest = std::numeric_limits<Real>::min();
+  const bool is_lost = value != 0 && std::abs(value) < smallest;  // fewer digits, and 1/value may be infinite
+  if (is_lost)
+    reading.fail(suffix, fmt::format("is {}, too small for a double; give 0, or at least {:.3g}", value, smallest));
+  if (is_lost || reading.bounds.contains(value)) return !is_lost;
   reading.fail(suffix, fmt::format("is {}, must be {}", number_text(value), reading.bounds.text()));
   return false;
 }
@@ -49,7 +55,7 @@ void convert(Reading& reading, const std::string& suffix, const std::string& uni
   try {
     number = value_in(unit, value);
   } catch (const Error& error) {
-    return reading.fail(suffix, fmt::format("is \"{}\", {}", quantity_text(value), error.what()));
+    return reading.fail(suffix, fmt::format("is \"{}\", {}", shortened(quantity_text(value)), error.what()));
   }
   use(*number);
 }
@@ -108,14 +114,16 @@ void decode_expression(Reading& reading, const std::string& suffix, const std::s
     const bool calculates = quantity->unit.find_first_of("*+-(") != std::string::npos;
     return reading.fail(
         suffix, calculates
-                    ? fmt::format("is \"{}\": {}; {}", text, defect, no_units_in_expressions)
-                    : fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", text, defect));
+                    ? fmt::format("is \"{}\": {}; {}", shortened(text), shortened(defect), no_units_in_expressions)
+                    : fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", shortened(text),
+                                  shortened(defect)));
   }
   if (const auto hint = hint_on_digits(text); !hint.empty())
-    return reading.fail(suffix, fmt::format("is \"{}\", neither a number nor an expression{}", text, hint));
+    return reading.fail(suffix, fmt::format("is \"{}\", neither a number nor an expression{}", shortened(text), hint));
   try {
     Expression expression(text, reading.place + suffix);
     if (reading.tables && reading.bounds.word() != text) expression.compile(reading.tables, reading.named);
+    if (expression.is_constant() && !inside(reading, suffix, expression({}, 0))) return;
     target = expression;
   } catch (const Error& error) {
     reading.errors.push_back(error.what());

@@ -106,12 +106,12 @@ void check_names(const std::string& text, const mu::Parser& parser) {
       const bool is_unit = defect_of_unit(name).empty();
       return is_unit ? fmt::format("; {}", no_units_in_expressions) : did_you_mean(name, names);
     };
-    SPREKK_CHECK(known, "unknown name \"{}\" at position {}{}", name, position, help());
+    SPREKK_CHECK(known, "unknown name \"{}\" at position {}{}", shortened(name), position, help());
   });
 }
 
 std::string syntax_error(const mu::ParserError& error) {
-  const std::string message = error.GetMsg();
+  const std::string message = shortened(error.GetMsg());
   const bool has_position = error.GetPos() < 0 || message.find("position") != message.npos;
   return has_position ? message : fmt::format("{} at position {}", message, error.GetPos());
 }
@@ -164,7 +164,8 @@ void Expression::compile(std::shared_ptr<const Tables> tables, const Named& name
   auto& parser = compiled->parser;
   const auto fail = [&](const std::string& what) {
     const char* link = what.back() == '?' ? " Allowed are" : "; allowed are";
-    throw Error(fmt::format("{}: in \"{}\": {}{} {}", place_, text_, what, link, quoted_list(known_names(parser))));
+    throw Error(
+        fmt::format("{}: in \"{}\": {}{} {}", place_, shortened(text_), what, link, quoted_list(known_names(parser))));
   };
   try {
     compiled->define_names();
@@ -262,7 +263,7 @@ bool Expression::constant_in_time() const {
 std::string Expression::text() const { return text_.empty() ? number_text(constant_) : text_; }
 
 Real Expression::evaluate(const std::array<Real, 3>& x, Real t) const {
-  SPREKK_CHECK(compiled_, "{}: \"{}\" was evaluated before it was compiled", place_, text_);
+  SPREKK_CHECK(compiled_, "{}: \"{}\" was evaluated before it was compiled", place_, shortened(text_));
   compiled_->x = x[0];
   compiled_->y = x[1];
   compiled_->z = x[2];
@@ -273,11 +274,12 @@ Real Expression::evaluate(const std::array<Real, 3>& x, Real t) const {
     if (std::isfinite(value)) return value;
     problem = fmt::format("is {}, must be finite", std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
   } catch (const mu::ParserError& error) {
-    problem = error.GetMsg();
+    problem = shortened(error.GetMsg());
   } catch (const Error& error) {
     problem = error.what();
   }
-  throw Error(fmt::format("{}: \"{}\" at x = ({}, {}, {}), t = {}: {}", place_, text_, x[0], x[1], x[2], t, problem));
+  throw Error(fmt::format("{}: \"{}\" at x = ({}, {}, {}), t = {}: {}", place_, shortened(text_), x[0], x[1], x[2], t,
+                          problem));
 }
 
 }  // namespace sprekk::base

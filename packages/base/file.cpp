@@ -1,12 +1,11 @@
 #include "base/file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "base/check.hpp"
+#include "base/memory.hpp"
 
 namespace sprekk::base {
 
@@ -29,7 +28,7 @@ std::string read_file(const std::string& path, const std::string& kind, std::siz
   };
   read(0);
   if (check_start) check_start(text);
-  const auto memory = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
+  const auto memory = static_cast<std::size_t>(memory_limit());
   SPREKK_CHECK(size <= std::min(limit, memory), "{}: has {} bytes; {} may have {}{}", path, size, kind,
                std::min(limit, memory), memory < limit ? ", the memory of this machine" : "");
   text.resize(size);

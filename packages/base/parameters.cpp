@@ -102,7 +102,7 @@ Section Section::child(const std::string& name) const {
 }
 
 std::string Section::place(const std::string& entry) const {
-  return fmt::format("{}: {} > \"{}\"", file_, path_, entry);
+  return fmt::format("{}: {} > \"{}\"", file_, path_, shortened(entry));
 }
 
 const Teuchos::ParameterEntry* Section::find(const Spec& spec) {
@@ -133,7 +133,7 @@ bool Section::is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry
   if (spec.choices.empty() || !entry.isType<std::string>()) return true;
   const auto& value = Teuchos::getValue<std::string>(entry);
   if (std::count(spec.choices.begin(), spec.choices.end(), value)) return true;
-  fail(spec.name, fmt::format("is \"{}\", must be one of {}{}", value, quoted_list(spec.choices),
+  fail(spec.name, fmt::format("is \"{}\", must be one of {}{}", shortened(value), quoted_list(spec.choices),
                               did_you_mean(value, spec.choices)));
   return false;
 }

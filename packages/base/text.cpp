@@ -114,8 +114,16 @@ std::string number_text(Real value) {
 
 std::string quoted_list(const std::vector<std::string>& names) {
   std::string text;
-  for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(name));
   return text;
+}
+
+std::string shortened(const std::string& text) {
+  constexpr std::size_t longest = 200, shown = 60;
+  if (text.size() <= longest) return text;
+  std::size_t end = shown;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // within a character of UTF-8
+  return fmt::format("{}... ({} bytes)", text.substr(0, end), text.size());
 }
 
 std::string xml_escaped(const std::string& text) {
@@ -179,6 +187,8 @@ std::string without_separators(const std::string& name) {
 }
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& allowed) {
+  constexpr std::size_t longest = 1000;
+  if (name.size() > longest) return "";
   const std::string wanted = without_separators(name);
   std::size_t smallest = std::min(std::clamp<std::size_t>(wanted.size() / 3, 1, 3) + 1, wanted.size());
   std::string nearest;

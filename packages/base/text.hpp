@@ -28,6 +28,9 @@ std::string number_text(Real value);
 /// `"a", "b", "c"`
 std::string quoted_list(const std::vector<std::string>& names);
 
+/// A text as a message repeats it: one of more than 200 bytes by its first 60 characters and its length.
+std::string shortened(const std::string& text);
+
 /// As an attribute of XML: with &lt; &gt; &amp; &quot; for < > & ".
 std::string xml_escaped(const std::string& text);
 

@@ -30,33 +30,34 @@ void for_each_type(const Use& use) {
 
 void parse(const std::string& text, long long& value) {
   const auto number = parse_integer(text);
-  SPREKK_CHECK(number, "is \"{}\", not an integer", text);
+  SPREKK_CHECK(number, "is \"{}\", not an integer", shortened(text));
   value = *number;
 }
 void parse(const std::string& text, int& value) {
   long long wide = 0;
   parse(text, wide);
   value = static_cast<int>(wide);
-  SPREKK_CHECK(value == wide, "is \"{}\", too large for an int; type=\"long long\" holds it", text);
+  SPREKK_CHECK(value == wide, "is \"{}\", too large for an int; type=\"long long\" holds it", shortened(text));
 }
 void parse(const std::string& text, Quantity& value) {
   const auto number = parse_number(text);
   const auto quantity = number ? Quantity{*number, ""} : parse_quantity(text);
-  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds{}", text, hint_on_digits(text));
+  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds{}", shortened(text), hint_on_digits(text));
   const std::string defect = number ? "" : defect_of_unit(quantity->unit);
-  SPREKK_CHECK(defect.empty(), "is \"{}\", not a number: {}", text, defect);
+  SPREKK_CHECK(defect.empty(), "is \"{}\", not a number: {}", shortened(text), shortened(defect));
   value = *quantity;
 }
 void parse(const std::string& text, bool& value) {
   const auto boolean = parse_boolean(text);
-  SPREKK_CHECK(boolean, "is \"{}\", not true or false", text);
+  SPREKK_CHECK(boolean, "is \"{}\", not true or false", shortened(text));
   value = *boolean;
 }
 void parse(const std::string& text, std::string& value) { value = text; }
 template <class T>
 void parse(const std::string& text, Array<T>& value) {
   const auto elements = parse_list(text);
-  SPREKK_CHECK(elements, "is \"{}\", not a list like {{a, b, c}} with matching parentheses and quotes", text);
+  SPREKK_CHECK(elements, "is \"{}\", not a list like {{a, b, c}} with matching parentheses and quotes",
+               shortened(text));
   for (const auto& element : *elements) {
     T one{};
     parse(element, one);
@@ -115,7 +116,7 @@ void set_from_text(Teuchos::ParameterList& list, const std::string& name, const 
       known = true;
     }
   });
-  SPREKK_CHECK(known, "has the unknown type \"{}\"; types are {}{}", type, quoted_list(types),
+  SPREKK_CHECK(known, "has the unknown type \"{}\"; types are {}{}", shortened(type), quoted_list(types),
                did_you_mean(type, types));
 }
 
@@ -151,7 +152,7 @@ std::string describe(const Teuchos::ParameterEntry& entry) {
   if (entry.isList()) return "a section";
   const std::string type = type_of(entry);
   if (type.empty()) return "of type " + entry.getAny(false).typeName();
-  const std::string text = value_text(entry);
+  const std::string text = shortened(value_text(entry));
   if (type == "string") return fmt::format("the string \"{}\"", text);
   if (type == "bool") return "the boolean " + text;
   if (entry.isType<Quantity>()) return fmt::format("\"{}\"", text);

@@ -32,8 +32,11 @@ void check_characters(const std::string& text, const std::string& file) {
   for (auto at = text.find("&#"); at != text.npos; at = text.find("&#", at + 2)) {
     const bool hexadecimal = text.compare(at + 2, 1, "x") == 0;
     const long code = std::strtol(text.c_str() + at + 2 + hexadecimal, nullptr, hexadecimal ? 16 : 10);
+    const auto reference = text.substr(at, text.find(';', at) + 1 - at).substr(0, 12);
+    SPREKK_CHECK(code >= 32 || code == 9 || code == 10 || code == 13,
+                 "{}: line {}: has the character reference {}, which XML does not allow", file, line(at), reference);
     SPREKK_CHECK(code < 128, "{}: line {}: has the character reference {}; write the character itself", file, line(at),
-                 text.substr(at, text.find(';', at) + 1 - at).substr(0, 12));
+                 reference);
   }
 }
 
@@ -81,7 +84,7 @@ class Converter {
       const std::string text(trimmed(element.getContentLine(i)));
       if (!text.empty())
         refuse(list, fmt::format("<text {}>", i),
-               fmt::format("{}: has the text \"{}\", expected elements only", place, text));
+               fmt::format("{}: has the text \"{}\", expected elements only", place, shortened(text)));
     }
     for (int i = 0; i < element.numChildren(); ++i) {
       const auto& child = element.getChild(i);
@@ -212,21 +215,21 @@ std::string to_xml(const ParameterList& list) {
 
 void apply_override(ParameterList& list, const std::string& text) {
   const auto equals = text.find('=');
-  SPREKK_CHECK(equals != text.npos, "override \"{}\": has no \"=\", expected Section.entry=value", text);
+  SPREKK_CHECK(equals != text.npos, "override \"{}\": has no \"=\", expected Section.entry=value", shortened(text));
   std::string path(trimmed(text.substr(0, equals)));
   const std::string value(trimmed(text.substr(equals + 1)));
   ParameterList* section = &list;
   for (;;) {
     const std::string name = first_name(*section, path);
-    SPREKK_CHECK(!name.empty(), "override \"{}\": has an empty name, expected Section.entry=value", text);
+    SPREKK_CHECK(!name.empty(), "override \"{}\": has an empty name, expected Section.entry=value", shortened(text));
     if (name == path) break;
     SPREKK_CHECK(!section->isParameter(name) || section->isSublist(name), "override \"{}\": \"{}\" is not a section",
-                 text, name);
+                 shortened(text), shortened(name));
     section = &section->sublist(name);
     path.erase(0, name.size() + 1);
   }
   SPREKK_CHECK(!section->isSublist(path), "override \"{}\": \"{}\" is a section, expected the name of an entry in it",
-               text, path);
+               shortened(text), shortened(path));
   set_value(*section, path, value);
 }
 

@@ -36,9 +36,22 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Calls work(error); an Error names the path and the system's reason.
+template <class Work>
+void attempt(const std::string& path, const char* what, const Work& work) {
+  std::error_code error;
+  work(error);
+  SPREKK_CHECK(!error, "{}: cannot be {}: {}", path, what, error.message());
+}
+
 void write_durably(const std::string& path, const std::string& content) {
   write_file(path, content);
   bring_to_disk(path);
+}
+
+/// The journal and its copy.
+std::array<std::string, 2> journal_files(const std::string& path) {
+  return {path + "/journal", path + "/journal_copy"};
 }
 
 std::string piece_file(const std::string& folder, int rank) { return fmt::format("{}/piece_{}.h5", folder, rank); }
@@ -73,8 +86,11 @@ std::string Checkpoints::folder(long long number) const { return fmt::format("{}
 std::vector<long long> Checkpoints::numbers() const {
   std::vector<long long> found;
   base::collectively(*comm_, [&] {
-    if (comm_->getRank() != 0 || !fs::is_directory(path_)) return;
-    for (const auto& entry : fs::directory_iterator(path_)) {
+    std::error_code none;  // where there is no such directory
+    if (comm_->getRank() != 0 || !fs::is_directory(path_, none)) return;
+    fs::directory_iterator entries;
+    attempt(path_, "read", [&](auto& error) { entries = fs::directory_iterator(path_, error); });
+    for (const auto& entry : entries) {
       const std::string name = entry.path().filename();
       if (!name.empty() && name.size() < 18 && name.find_first_not_of("0123456789") == name.npos)
         found.push_back(std::stoll(name));
@@ -93,7 +109,8 @@ void Checkpoints::clear() {
   journal_ = {};
   base::collectively(*comm_, [&] {
     std::error_code none;  // where there is no such directory
-    if (comm_->getRank() == 0 && fs::is_directory(path_, none)) fs::remove_all(path_);
+    if (comm_->getRank() != 0 || !fs::is_directory(path_, none)) return;
+    attempt(path_, "removed", [&](auto& error) { fs::remove_all(path_, error); });
   });
 }
 
@@ -108,7 +125,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   const bool first = comm_->getRank() == 0;
   const auto remove_parts = [&] {  // as far as possible; they do no harm
     std::error_code left;
-    for (const auto& entry : fs::directory_iterator(path_))
+    for (const auto& entry : fs::directory_iterator(path_, left))
       if (entry.path().extension() == ".part") fs::remove_all(entry.path(), left);
   };
   make_directory(*comm_, path_);
@@ -116,7 +133,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
     base::collectively(*comm_, [&] {
       if (!first) return;
       remove_parts();  // of runs that were killed
-      fs::create_directory(part);
+      attempt(part, "made", [&](auto& error) { fs::create_directory(part, error); });
     });
     Seal seal;
     base::collectively(*comm_, [&] {
@@ -128,12 +145,12 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
     Teuchos::gatherAll(*comm_, 2, seal.data(), 2 * comm_->getSize(), seals.front().data());
     base::collectively(*comm_, [&] {
       if (!first) return;
-      append_durably(path_ + "/journal", journal_[0], news);
+      for (const auto& file : journal_files(path_)) append_durably(file, journal_[0], news);
       json sealed = {{"content", checkpoint.content}, {"pieces", seals}, {"journal", journal}};
       for (const auto& [name, vector] : checkpoint.vectors) sealed["vectors"].push_back(name);
       write_durably(part + "/manifest.json", json{{"sealed", sealed}, {"seal", seal_of(sealed.dump())}}.dump());
       bring_to_disk(part);
-      fs::rename(part, folder(number));
+      attempt(part, "renamed", [&](auto& error) { fs::rename(part, folder(number), error); });
       bring_to_disk(path_);
     });
   } catch (...) {  // on every rank
@@ -152,12 +169,16 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   });
 }
 
-Checkpoint Checkpoints::read(std::vector<std::string>& damaged) {
+Checkpoint Checkpoints::read(std::vector<std::string>& damage) {
   const auto candidates = numbers();
+  std::vector<std::string> damaged;
   for (auto number = candidates.rbegin(); number != candidates.rend(); ++number) {
     try {
       Seal journal;
       auto checkpoint = read(*number, journal);
+      const auto text = read_journal(journal, damage);
+      for (const auto& what : damaged) damage.push_back(what + "; going on from the checkpoint before");
+      checkpoint.journal = entries_of(text);
       last_ = *number;
       journal_ = journal;
       return checkpoint;
@@ -167,6 +188,25 @@ Checkpoint Checkpoints::read(std::vector<std::string>& damaged) {
   }
   throw Error(fmt::format("{}: there is no complete checkpoint to go on from{}", path_,
                           damaged.empty() ? "" : fmt::format("; {}", fmt::join(damaged, "; "))));
+}
+
+std::string Checkpoints::read_journal(const Seal& seal, std::vector<std::string>& damage) const {
+  std::optional<std::string> text;
+  std::vector<std::string> damaged, reasons;
+  for (const auto& file : journal_files(path_)) try {
+      text = read_once(*comm_, file, seal);
+    } catch (const Error& error) {
+      damaged.push_back(file);
+      reasons.push_back(error.what());
+    }
+  if (!text) throw Error(reasons.front());
+  for (const auto& reason : reasons) damage.push_back(reason + "; its other copy is whole, and taken");
+  try {
+    if (comm_->getRank() == 0)
+      for (const auto& file : damaged) write_durably(file, *text);
+  } catch (const Error&) {  // one of them is enough
+  }
+  return *text;
 }
 
 Checkpoint Checkpoints::read(long long number, Seal& journal) const {
@@ -187,7 +227,7 @@ Checkpoint Checkpoints::read(long long number, Seal& journal) const {
     }
   });
   journal = manifest["sealed"]["journal"];
-  Checkpoint checkpoint{{}, manifest["sealed"]["content"], entries_of(read_once(*comm_, path_ + "/journal", journal))};
+  Checkpoint checkpoint{{}, manifest["sealed"]["content"], {}};
   for (const auto& name : manifest["sealed"]["vectors"]) {
     const auto& here = values[name];
     const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();

@@ -23,8 +23,9 @@ struct Checkpoint {
 
 /// Numbered checkpoints, PATH/NUMBER/, each a manifest.json and a piece_RANK.h5 for every rank that wrote it. One is
 /// written under the name NUMBER.part, brought to the disk, and renamed when it is complete. The last two are kept.
-/// PATH/journal holds the journal of all, an entry a line; a checkpoint knows how much of it is its own, and more is
-/// only ever added behind the end of the last. All members are collective, with the same Error on every rank.
+/// PATH/journal and its copy PATH/journal_copy hold the journal of all, an entry a line; a checkpoint knows how much of
+/// it is its own, and more is only ever added behind the end of the last. All members are collective, with the same
+/// Error on every rank.
 class Checkpoints {
  public:
   /// Changes nothing on the disk. Where there are checkpoints, clear() or read() comes next.
@@ -38,14 +39,16 @@ class Checkpoints {
   void write(const Checkpoint& checkpoint);
 
   /// The last checkpoint that is undamaged, on any number of ranks: each rank reads its share of the pieces, so the
-  /// vectors are spread as these are. Appends what is wrong with those after it to `damaged`, a line each. Error: there
-  /// is none.
-  Checkpoint read(std::vector<std::string>& damaged);
+  /// vectors are spread as these are. Appends to `damage` what is wrong with those after it and with one of the two
+  /// journals, and what is taken instead, a line each. Error: there is none.
+  Checkpoint read(std::vector<std::string>& damage);
 
  private:
   std::string folder(long long number) const;
   std::vector<long long> numbers() const;  ///< complete ones, ascending; the same on all ranks
   Checkpoint read(long long number, Seal& journal) const;
+  /// The journal up to the seal, of either file; afterwards both hold it. Appends to `damage` which one did not.
+  std::string read_journal(const Seal& seal, std::vector<std::string>& damage) const;
 
   RCP<const Comm> comm_;
   std::string path_;

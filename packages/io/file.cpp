@@ -58,6 +58,16 @@ void append_durably(const std::string& path, long long length, const std::string
   SPREKK_CHECK(error == 0, "{}: cannot be written: {}", path, std::generic_category().message(error));
 }
 
+bool overwrite(const std::string& path, const std::string& content) {
+  const int file = ::open(path.c_str(), O_WRONLY);
+  if (file < 0) return false;
+  const auto size = static_cast<off_t>(content.size());
+  const bool done = ::lseek(file, 0, SEEK_END) >= size && ::pwrite(file, content.data(), content.size(), 0) == size &&
+                    ::ftruncate(file, size) == 0;
+  ::close(file);
+  return done;
+}
+
 std::string from_rank_0(const Comm& comm, std::string text) {
   int length = static_cast<int>(text.size());
   Teuchos::broadcast(comm, 0, 1, &length);
@@ -71,7 +81,8 @@ void make_directory(const Comm& comm, const std::string& path) {
     if (comm.getRank() != 0) return;
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    SPREKK_CHECK(std::filesystem::is_directory(path), "{}: cannot be made a directory: {}", path,
+    std::error_code unknown;
+    SPREKK_CHECK(std::filesystem::is_directory(path, unknown), "{}: cannot be made a directory: {}", path,
                  error ? error.message() : "a file of that name is in the way");
   });
 }

@@ -15,6 +15,10 @@ void write_file(const std::string& path, const std::string& content);
 /// collective. Error: the path and the system's reason; the first `length` bytes stay.
 void append_durably(const std::string& path, long long length, const std::string& content);
 
+/// Replaces the content of a file that has at least this length, in place and without a file beside it, as on a disk
+/// that is full; false if it is shorter, or on any error. Not collective.
+bool overwrite(const std::string& path, const std::string& content);
+
 /// The text that rank 0 has, on every rank. Collective.
 std::string from_rank_0(const Comm& comm, std::string text);
 

@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
 #include <nlohmann/json.hpp>
 
 namespace sprekk::io {
@@ -11,6 +12,13 @@ void write_json(const Comm& comm, const std::string& path, const nlohmann::json&
     if (comm.getRank() == 0)
       write_file(path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
   });
+}
+
+bool overwrite_json(const Comm& comm, const std::string& path, const nlohmann::json& json) {
+  int done = comm.getRank() == 0 &&
+             overwrite(path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  Teuchos::broadcast(comm, 0, 1, &done);
+  return done != 0;
 }
 
 }  // namespace sprekk::io

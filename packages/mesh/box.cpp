@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 
+#include "base/memory.hpp"
 #include "base/parameters.hpp"
 #include "base/text.hpp"
 #include "mesh/periodic.hpp"
@@ -123,6 +124,13 @@ class BoxBuilder {
     const Real blocks = std::accumulate(box_.cells.begin(), box_.cells.end(), Real{1}, std::multiplies<Real>());
     SPREKK_CHECK(blocks <= most_blocks, "box mesh: cells: {{{}}} makes {:.3g} {}, may make {:.0g}",
                  fmt::join(box_.cells, ", "), blocks, dim_ == 2 ? "squares" : "cubes", most_blocks);
+    const Real cells = blocks * static_cast<Real>(cells_of_block(shape_, false).size()),
+               least = sizeof(GlobalIndex) * n_nodes(shape_) * cells + sizeof(Real) * dim_ * blocks;
+    SPREKK_CHECK(
+        least <= base::memory_limit(),
+        "box mesh: cells: {{{}}} makes {:.3g} cells, which alone take {:.3g} GB; there are {:.3g} GB: take fewer, "
+        "and \"refinements\", by which each rank makes its own part",
+        fmt::join(box_.cells, ", "), cells, least / 1e9, base::memory_limit() / 1e9);
   }
 
   Real block_size(int i) const { return (box_.upper_corner[i] - box_.lower_corner[i]) / n_blocks_[i]; }
@@ -307,6 +315,14 @@ void BoxMesh::Region::describe(base::Section& s) {
   s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
 }
 
+void describe_periodic(base::Section& s, std::vector<std::string>& periodic, const std::string& meaning) {
+  s.entry(periodic, "periodic", "-", meaning);
+  auto sorted = periodic;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) s.fail("periodic", fmt::format("has \"{}\" twice", base::shortened(*twice)));
+}
+
 void describe_refinements(base::Section& s, int& refinements, const std::vector<std::string>& periodic) {
   s.entry(
       refinements, "refinements", "-", base::between(0, 20),
@@ -334,11 +350,11 @@ void BoxMesh::describe(base::Section& s) {
   describe_tips(s, tips);
   s.named_sections(regions, "regions", "boxes of cells with a material of their own");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
-  s.entry(rotation, "rotation", "degree", base::any(),
+  s.entry(rotation, "rotation", "degree", base::between(-360, 360),
           "angle, counter-clockwise about the origin, by which the box turns");
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
-  s.entry(periodic, "periodic", "-",
-          "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
+  describe_periodic(s, periodic,
+                    "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
   describe_refinements(s, refinements, periodic);
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; without it the order is regular");

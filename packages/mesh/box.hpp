@@ -45,6 +45,9 @@ struct BoxMesh {
   void describe(base::Section& section);
 };
 
+/// The entry of any mesh's section that says which sides are tied, by names none of which may occur twice.
+void describe_periodic(base::Section& section, std::vector<std::string>& periodic, const std::string& meaning);
+
 /// The entry of any mesh's section that says how often cells are refined once they are distributed; `periodic` are its
 /// entries of that name, which must be empty then.
 void describe_refinements(base::Section& section, int& refinements, const std::vector<std::string>& periodic);

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "base/check.hpp"
+#include "base/memory.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "mesh/raise_order.hpp"
@@ -239,6 +240,11 @@ void check_size(const Mesh& mesh, int times) {
         "refinements: {} make {:.3g} cells of {}; of these rank {} would hold {:.3g} with its ghosts, may hold "
         "{:.3g}; take fewer, or more ranks",
         times, all, mesh.n_global_cells, mesh.comm->getRank(), here, most_here);
+    const Real least = here * sizeof(LocalIndex) * n_nodes(mesh.shape);
+    SPREKK_CHECK(least <= base::memory_limit(),
+                 "refinements: {} make {:.3g} cells of {}; of these rank {} would hold {:.3g} with its ghosts, which "
+                 "alone take {:.3g} GB; there are {:.3g} GB: take fewer, or more machines",
+                 times, all, mesh.n_global_cells, mesh.comm->getRank(), here, least / 1e9, base::memory_limit() / 1e9);
   });
 }
 

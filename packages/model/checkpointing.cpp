@@ -8,9 +8,9 @@ Checkpointing::Checkpointing(Model& model, const std::string& directory, base::L
     : model_(model), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
 
 EarlierResults Checkpointing::restore() {
-  std::vector<std::string> damaged;
-  auto checkpoint = checkpoints_.read(damaged);
-  for (const auto& what : damaged) log_.warning("{}; going on from the checkpoint before", what);
+  std::vector<std::string> damage;
+  auto checkpoint = checkpoints_.read(damage);
+  for (const auto& what : damage) log_.warning("{}", what);
   model_.restore(checkpoint);
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
@@ -28,7 +28,14 @@ bool Checkpointing::is_due(int n_steps, bool last) const {
 }
 
 void Checkpointing::after_step(const Results& results, bool last) {
-  if (!is_due(results.n_steps(), last)) return;
+  if (is_due(results.n_steps(), last)) write(results);
+}
+
+void Checkpointing::at_the_end(const Results& results) {
+  if (model_.scene().output.checkpoints && results.n_steps() > n_saved_steps_) write(results);
+}
+
+void Checkpointing::write(const Results& results) {
   const auto scope = model_.timers().scope("checkpoints");
   auto checkpoint = model_.save();
   checkpoint.content["restarts"] = results.restarts();

@@ -22,9 +22,12 @@ class Checkpointing {
   /// Writes a checkpoint if Output of the scene asks for one after this step. If it cannot be written, warns, and the
   /// run goes on.
   void after_step(const Results& results, bool last);
+  /// Writes a checkpoint of the model after its last step, if the scene asks for any and there is none yet.
+  void at_the_end(const Results& results);
 
  private:
   bool is_due(int n_steps, bool last) const;
+  void write(const Results& results);
 
   Model& model_;
   base::Log& log_;

@@ -25,18 +25,6 @@ auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
   return values;
 }
 
-/// What `find` finds of a material; its errors get the place of the material in the scene.
-template <class Find>
-auto at_place(const Scene& scene, const Material& material, const Find& find) {
-  try {
-    return find();
-  } catch (const Error& error) {
-    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                    [&](const auto& one) { return &one.second == &material; });
-    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
-  }
-}
-
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
   return properties<laws::Mobility>(

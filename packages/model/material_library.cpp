@@ -53,7 +53,7 @@ std::string wrong_material(const std::string& name, const std::string& type,
     if (material.type == type && !materials.count(key)) shipped.push_back(key);
   std::vector<std::string> all = own;
   all.insert(all.end(), shipped.begin(), shipped.end());
-  return fmt::format("is \"{}\", must be the name of {} {} material{}, or of the library: {}{}", name,
+  return fmt::format("is \"{}\", must be the name of {} {} material{}, or of the library: {}{}", base::shortened(name),
                      type == "elastic" ? "an" : "a", type, own.empty() ? "" : ": " + base::quoted_list(own),
                      base::quoted_list(shipped), base::did_you_mean(name, all));
 }

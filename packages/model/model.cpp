@@ -1,6 +1,7 @@
 #include "model/model.hpp"
 
 #include "assembly/geometry.hpp"
+#include "base/any_rank.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
@@ -55,7 +56,9 @@ Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh
       },
       [&](int fracture, int f) {
         const auto& jump = section(fracture).plastic_jump;
-        auto joint = material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
+        auto joint = at_place(scene, material(fracture), [&] {
+          return material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
+        });
         for (std::size_t k = 0; k < jump.size(); ++k)
           joint.plastic_jump[k] = f < 0 ? jump[k]({}, 0) : mean(mesh, mesh.fracture_faces[f], jump[k]);
         if (f < 0) return joint;
@@ -228,9 +231,13 @@ solve::StepReport Model::step_to(Real t) {
   const auto scope = timers_->scope("time steps");
   beginning_ = beginning();
   auto report = stepper_->advance(x_, time_, t);
-  if (report.converged) return report;
-  for (const auto& doubt : {friction_doubt(scene_), dilation_doubt(scene_, mesh())})
-    if (!doubt.empty()) report.reason += "; " + doubt;
+  if (report.converged || report.stopped) return report;
+  if (const auto doubt = friction_doubt(scene_); !doubt.empty()) report.reason += "; " + doubt;
+  const bool changes = base::any_rank(*mesh().comm, [&] {
+    return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();
+  });
+  if (!changes) return report;  // it fails for another reason
+  if (const auto doubt = dilation_doubt(scene_, mesh()); !doubt.empty()) report.reason += "; " + doubt;
   return report;
 }
 

@@ -12,7 +12,9 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return material(region).is_uniform(); },
       [&](int region, int cell) {
-        return material(region).elasticity(cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell));
+        const auto& rock = material(region);
+        return at_place(scene, rock,
+                        [&] { return rock.elasticity(cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell)); });
       });
 }
 

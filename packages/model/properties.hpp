@@ -42,6 +42,18 @@ Properties<T> properties(int n_groups, const std::vector<int>& group_of, const U
   return result;
 }
 
+/// What `find` finds of a material; its errors get the place of the material in the scene.
+template <class Find>
+auto at_place(const Scene& scene, const Material& material, const Find& find) {
+  try {
+    return find();
+  } catch (const Error& error) {
+    const auto is_it = [&](const auto& one) { return &one.second == &material; };
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
+    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
+  }
+}
+
 /// Of local cells.
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
 

@@ -314,7 +314,7 @@ json Results::reactions() const {
     const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;
     const auto& m = reaction.moment;
     if (reaction.field != "displacement") {
-      add(flows[boundary], reaction.force);
+      flows[boundary] = flows.value(boundary, Real(0)) + reaction.force.at(0);
       continue;
     }
     add(forces[boundary], reaction.force);
@@ -326,7 +326,6 @@ json Results::reactions() const {
   for (const auto& total : model_.system().totals(model_.state())) {
     json* place = &all;
     for (const auto& name : total.names) place = &(*place)[name];
-    if (place->is_array()) place = &(*place)[0];
     *place = total.value + (place->is_null() ? 0 : place->get<Real>());
   }
   return all;
@@ -386,13 +385,33 @@ void Results::write_json() {
     json_["timing"][with_underscores(phase.name)] = {
         {"seconds", phase.seconds}, {"cpu_seconds", phase.cpu_seconds}, {"count", phase.count}};
   io::write_json(comm, directory_ + "/results.json", json_);
+  n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();
 }
 
 void Results::finish(const std::string& status, const std::string& reason) {
   json_["status"] = status;
   if (!reason.empty()) json_["reason"] = reason;
-  write_json();
+  try {
+    write_json();
+  } catch (const Error& error) {
+    finish_in_place(reason.empty() ? error.what() : reason);
+    throw;
+  }
+}
+
+/// Where a disk is full there is still the room of the file that is there: without what describes mesh and solver, all
+/// steps fit into it, or those that it had.
+void Results::finish_in_place(const std::string& reason) {
+  json_["status"] = "failed";
+  json_["reason"] = reason;
+  auto short_version = json_;
+  for (const char* part : {"solver", "blocks", "partition", "timing", "memory"}) short_version.erase(part);
+  const std::string path = directory_ + "/results.json";
+  if (io::overwrite_json(*model_.system().comm(), path, short_version)) return;
+  auto& steps = short_version["steps"];
+  steps.erase(steps.begin() + std::min<std::ptrdiff_t>(n_written_, steps.size()), steps.end());
+  io::overwrite_json(*model_.system().comm(), path, short_version);
 }
 
 }  // namespace sprekk::model

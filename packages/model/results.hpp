@@ -34,7 +34,8 @@ class Results {
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
   /// fracture faces are open, stick and slip.
   std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
-  /// "completed", "interrupted" or "failed", with the reason of a failure.
+  /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
+  /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
 
  private:
@@ -43,13 +44,14 @@ class Results {
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
   void write_json();
+  void finish_in_place(const std::string& reason);
 
   Model& model_;
   std::string directory_;
   std::optional<ErrorEstimator> estimator_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   nlohmann::json json_;
-  int n_steps_ = 0;
+  int n_steps_ = 0, n_written_ = 0;
   std::chrono::steady_clock::time_point last_write_;
 };
 

@@ -1,21 +1,28 @@
 #include "model/run.hpp"
 
+#include "base/any_rank.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/directory_lock.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
+#include "mesh/tips.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
 #include "model/uniqueness.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <fmt/ranges.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace sprekk::model {
@@ -52,15 +59,6 @@ std::vector<Real> times_after(const Time& time, Real t) {
   return times;
 }
 
-/// Whether any rank's answer is yes. Collective.
-bool any_rank(const Comm& comm, const std::function<bool()>& question) {
-  if (!question) return false;
-  const int here = question();
-  int any = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &any);
-  return any != 0;
-}
-
 /// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
 template <class Work>
 auto naming_file(const std::string& file, const Work& work) {
@@ -87,20 +85,39 @@ auto or_finished(Results& results, const Work& work) {
   }
 }
 
+/// The scene, which whoever asks the run to stop can end within a step.
+Scene scene_of(const RunOptions& options, const Comm& comm) {
+  Scene scene = read_scene(comm, options.scene, options.overrides);
+  scene.solver.should_stop = options.should_stop;
+  return scene;
+}
+
 /// Reads the scene and makes its model. If that fails, results of an earlier run do not pass for those of this one;
-/// what a restart was to go on from stays.
-std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& directory, RCP<const Comm> comm) {
+/// what a restart was to go on from stays. `reserve` makes the directory and sees to it that no other run writes there.
+std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& directory,
+                                  const std::function<void()>& reserve, RCP<const Comm> comm) {
   bool has_scene = false;
   try {
     return naming_file(options.scene, [&] {
-      const Scene scene = read_scene(*comm, options.scene, options.overrides);
+      const Scene scene = scene_of(options, *comm);
       has_scene = true;
       return std::make_unique<Model>(scene, comm);
     });
   } catch (const Error& error) {
-    if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
+    try {
+      if (has_scene && !options.restart) reserve();
+      if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
+    } catch (const Error&) {  // the first message counts
+    }
     throw;
   }
+}
+
+/// Whether fractures end inside of the rock; not known of plain tips with periodic sides. Collective.
+bool has_tips(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto& tied = scene.mesh_file ? scene.mesh_file->periodic : scene.mesh.periodic;
+  const auto tips = scene.tips() == "plain" && tied.empty() ? mesh::tip_nodes(mesh) : mesh.tip;
+  return base::any_rank(*mesh.comm, [&] { return std::find(tips.begin(), tips.end(), 1) != tips.end(); });
 }
 
 void describe(const Model& model, base::Log& log) {
@@ -120,6 +137,11 @@ void describe(const Model& model, base::Log& log) {
   const auto& scene = model.scene();
   for (const auto& doubt : {friction_doubt(scene), dilation_doubt(scene, mesh)})
     if (!doubt.empty()) log.warning("{}", doubt);
+  if (scene.deforms() && mesh.dim() == 3 && mesh::order(mesh.shape) == 1 && has_tips(scene, mesh))
+    log.warning(
+        "{}: fractures end inside of the rock: in 3D their slip and opening come out some percent too small with cells "
+        "of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
+        scene.origin);
   for (const auto& [name, material] : scene.materials)
     if (scene.flow && scene.deforms() && material.type == "elastic" && material.biot < material.porosity)
       log.warning(
@@ -148,6 +170,18 @@ void tell_loose(base::Log& log, Real t, const std::string& before, const std::st
     log.warning("t = {:.6g}: {}, and nothing holds it; of all such states the one nearest to the last is taken", t, now);
 }
 
+/// Ends a run that was asked to stop, with the results of all whole steps.
+Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoints, base::Log& log) {
+  checkpoints.at_the_end(results);
+  results.finish("interrupted");
+  const bool none = results.n_steps() == 0;
+  log.warning("interrupted {}; {}", none ? "in the first step" : fmt::format("after the step to t = {}", model.time()),
+              none                               ? "there is nothing to go on from"
+              : model.scene().output.checkpoints ? "--restart goes on from the last checkpoint"
+                                                 : "the scene asks for no checkpoints");
+  return Ending::interrupted;
+}
+
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.
 Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, base::Log& log,
                   const std::function<bool()>& should_stop) {
@@ -161,21 +195,19 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
     bool last = k + 1 == times.size(), interrupted = false;
     const auto report = or_finished(results, [&] {
       const auto step = naming_file(scene.origin, [&] { return model.step_to(times[k]); });
-      interrupted = !last && step.converged && any_rank(*model.mesh().comm, should_stop);
+      interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));
       last = last || interrupted;
+      if (step.stopped) {
+        model.take_back();
+        return step;
+      }
       const auto faces = results.add_step(step, last || !step.converged);
       progress.add(step, times[k] - begin, faces);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
       return step;
     });
-    if (interrupted) {
-      results.finish("interrupted");
-      log.warning("interrupted after the step to t = {}; {}", times[k],
-                  scene.output.checkpoints ? "--restart goes on from the last checkpoint"
-                                           : "the scene asks for no checkpoints");
-      return Ending::interrupted;
-    }
+    if (interrupted) return interrupt(model, results, checkpoints, log);
     if (report.converged) continue;
     results.finish("failed", report.reason);
     log.warning("step to t = {} failed at t = {} after {} cuts: {}", times[k], report.time, report.cuts, report.reason);
@@ -185,13 +217,54 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
   return Ending::completed;
 }
 
+/// The text as part of a file's name, and whether it is one without loss.
+std::pair<std::string, bool> file_name(const std::string& text) {
+  std::string name;
+  bool same = true;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || std::string(".=+-").find(c) != std::string::npos;
+    name += plain ? c : '_';
+    same = same && (plain || c == ' ');
+  }
+  return {name, same};
+}
+
 }  // namespace
 
-Ending run(const RunOptions& options, RCP<const Comm> comm) {
+std::string default_directory(const RunOptions& options) {
+  std::string all, variant;
+  bool same = true;
+  for (const auto& text : options.overrides) {
+    const auto [name, is_same] = file_name(text);
+    all += text + '\n';
+    variant += '-' + name;
+    same = same && is_same;
+  }
+  constexpr std::size_t longest = 100;
+  if (!same || variant.size() > longest) {
+    const auto checksum = crc32_z(0, reinterpret_cast<const Bytef*>(all.data()), all.size());
+    variant = fmt::format("{}-{:08x}", variant.substr(0, longest), checksum);
+  }
+  return "output/" + std::filesystem::path(options.scene).stem().string() + variant;
+}
+
+namespace {
+
+/// The same; `task` says what is being done.
+Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
-  const std::string directory =
-      options.output.empty() ? "output/" + std::filesystem::path(options.scene).stem().string() : options.output;
-  const auto model = make_model(options, directory, comm);
+  const std::string directory = options.output.empty() ? default_directory(options) : options.output;
+  io::DirectoryLock lock(comm, directory);
+  const auto reserve = [&] {
+    if (options.reserved) return;
+    if (const auto why = lock.take(); !why.empty())
+      log.warning("{}: its file system has no locks ({}): see to it that no other run writes there", directory, why);
+  };
+  if (lock.has_directory()) reserve();
+  const auto model = make_model(options, directory, reserve, comm);
+  if (!options.restart) reserve();
+  task =
+      fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
   describe(*model, log);
   Checkpointing checkpoints(*model, directory, log);
   if (!options.restart) checkpoints.start_anew();
@@ -202,6 +275,17 @@ Ending run(const RunOptions& options, RCP<const Comm> comm) {
   tell_costs(*model, log);
   if (ending == Ending::completed) log.info("results in {}", directory);
   return ending;
+}
+
+}  // namespace
+
+Ending run(const RunOptions& options, RCP<const Comm> comm) {
+  std::string task = options.scene + ": making the mesh and the equations";
+  try {
+    return run(options, comm, task);
+  } catch (const std::bad_alloc&) {  // perhaps here alone
+    throw std::runtime_error(fmt::format("{}: {}", task, base::out_of_memory()));
+  }
 }
 
 void check(const RunOptions& options, RCP<const Comm> comm) {

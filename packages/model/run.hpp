@@ -11,22 +11,30 @@ namespace sprekk::model {
 
 struct RunOptions {
   std::string scene;                   ///< path of the XML file
-  std::string output;                  ///< directory; empty: output/NAME of the scene, under the current directory
+  std::string output;                  ///< directory; empty: default_directory()
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
   bool restart = false;                ///< go on from the last checkpoint in the output directory
   bool terminal = false;               ///< print a line per time step
-  std::function<bool()> should_stop;   ///< if not empty: asked on every rank after each step; true on any ends the run
+  bool reserved = false;               ///< the caller sees to it that no other run writes into the directory
+  /// If not empty: asked on every rank in each Newton iteration and after each step; true on any ends the run.
+  std::function<bool()> should_stop;
 };
+
+/// output/NAME of the scene, under the current directory, followed by the overrides, so that each variant has its own:
+/// -PATH=VALUE for each, with _ for all but letters, digits and .=+-; and, where that is long or loses more than
+/// blanks, a checksum of them.
+std::string default_directory(const RunOptions& options);
 
 enum class Ending {
   completed,
   failed,      ///< a step did not converge
-  interrupted  ///< should_stop said so before the last step
+  interrupted  ///< should_stop said so before the end of the last step
 };
 
 /// Runs the scene, from its beginning or from a checkpoint, and writes its results. A step that did not converge is
-/// reported, and what was computed before is kept. An interrupted run writes a checkpoint if the scene asks for any.
-/// Throws an Error for bad input, the same on every rank. Collective.
+/// reported, and what was computed before is kept. An interrupted run goes back to the end of its last whole step, and
+/// writes a checkpoint there if the scene asks for any. Throws an Error for bad input, and where another run writes
+/// into the directory, before anything there is touched; the same on every rank. Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().

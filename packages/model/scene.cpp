@@ -159,9 +159,8 @@ void Material::check(const Point& x) const {
   for_each([&](const char* name, const Value& value, Real least, bool itself, Real limit) {
     if (value.is_constant()) return;  // checked when it was read
     const Real v = value(x, 0);
-    SPREKK_CHECK((itself ? v >= least : v > least) && v < limit,
-                 "material: \"{}\" = {} is {} at ({}, {}, {}), must be {} {}{}", name, value.text(), v, x[0], x[1],
-                 x[2], itself ? "at least" : "above", least,
+    SPREKK_CHECK((itself ? v >= least : v > least) && v < limit, "\"{}\" = {} is {} at ({}, {}, {}), must be {} {}{}",
+                 name, base::shortened(value.text()), v, x[0], x[1], x[2], itself ? "at least" : "above", least,
                  std::isfinite(limit) ? fmt::format(" and below {}", limit) : "");
   });
 }
@@ -217,8 +216,7 @@ physics::JointParameters Material::joint(const Point& x) const {
   check(x);
   physics::JointParameters joint;
   joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
-  SPREKK_CHECK(friction_coefficient || friction_angle,
-               "material: give either \"friction coefficient\" or \"friction angle\"");
+  SPREKK_CHECK(friction_coefficient || friction_angle, "give either \"friction coefficient\" or \"friction angle\"");
   joint.law.friction.coefficient = friction(x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
@@ -397,8 +395,8 @@ void MeshFile::describe(base::Section& s) {
       "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
       "file");
   mesh::describe_tips(s, tips);
-  s.entry(
-      periodic, "periodic", "-",
+  mesh::describe_periodic(
+      s, periodic,
       "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
   if (periodic.size() % 2 == 1)
     s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
@@ -522,6 +520,7 @@ base::Draft<Scene> prepared(const Scene& scene) {
   auto draft = from_list(list, scene.origin);
   draft.value.augmentation = scene.augmentation;
   draft.value.host_fluid = scene.host_fluid;
+  draft.value.solver.should_stop = scene.solver.should_stop;
   return draft;
 }
 

@@ -39,6 +39,18 @@ Names names_of(const std::map<std::string, T>& map) {
   return names;
 }
 
+/// The boundaries that "periodic" ties.
+Names tied_boundaries(const Scene& scene) {
+  if (scene.mesh_file) return scene.mesh_file->periodic;
+  const std::map<std::string, Names> sides = {
+      {"x", {"west", "east"}}, {"y", {"south", "north"}}, {"z", {"bottom", "top"}}};
+  Names names;
+  for (const auto& direction : scene.mesh.periodic)
+    if (const auto found = sides.find(direction); found != sides.end())
+      names.insert(names.end(), found->second.begin(), found->second.end());
+  return names;
+}
+
 /// Compares the parts of a scene; what could not be read is passed over.
 class Comparison {
  public:
@@ -67,9 +79,9 @@ class Comparison {
   bool check_name(const std::string& section, const std::string& place, const std::string& name,
                   const std::optional<Names>& allowed) {
     if (!allowed || has(*allowed, name) || (name.empty() && !is_sound(section))) return true;
-    fail(place, allowed->empty() ? fmt::format("is \"{}\", but the mesh has none with a name", name)
-                                 : fmt::format("is \"{}\", must be one of {}{}", name, base::quoted_list(*allowed),
-                                               base::did_you_mean(name, *allowed)));
+    fail(place, allowed->empty() ? fmt::format("is \"{}\", but the mesh has none with a name", base::shortened(name))
+                                 : fmt::format("is \"{}\", must be one of {}{}", base::shortened(name),
+                                               base::quoted_list(*allowed), base::did_you_mean(name, *allowed)));
     return false;
   }
 
@@ -161,9 +173,15 @@ class Comparison {
   }
 
   void compare_boundary_conditions() {
+    const auto tied = tied_boundaries(scene_);
     for (const auto& [name, condition] : scene_.boundary_conditions) {
       const std::string section = "Boundary conditions > " + name;
       check_name(section, section + " > \"boundary\"", condition.boundary, names_.boundaries);
+      if (has(tied, condition.boundary))
+        fail(section + " > \"boundary\"",
+             fmt::format("is \"{}\", which \"periodic\" ties to the opposite side; such a side is inside of the rock "
+                         "and takes no conditions",
+                         condition.boundary));
       if (condition.region) check_name(section, section + " > \"region\"", *condition.region, names_.regions);
       if (condition.fracture) check_name(section, section + " > \"fracture\"", *condition.fracture, names_.fractures);
       check_length(section + " > \"displacement\"", condition.displacement.size(), names_.dim);

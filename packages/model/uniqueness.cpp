@@ -2,8 +2,12 @@
 
 #include "mesh/extents.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace sprekk::model {
 
@@ -22,6 +26,63 @@ std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
     uniaxial = std::min(uniaxial, elasticity.lambda + 2 * elasticity.G);
   }
   return laws::Elasticity{shear, uniaxial - 2 * shear};
+}
+
+using PerPiece = std::vector<int>;
+
+PerPiece over_ranks(const mesh::Mesh& mesh, Teuchos::EReductionType how, const PerPiece& here) {
+  PerPiece all(here.size());
+  Teuchos::reduceAll(*mesh.comm, how, static_cast<int>(here.size()), here.data(), all.data());
+  return all;
+}
+
+/// [3 piece + component]: whether a displacement in this direction is given, or sides are tied across it, which is not
+/// known of turned boxes and meshes of gmsh.
+PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
+  PerPiece held(3 * mesh.n_pieces, 0);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    for (const auto& face : mesh.boundary_faces)
+      for (std::size_t i = 0; i < condition.displacement.size(); ++i)
+        if (mesh.boundary_names[face.boundary] == condition.boundary && condition.displacement[i].text() != "free" &&
+            (!condition.region || mesh.region_names[mesh.cell_region[face.cell]] == *condition.region))
+          held[3 * mesh.cell_piece[face.cell] + i] = 1;
+  const bool known = !scene.mesh_file && scene.mesh.rotation == 0;
+  for (const auto& direction : scene.mesh_file ? scene.mesh_file->periodic : scene.mesh.periodic)
+    for (std::size_t k = 0; k < held.size(); ++k)
+      if (!known || k % 3 == std::string("xyz").find(direction)) held[k] = 1;
+  return over_ranks(mesh, Teuchos::REDUCE_MAX, held);
+}
+
+/// [fracture]: whether rock resists its opening somewhere. It does not where the fracture cuts off a piece that touches
+/// no third one and may move along the normal: there loads alone give the normal traction. Collective.
+std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto held = held_pieces(scene, mesh);
+  PerPiece first(mesh.n_pieces, mesh.n_pieces), last(mesh.n_pieces, -1);  // of a piece's neighbours
+  const auto for_each_face = [&](const auto& use) {
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      use(face, mesh.cell_piece[face.cell[mesh::minus]], mesh.cell_piece[face.cell[mesh::plus]]);
+    }
+  };
+  for_each_face([&](const auto&, int a, int b) {
+    for (const auto& [piece, other] : {std::pair(a, b), std::pair(b, a)}) {
+      first[piece] = std::min(first[piece], other);
+      last[piece] = std::max(last[piece], other);
+    }
+  });
+  first = over_ranks(mesh, Teuchos::REDUCE_MIN, first);
+  last = over_ranks(mesh, Teuchos::REDUCE_MAX, last);
+  const auto may_move = [&](int piece, const auto& normal) {
+    for (int i = 0; i < 3; ++i)
+      if (held[3 * piece + i] && std::abs(normal[i]) > 1e-6) return false;
+    return first[piece] == last[piece];
+  };
+  std::vector<int> resisted(mesh.fracture_names.size(), 0);
+  for_each_face([&](const auto& face, int a, int b) {
+    const auto& normal = face.frame[0];
+    if (a == b || !(may_move(a, normal) || may_move(b, normal))) resisted[face.fracture] = 1;
+  });
+  return over_ranks(mesh, Teuchos::REDUCE_MAX, resisted);
 }
 
 }  // namespace
@@ -44,18 +105,21 @@ std::string friction_doubt(const Scene& scene) {
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real size = mesh::largest_extent(mesh);
   const auto rock = bounding_rock(scene);
-  if (!rock) return "";
-  for (const auto& [name, fracture] : scene.fractures) {
+  if (!rock || mesh.fracture_names.empty()) return "";
+  const auto resisted = resisted_fractures(scene, mesh);
+  for (std::size_t k = 0; k < resisted.size(); ++k) {
+    const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
     const auto& material = scene.materials.at(fracture.material);
-    if (!material.is_uniform()) continue;
+    if (!resisted[k] || !material.is_uniform()) continue;
     const auto law = material.joint({}).law;
     const Real shear = law.friction.coefficient * (size / rock->G + law.elastic.compliance),
                normal = size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance();
-    if (law.gap.dilation.tangent * shear <= normal) continue;
+    if (!(law.gap.dilation.tangent * shear > normal)) continue;
     const auto degrees = [](Real tangent) { return std::atan(tangent) * 180 / M_PI; };
     return fmt::format(
-        "slip of \"{}\" that turns back need not have one state only: its dilation angle is {:.4g} degrees, and above "
-        "{:.4g} the friction bound falls faster than the shear traction (rock of size {:.4g} m)",
+        "on reversal of slip on \"{}\" the solution may not be unique: its dilation angle is {:.4g} degrees, and above "
+        "{:.4g} the friction bound falls faster than the shear traction (rock of size {:.4g} m); less dilation or "
+        "friction, or a larger tangential stiffness, avoids this",
         fracture.material, degrees(law.gap.dilation.tangent), degrees(normal / shear), size);
   }
   return "";

@@ -11,13 +11,14 @@ namespace sprekk::model {
 /// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
 std::string friction_doubt(const Scene& scene);
 
-/// Names a joint whose slip cannot turn back in one way only, and its largest dilation angle; empty without such a
-/// joint, or if properties depend on the place. In a block of height L with one fracture, slip that turns back by dp
-/// lowers the shear traction by K_s dp and, since dilation closes the fracture, friction's bound by mu tan(theta) k dp,
-/// with 1/K_s = L/G + 1/K_t and 1/k = L/(lambda + 2G) + B', B' <= 1/K_n the compliance of the closure. Where the bound
-/// falls faster, mu tan(theta)/K_s > 1/k, there are displacements for which sticking, slipping back and opening all
-/// satisfy the law. L is the largest extent of the domain and B' = 1/K_n; of several rocks, the largest G
-/// and the smallest lambda + 2G count. Collective.
+/// Names a joint on reversal of whose slip the solution may not be unique, and its largest dilation angle; empty
+/// without such a joint, if properties depend on the place, and of fractures whose opening no rock resists, as where
+/// the load on a block that is free to move gives the normal traction: the bound does not fall then. In a block of
+/// height L with one fracture, slip that turns back by dp lowers the shear traction by K_s dp and, since dilation
+/// closes the fracture, friction's bound by mu tan(theta) k dp, with 1/K_s = L/G + 1/K_t and 1/k = L/(lambda + 2G) +
+/// B', B' <= 1/K_n the compliance of the closure. Where the bound falls faster, mu tan(theta)/K_s > 1/k, there are
+/// displacements for which sticking, slipping back and opening all satisfy the law. L is the largest extent of the
+/// domain and B' = 1/K_n; of several rocks, the largest G and the smallest lambda + 2G count. Collective.
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::model

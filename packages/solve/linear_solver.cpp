@@ -13,6 +13,30 @@ int iterations(const std::vector<LinearReport>& solves) {
                          [](int sum, const auto& solve) { return sum + solve.iterations; });
 }
 
+namespace {
+
+/// What would not fail by itself. Sprekk gives MUMPS the matrix in a way of its own; Belos takes counts without a look.
+void check_library_entries(base::Section& section, const Teuchos::ParameterList& mumps,
+                           const Teuchos::ParameterList& belos) {
+  for (const int i : {5, 18, 19, 20, 21, 30, 31}) {
+    const auto name = fmt::format("ICNTL({})", i);
+    if (mumps.isParameter(name))
+      section.fail_inside(
+          fmt::format("MUMPS > \"{}\": cannot be set: how matrix and solution are handed over is not "
+                      "for scenes to choose",
+                      name));
+  }
+  for (const auto& [name, least] : {std::pair("Maximum Iterations", 1), std::pair("Maximum Restarts", 0),
+                                    std::pair("Num Blocks", 1), std::pair("Block Size", 1)}) {
+    const auto* entry = belos.getEntryPtr(name);
+    if (entry && !(entry->isType<int>() && Teuchos::getValue<int>(*entry) >= least))
+      section.fail_inside(
+          fmt::format("Belos > \"{}\": is {}, must be an integer, at least {}", name, base::describe(*entry), least));
+  }
+}
+
+}  // namespace
+
 void LinearSolverOptions::describe(base::Section& section) {
   section.choice(type, "type", {"auto", "direct", "iterative"},
                  "direct: MUMPS; iterative: Belos with multigrid; auto: direct up to the limits below");
@@ -30,6 +54,7 @@ void LinearSolverOptions::describe(base::Section& section) {
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
   section.passthrough(muelu, "MueLu", "parameters of MueLu; with any, it takes the place of Sprekk's own multigrid");
+  check_library_entries(section, mumps, belos);
 }
 
 std::string ChosenSolver::describe() const {

@@ -8,9 +8,12 @@
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
+#include "base/any_rank.hpp"
 #include "base/check.hpp"
 #include "base/parameters.hpp"
+#include "base/text.hpp"
 #include "solve/line_search.hpp"
 
 namespace sprekk::solve {
@@ -51,6 +54,9 @@ class MeasureTest : public NOX::StatusTest::Generic {
     } else if (search_.stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
+    } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
+      report_.stopped = true;
+      fail("interrupted");
     }
     return status_;
   }
@@ -98,6 +104,47 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   return list;
 }
 
+/// Reports entries of NOX that ask for another method than Newton's, and what is no section but must be.
+void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
+  const auto check = [&](const Teuchos::ParameterList& list, const std::string& place, const char* name,
+                         const char* allowed) {
+    const auto* entry = list.getEntryPtr(name);
+    if (entry && !(entry->isType<std::string>() && Teuchos::getValue<std::string>(*entry) == allowed))
+      section.fail_inside(
+          fmt::format("{} > \"{}\": is {}, must be \"{}\"", place, name, base::describe(*entry), allowed));
+  };
+  check(nox, "NOX", "Nonlinear Solver", "Line Search Based");
+  for (const char* name : {"Direction", "Line Search", "Printing"})
+    if (const auto* entry = nox.getEntryPtr(name); entry && !entry->isList())
+      section.fail_inside(fmt::format("NOX > \"{}\": is {}, must be a section", name, base::describe(*entry)));
+  if (nox.isSublist("Direction")) check(nox.sublist("Direction"), "NOX > Direction", "Method", "Newton");
+}
+
+/// What NOX says of its parameters, on one line and without the place in its sources.
+Error refused(const std::string& text) {
+  std::istringstream lines(text);
+  std::string words;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line.rfind("Throw ", 0) != 0 && line.rfind("./packages/", 0) != 0)
+      words += ' ' + std::string(base::trimmed(line));
+  return Error("Sprekk > Solver > NOX: NOX does not take these parameters:" + words);
+}
+
+/// NOX throws plain text, too.
+StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::Group>& group,
+                    const RCP<NOX::StatusTest::Generic>& test, const RCP<Teuchos::ParameterList>& parameters) {
+  try {
+    try {
+      solver = NOX::Solver::buildSolver(group, test, parameters);
+    } catch (const std::logic_error& error) {
+      throw refused(error.what());
+    }
+    return solver->solve();
+  } catch (const char* text) {
+    throw refused(text);
+  }
+}
+
 /// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an
 /// entry of `given` that it has not.
 void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path) {
@@ -120,6 +167,7 @@ void NewtonOptions::describe(base::Section& section) {
   section.entry(print, "print", "-", "print every Newton step");
   section.section(linear_solver, "Linear solver", "solver of the linear systems");
   section.passthrough(nox, "NOX", "parameters of NOX");
+  check_methods(section, nox);
 }
 
 Newton::Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Timers> timers)
@@ -141,11 +189,11 @@ NewtonReport Newton::solve(BlockVector& x) {
   std::optional<Picard> picard(std::in_place, problem_, x);
   const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, search, report));
   const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
-  const auto solver = NOX::Solver::buildSolver(group, test, parameters);
-  report.converged = solver->solve() == NOX::StatusTest::Converged;
+  RCP<NOX::Solver::Generic> solver;
+  report.converged = solve_by(solver, group, test, parameters) == NOX::StatusTest::Converged;
   const bool lagged = picard->lags() && picard->n_steps() > 0;
   picard.reset();
-  refuse_unread(options_.nox, *parameters, "NOX");
+  if (!report.stopped) refuse_unread(options_.nox, *parameters, "Sprekk > Solver > NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   report.linear_solves = model_->linear_history();
   for (auto& linear : report.linear_solves) linear.used = report.converged;

@@ -1,6 +1,7 @@
 // Newton's method on a BlockProblem, driven by NOX.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,12 +24,15 @@ struct NewtonOptions {
   bool print = false;  ///< let NOX report every iteration
   LinearSolverOptions linear_solver;
   Teuchos::ParameterList nox;  ///< over the defaults
+  /// No entry. If it is not empty: asked on every rank in every iteration; true on any ends the solve.
+  std::function<bool()> should_stop;
 
   void describe(base::Section& section);
 };
 
 struct NewtonReport {
   bool converged = false;
+  bool stopped = false;                       ///< should_stop said so
   int iterations = 0;                         ///< linear solves: Newton steps, those that damping took anew included
   std::vector<LinearReport> linear_solves;    ///< one for each iteration
   std::string reason;                         ///< of a failure

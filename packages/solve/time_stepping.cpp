@@ -50,7 +50,7 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
     const bool last = stiffness < least_tether;
     if (!problem_.tether(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
-    if (last) return newton;
+    if (last || newton.stopped) return newton;
     fields::copy(newton.converged ? x : place, newton.converged ? place : x);
     stiffness *= newton.converged ? weaker : stronger;
   }
@@ -75,10 +75,10 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
     auto newton = solve(x, report);
-    if (!newton.converged && !relaxed && options_.tethers && size <= tethered) {
+    if (!newton.converged && !newton.stopped && !relaxed && options_.tethers && size <= tethered) {
       relaxed = true;
       fields::copy(committed, x);
-      if (auto found = relax(x, report); found.converged) newton = std::move(found);
+      if (auto found = relax(x, report); found.converged || found.stopped) newton = std::move(found);
     }
     int settlings = 0;
     for (; settlings < most_settlings && newton.converged && problem_.settle(x); ++settlings)
@@ -99,6 +99,8 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       continue;
     }
     fields::copy(committed, x);
+    report.stopped = newton.stopped;
+    if (report.stopped) return report;
     if (!newton.loose.empty()) loose = newton.loose;
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
     report.unsettled = newton.unsettled;

@@ -14,6 +14,7 @@ struct TimeSteppingOptions {
 
 struct StepReport {
   bool converged = false;
+  bool stopped = false;                     ///< by NewtonOptions::should_stop
   Real time = 0;                            ///< that x now belongs to
   int newton_iterations = 0;                ///< rejected substeps included
   std::vector<LinearReport> linear_solves;  ///< likewise, [Newton iteration]

@@ -75,6 +75,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
   folder=output/$(basename "${{words[1]}}" .xml)
   "${{mesh[@]}}" "${{words[1]}}" -o "$folder/network.msh" --quiet "${{sets[@]}}" || exit
   words+=(--set "Mesh file.path=$PWD/$folder/network.msh")
+  if [[ ${{words[0]}} == run && " ${{words[*]}} " != *" --output "* ]]; then words+=(--output "$folder"); fi
 fi
 if [[ ${{words[0]}} == plot ]]; then exec {python} -B {root}/apps/plot "${{words[@]:1}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"

@@ -7,10 +7,15 @@ and of what `run` refuses, with `all` of every one."""
 import os
 import random
 import re
+import resource
+import shutil
+import signal
+import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from program import ProgramTest, main
+import program
+from program import ALONE, TIME_LIMIT, ProgramTest, main
 
 ALL = sys.argv[4:] == ["all"]
 PUSH = "seed/push_2d.xml"
@@ -79,7 +84,7 @@ class BadInput(ProgramTest):
         `any_point`: of several points at which an expression fails, each number of ranks may name another."""
         first, self.seen = not getattr(self, "seen", False), True
         ranks = (1, 3) if ALL or first or any_point or "run" in arguments else (1,)
-        with ThreadPoolExecutor(2) as pool:
+        with ThreadPoolExecutor(1 if "run" in arguments else 2) as pool:  # of two runs into one directory one is refused
             (out, err), *others = pool.map(lambda n: self.call(*arguments, ranks=n, expect=status), ranks)
         self.assertEqual(out, "")
         hidden = (lambda text: re.sub(r"x = \(.*?\)", "", text)) if any_point else str
@@ -97,6 +102,12 @@ class BadInput(ProgramTest):
         path = self.folder / "scene.xml"
         path.write_text(replaced(self.scene(name).read_text(), *changes))
         return path.name
+
+    def limited(self, *arguments, memory):
+        """A call, on one rank, that may take so many bytes of addresses."""
+        return subprocess.run(["timeout", str(TIME_LIMIT), program.PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, env={**os.environ, **ALONE},
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory)))
 
     def refuse_set(self, words, *overrides, any_point=False):
         sets = [word for override in overrides for word in ("--set", override)]
@@ -421,6 +432,74 @@ class Scenes(BadInput):
         self.assertEqual(err.count("\n"), 1, err)
 
 
+    def test_methods_of_nox(self):
+        place = "Sprekk > Solver > NOX > "
+        for entry, value, words in (("Nonlinear Solver", "Trust Region Based", '"Nonlinear Solver": is the string "Trust Region Based", must be "Line Search Based"'),
+                                    ("Nonlinear Solver", "Foo", 'is the string "Foo", must be "Line Search Based"'),
+                                    ("Direction.Method", "Steepest Descent", 'Direction > "Method": is the string "Steepest Descent", must be "Newton"'),
+                                    ("Direction.Method", "3", 'is the integer 3, must be "Newton"'),
+                                    ("Printing", "3", '"Printing": is the integer 3, must be a section')):
+            self.refuse_set([place, words], f"Solver.NOX.{entry}={value}")
+        for entry in ("Line Search.Method=Foo", "Direction.Newton.Rescue Bad Newton Solve=3"):  # what only NOX knows
+            self.refuse([PUSH, "Sprekk > Solver > NOX: NOX does not take these parameters: Error"], "run", self.scene(PUSH),
+                        "--set", "Solver.NOX." + entry)
+
+    def test_entries_of_libraries_that_would_not_be_noticed(self):
+        self.refuse_set(['Linear solver > Belos > "Num Blocks": is the integer -5, must be an integer, at least 1'],
+                        "Solver.Linear solver.Belos.Num Blocks=-5")
+        self.refuse_set(['Linear solver > MUMPS > "ICNTL(18)": cannot be set'], "Solver.Linear solver.MUMPS.ICNTL(18)=3")
+
+    def test_characters_that_xml_forbids(self):
+        for reference in ("&#0;", "&#7;"):
+            (self.folder / "a.xml").write_text(self.scene(PUSH).read_text().replace('name="moved"', f'name="mo{reference}ved"'))
+            self.refuse(["a.xml: line ", f"has the character reference {reference}, which XML does not allow"], "check", "a.xml")
+
+    def test_long_values_are_not_repeated(self):
+        """Messages stay short, whatever the input."""
+        many = "1+" * 50000
+        for override in ("Boundary conditions.moved.displacement={0, " + many + "}", "Boundary conditions.moved.displacement={0, " + many + "t+}",
+                         "Materials.rock.shear modulus=" + many, "Time.end=" + many, "Bulk.material=" + many, many, many + "=1",
+                         "Solver.tolerance=1" + "0" * 50000 + " Pa", "Time.scheme=" + many):
+            err = self.refuse_set([], override)
+            self.assertLess(len(err), 2000, err[:2000])
+            self.assertIn("... (", err)
+
+    def test_materials_that_depend_on_the_place(self):
+        self.refuse([PUSH + ": Sprekk > Materials > joint: ", '"friction coefficient" = x-0.7 is -0.', "must be at least 0"], "run",
+                    self.scene(PUSH), "--set", "Materials.joint.friction coefficient=x-0.7", any_point=True)
+        self.refuse([PUSH + ": Sprekk > Materials > rock: ", '"shear modulus" = x-0.7 is -0.', "must be above 0"], "run",
+                    self.scene(PUSH), "--set", "Materials.rock.shear modulus=x-0.7", any_point=True)
+
+    def test_numbers_beyond_use(self):
+        self.refuse_set(['Mesh > "rotation": is 1e+308, must be between -360 and 360'], "Mesh.rotation=1e308")
+        self.refuse_set(['rock > "shear modulus": is 1e-320, too small for a double'], "Materials.rock.shear modulus=1e-320")
+        self.refuse_set(['rock > "shear modulus": is -5, must be positive'], "Materials.rock.shear modulus=0-5")
+
+    def test_periodic_sides(self):
+        self.refuse_set(['Mesh > "periodic": has "x" twice'], "Mesh.periodic={x, x}")
+        self.refuse_set(['moved > "boundary": is "north", which "periodic" ties'], "Mesh.periodic={x, y}")
+        self.refuse(['Mesh file > "periodic": has "west" twice'], "check", self.scene("gmsh/crossing.xml"),
+                    "--set", "Mesh file.periodic={west, east, west, north}")
+
+
+class Memory(BadInput):
+    def test_mesh_beyond_memory(self):
+        done = self.limited("check", self.scene(PUSH), "--set", "Mesh.cells={30000, 30000}", memory=16 << 30)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r'^sprekk: .*push_2d.xml: Sprekk > Mesh: .*cells: \{30000, 30000\} makes 9e\+08 cells, '
+                                      'which alone take 43.2 GB; there are .* GB: take fewer, and "refinements"')
+
+    def test_end_of_memory(self):
+        """How much of it a small run needs depends on the machine; a mesh 250 times as large does not fit in beside."""
+        scene = self.scene(PUSH)
+        enough = next(limit for limit in range(256 << 20, 64 << 30, 256 << 20)
+                      if self.limited("check", scene, memory=limit).returncode == 0)
+        done = self.limited("run", scene, "--set", "Mesh.cells={1500, 1500}", "--set", "Output.vtu=false", memory=enough + (256 << 20))
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, "out of memory: this process has taken .* GB; take fewer cells, or more machines")
+        self.assertNotIn("bad_alloc", done.stderr)
+
+
 class AllAtOnce(BadInput):
     """What is wrong with entries, names, the mesh and the conditions is told together, and nothing that only follows."""
 
@@ -494,6 +573,42 @@ class Outputs(BadInput):
         (self.folder / "file").write_text("")
         for path in ("file", "file/below", "/dev/null/below"):
             self.refuse([f"{path}: cannot be made a directory: "], "run", self.scene(PUSH), "--output", path)
+        for path in ("/proc/self/fd", "/proc/self/fd/below"):
+            err = self.refuse([f"sprekk: {path}: cannot be "], "run", self.scene(PUSH), "--output", path)
+            self.assertNotIn("filesystem error", err)
+
+    def test_directory_of_another_user(self):
+        """Not even whether it exists can be known."""
+        prefix = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"] if os.geteuid() == 0 else []
+        if prefix and not shutil.which(prefix[0]):
+            self.skipTest("root reads everything")
+        closed = self.folder / "closed"
+        closed.mkdir()
+        (closed / "out").mkdir()
+        self.folder.chmod(0o755)
+        closed.chmod(0)
+        for output in ("closed/out", "closed/new"):
+            done = subprocess.run([*prefix, "timeout", str(TIME_LIMIT), program.PROGRAM, "run", self.scene(PUSH), "--output", output],
+                                  cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, **ALONE})
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr, f"sprekk: {output}: cannot be made a directory: Permission denied\n")
+        closed.chmod(0o755)
+
+    def test_full_disk_at_the_end(self):
+        """There is no room for a new file; the old one has some, and says what happened."""
+        self.run_scene(PUSH, "Time.steps=400", "Output.vtu=false", output="whole")
+        whole = (self.folder / "whole/results.json").stat().st_size
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (whole // 4, whole // 4))
+        done = subprocess.run(["timeout", str(TIME_LIMIT), program.PROGRAM, "run", self.scene(PUSH), "--output", "out", "--set",
+                               "Time.steps=400", "--set", "Output.vtu=false"], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, preexec_fn=limit, env={**os.environ, **ALONE, "PMIX_MCA_gds": "hash"})
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr, "sprekk: out/results.json: cannot be written: File too large\n")
+        results = self.results()
+        self.assertEqual(results["status"], "failed")
+        self.assertIn("File too large", results["reason"])
 
     def full(self, name, *options, ranks):
         """A run for which the file with this name lies on a full disk."""

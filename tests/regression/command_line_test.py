@@ -234,9 +234,37 @@ class Commands(ProgramTest):
         out, err = self.call("run", self.scene(PUSH), "--output", "out")
         self.assertEqual((out, err), ("", ""))
 
+    def test_hint_on_order_1_at_fronts(self):
+        """In 3D, where fractures end inside of the rock."""
+        hint, coarse = "fractures end inside of the rock", "Mesh.cells={6, 6, 6}"
+        for scene, overrides, times in (("seed/immersed_3d.xml", [coarse], 1), ("seed/immersed_3d.xml", [coarse, "Mesh.tips=plain"], 1),
+                                        ("seed/immersed_3d.xml", [coarse, "Mesh.order=2"], 0), ("seed/push_3d.xml", [], 0),
+                                        ("seed/immersed_2d.xml", [], 0)):
+            sets = [word for override in overrides for word in ("--set", override)]
+            _, err = self.call("run", self.scene(scene), "--output", "out", "--set", "Output.vtu=false", *sets, ranks=1 + times)
+            self.assertEqual(err.count(hint), times, err)
+            self.assertEqual(err.count('cells of "order" 1; 2 is more accurate'), times, err)
+
     def test_default_output(self):
         self.call("run", self.scene(PUSH))
         self.assertTrue((self.folder / "output" / "push_2d" / "results.json").exists())
+
+    def test_default_output_of_variants(self):
+        """Each has its own, which `directory` prints."""
+        variants = [["Materials.joint.friction coefficient=0.5"], ["Materials.joint.friction coefficient=0.25"],
+                    [MOVED + "={1, -1}"], [MOVED + "={1, -2}"], ["Time.steps=2", "Time.end=3"], [MOVED + "={" + "0+" * 100 + "1, -1}"]]
+        names = set()
+        for variant in variants:
+            sets = [word for override in variant for word in ("--set", override)]
+            name = self.call("directory", self.scene(PUSH), *sets)[0].strip()
+            self.assertRegex(name, r"^output/push_2d-[\w.=+-]+$")
+            self.assertLess(len(name), 130)
+            names.add(name)
+            self.call("run", self.scene(PUSH), *sets)
+            self.assertEqual({"output/" + path.name for path in (self.folder / "output").iterdir()}, names)
+        self.assertIn("output/push_2d-Materials.joint.friction_coefficient=0.5", names)
+        self.assertEqual(len(names), len(variants))
+        self.assertEqual(self.call("directory", self.scene(PUSH))[0], "output/push_2d\n")
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ class Launcher(ProgramTest):
 
     def test_interrupted(self):
         """Ctrl-C reaches all processes of the terminal's group. A second one ends a step that takes long."""
-        for ranks, cells, times, status in (("1", "{2, 2}", 1, 4), ("2", "{2, 2}", 1, 4), ("2", "{150, 150}", 2, 1)):
+        for ranks, cells, times, status in (("1", "{2, 2}", 1, 4), ("2", "{2, 2}", 1, 4), ("2", "{400, 400}", 2, 1)):
             with self.subTest(ranks=ranks, cells=cells):
                 run = subprocess.Popen(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set",
                                         "Time.steps=2000", "--set", "Output.vtu=false", "--set", "Mesh.cells=" + cells],
@@ -73,7 +73,7 @@ class Launcher(ProgramTest):
                     self.assertIsNone(run.poll())
                     time.sleep(0.01)
                 os.killpg(run.pid, signal.SIGINT)
-                while "stopping after this step" not in (line := run.stderr.readline()):
+                while "sprekk: stopping" not in (line := run.stderr.readline()):
                     self.assertTrue(line)
                 if times == 2:
                     os.killpg(run.pid, signal.SIGINT)
@@ -118,6 +118,26 @@ class Launcher(ProgramTest):
         (self.folder / "build/.lock").mkdir()  # cannot be opened, even by root
         _, err = self.launch("check", PUSH, expect=1)
         self.assertRegex(err, "build cannot be written; it belongs to .*\n.*build/apps/sprekk/sprekk, or copy the tree")
+
+    def test_network_beside_another_run(self):
+        """A run makes its mesh in its directory, which must be free for that already."""
+        shutil.copy(ROOT / "xml/networks/outcrop_2d.xml", self.folder)
+        maker = self.folder / "apps/mesh/__main__.py"
+        maker.parent.mkdir(parents=True)
+        maker.write_text("raise SystemExit('made')")
+        for words in ([], ["--restart"], ["--ranks", "2"], ["--output", "output/outcrop_2d"]):
+            self.assertIn("made", self.launch("run", "outcrop_2d.xml", *words, expect=1)[1])
+        self.assertFalse((self.folder / "output/outcrop_2d").exists())
+        (self.folder / "output/outcrop_2d").mkdir()
+        with open(self.folder / "output/outcrop_2d/.lock", "w") as lock:
+            lock.write("process 7 on node3\n")
+            lock.flush()
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            for words in ([], ["--restart"], ["--ranks", "2"], ["--output", "output/outcrop_2d"]):
+                err = self.launch("run", "outcrop_2d.xml", *words, expect=1)[1]
+                self.assertEqual(err.split("sprekk: ")[-1], "output/outcrop_2d: another run (process 7 on node3) is writing its results here; "
+                                                            "wait until it has ended, or name another directory by --output\n")
+            self.assertIn("made", self.launch("run", "outcrop_2d.xml", "--set", "Time.steps=2", expect=1)[1])
 
     def test_build_beside_another(self):
         with open(self.folder / "build/.lock", "w") as lock:

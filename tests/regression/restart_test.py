@@ -124,16 +124,20 @@ class Restart(ProgramTest):
         run = subprocess.Popen(self.command(*arguments, **options), cwd=self.folder, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
         self.addCleanup(run.stderr.close)
-        while not (self.folder / "out/results.json").exists():
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        results = self.folder / "out/results.json"
+        while not (results.exists() and self.results()["status"] == "running"):
             self.assertIsNone(run.poll())
             time.sleep(0.01)
+        time.sleep(0.1)  # some steps
         return run
 
     def expect_interrupted(self, run, n_steps):
-        """Ends with a status of its own, between two steps, with a checkpoint of the last."""
+        """Ends with a status of its own and a checkpoint of the last whole step."""
         words = run.stderr.read()
         self.assertEqual(run.wait(), 4, words)
-        self.assertRegex(words, "sprekk: stopping after this step.*\n"
+        self.assertRegex(words, "sprekk: stopping; a second signal stops at once\n"
                                 "warning: interrupted after the step to t = .*; --restart goes on from the last checkpoint")
         results = self.results()
         self.assertEqual(results["status"], "interrupted")
@@ -141,7 +145,7 @@ class Restart(ProgramTest):
         self.assertEqual(self.last()[0]["time"], results["steps"][-1]["time"])
 
     def test_interrupted(self):
-        n_steps = 150
+        n_steps = 300
         scene = [CYCLIC, f"Time.steps={n_steps}", QUIET]
         self.go(*scene, EVERY_STEP, output="whole")
         for number, every in ((signal.SIGINT, EVERY_STEP), (signal.SIGTERM, "Output.checkpoints.minutes=1000")):
@@ -156,6 +160,45 @@ class Restart(ProgramTest):
         run = self.start(*scene, EVERY_STEP, ranks=3)
         run.send_signal(signal.SIGUSR1)  # mpirun hands it on
         self.expect_interrupted(run, n_steps)
+
+    def test_interrupted_in_a_long_step(self):
+        """A tolerance that no iterate reaches: substeps, iterations and their halvings take long."""
+        scene = [CYCLIC, "Mesh.cells={30, 30}", "Time.maximum halvings=20", EVERY_STEP, QUIET]
+        self.go(*scene, "Time.end=1", "Time.steps=1")
+        before = self.last()
+        for ranks, restart in ((1, True), (2, True), (1, False)):
+            with self.subTest(ranks=ranks, restart=restart):
+                if not restart:
+                    shutil.rmtree(self.folder / "out")
+                run = self.start(*scene, "Solver.tolerance=1e-300", ranks=ranks, restart=restart)
+                run.send_signal(signal.SIGTERM if ranks == 1 else signal.SIGUSR1)
+                words = run.stderr.read()
+                self.assertEqual(run.wait(timeout=20), 4, words)
+                self.assertEqual(self.results()["status"], "interrupted")
+                if restart:
+                    self.assertIn("interrupted after the step to t = 1;", words)
+                    self.assertEqual(self.last(), before)
+                else:
+                    self.assertIn("interrupted in the first step; there is nothing to go on from", words)
+                    self.assertEqual(self.results()["steps"], [])
+
+    def test_two_runs_into_one_directory(self):
+        """The second is refused, and the first does not notice."""
+        scene = [CYCLIC, "Time.steps=100000", EVERY_STEP, QUIET]
+        run = self.start(*scene)
+        for ranks in (1, 3):
+            for restart in (False, True):
+                words = self.go(CYCLIC, "Materials.joint.friction coefficient=0.1", ranks=ranks, restart=restart, expect=1)
+                self.assertRegex(words, f"^sprekk: out: another run \\(process {run.pid} on .*\\) is writing its results here; wait until it "
+                                        "has ended, or name another directory by --output\n$")
+        self.go(CYCLIC, "Time.steps=1", "Materials.joint.friction coefficient=-1", expect=1)
+        self.assertNotIn("0.1", [word for word in (self.folder / "out/effective_input.xml").read_text().split('"')])
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+        self.assertEqual(self.results()["status"], "running")
+        self.go(CYCLIC, "Time.steps=1", QUIET)  # a lock does not outlive who held it
+        self.assertEqual(self.results()["status"], "completed")
+        self.assertFalse((self.folder / "out/.lock").exists())
 
     def test_interrupted_twice(self):
         run = self.start(CYCLIC, "Mesh.cells={200, 200}", EVERY_STEP, QUIET)
@@ -207,7 +250,7 @@ class Restart(ProgramTest):
         self.assertRegex(words, "warning: no checkpoint at t = 4: .*piece_0.h5: cannot be written: File too large")
         self.assertEqual(self.results()["steps"], self.results("whole")["steps"])
         self.assertEqual(self.last(), before)
-        self.assertEqual([f.name for f in (self.folder / "out/checkpoints").iterdir() if not f.name.isdigit()], ["journal"])
+        self.assertEqual(sorted(f.name for f in (self.folder / "out/checkpoints").iterdir() if not f.name.isdigit()), ["journal", "journal_copy"])
 
         self.go(*scene, restart=True)
         self.expect_same_bits("whole", "out")
@@ -248,7 +291,7 @@ class Restart(ProgramTest):
                        lambda f: (f / "piece_0.h5").unlink(),
                        lambda f: (f / "manifest.json").write_text((f / "manifest.json").read_text().replace("4", "5", 1)),
                        lambda f: (f / "manifest.json").write_text(""),
-                       lambda f: os.truncate(f.parent / "journal", (f.parent / "journal").stat().st_size - 1)):
+                       lambda f: [os.truncate(journal, journal.stat().st_size - 1) for journal in f.parent.glob("journal*")]):
             self.go(*scene, "Time.end=3", "Time.steps=3")
             self.assertEqual(len(self.checkpoints()), 2)
             damage(self.checkpoints()[-1])
@@ -257,6 +300,23 @@ class Restart(ProgramTest):
                                     "going on from the checkpoint before")
             self.expect_same_bits("whole", "out")
             shutil.rmtree(self.folder / "out")
+
+    def test_damaged_journal(self):
+        """The results of the earlier steps, in one of two copies."""
+        scene = [CYCLIC, EVERY_STEP, QUIET]
+        self.go(*scene, output="whole")
+        for name in ("journal", "journal_copy"):
+            for damage in (lambda path, content: path.write_bytes(content[:200] + bytes([content[200] ^ 1]) + content[201:]),
+                           lambda path, content: path.unlink()):
+                self.go(*scene, "Time.end=3", "Time.steps=3")
+                path = self.folder / "out/checkpoints" / name
+                damage(path, path.read_bytes())
+                words = self.go(*scene, restart=True)
+                self.assertRegex(words, f"^warning: out/checkpoints/{name}: (is damaged|cannot be read); its other copy is whole, and taken\n$")
+                self.expect_same_bits("whole", "out")
+                for copy in ("journal", "journal_copy"):
+                    self.assertEqual((self.folder / "out/checkpoints" / copy).read_bytes(), (self.folder / "whole/checkpoints/journal").read_bytes())
+                shutil.rmtree(self.folder / "out")
 
     def test_no_checkpoint(self):
         self.assertIn("out/checkpoints: there is no complete checkpoint", self.go(CYCLIC, restart=True, expect=1))

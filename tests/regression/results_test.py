@@ -271,6 +271,14 @@ class Results(ProgramTest):
             self.assertIn(word, other["solver"]["parameters"])
             self.assertNotIn(word, usual["solver"]["parameters"])
 
+    def test_inflows_are_numbers(self):
+        """Whether the pressure is given on the boundary, beyond it, or what flows there."""
+        for overrides in ([], ["Boundary conditions.west.conductance=1e-9"]):
+            inflows = self.run_scene("flow/network_2d.xml", *overrides, QUIET)["steps"][-1]["inflows"]
+            self.assertEqual(set(inflows), {"west", "east"})
+            for value in inflows.values():
+                self.assertIsInstance(value, float)
+
     def test_script_that_reads_them(self):
         def read(*words):
             return subprocess.run([sys.executable, str(ROOT / "docs/read_results.py"), *words], cwd=self.folder,

@@ -48,6 +48,14 @@ TEST(Text, numbers_survive_being_written) {
   EXPECT_EQ(parse_number(number_text(-INFINITY)), -INFINITY);
 }
 
+TEST(Text, long_ones_are_shortened_between_characters) {
+  EXPECT_EQ(shortened(std::string(200, 'a')), std::string(200, 'a'));
+  EXPECT_EQ(shortened(std::string(1000, 'a')), std::string(60, 'a') + "... (1000 bytes)");
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += "\u20ac";  // of three bytes
+  EXPECT_EQ(shortened("." + text), "." + text.substr(0, 57) + "... (301 bytes)");
+}
+
 TEST(Text, near_names_are_suggested_and_far_ones_are_not) {
   const Strings names = {"friction coefficient", "tangential stiffness", "normal stiffness", "end"};
   EXPECT_EQ(did_you_mean("friction coeficient", names), ". Did you mean \"friction coefficient\"?");

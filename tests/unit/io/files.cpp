@@ -1,4 +1,5 @@
 #include "base/check.hpp"
+#include "io/directory_lock.hpp"
 #include "io/json.hpp"
 #include "scratch.hpp"
 
@@ -51,6 +52,38 @@ TEST(Json, MissingDirectoryIsAnErrorOnEveryRank) {
   const auto message = error_of<Error>([&] { io::write_json(*comm, path, {}); });
   EXPECT_TRUE(contains(message, path)) << message;
   EXPECT_TRUE(contains(message, "No such file")) << message;
+}
+
+TEST(Json, IsWrittenInPlaceWhereThereIsRoom) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::string path = scratch / "results.json";
+  EXPECT_FALSE(io::overwrite_json(*comm, path, {}));  // there is no such file
+  io::write_json(*comm, path, {{"status", "running"}, {"steps", {1, 2, 3}}});
+  scratch.on_rank_0([&] { fs::create_symlink("/dev/full", path + ".part"); });
+  EXPECT_TRUE(io::overwrite_json(*comm, path, {{"status", "failed"}, {"steps", {1, 2, 3}}}));
+  EXPECT_FALSE(io::overwrite_json(*comm, path, {{"status", std::string(100, '?')}}));
+  comm->barrier();
+  EXPECT_EQ(nlohmann::json::parse(content(path)), nlohmann::json({{"status", "failed"}, {"steps", {1, 2, 3}}}));
+}
+
+TEST(DirectoryLock, IsHeldByOne) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const std::string path = scratch / "made/below";
+  {
+    io::DirectoryLock first(comm, path), second(comm, path);
+    EXPECT_FALSE(first.has_directory());
+    EXPECT_EQ(first.take(), "");
+    EXPECT_EQ(first.take(), "");
+    EXPECT_TRUE(second.has_directory());
+    const auto message = error_of<Error>([&] { second.take(); });
+    EXPECT_TRUE(contains(message, path + ": another run (process ")) << message;
+  }
+  comm->barrier();
+  EXPECT_FALSE(fs::exists(path + "/.lock"));
+  scratch.on_rank_0([&] { std::ofstream(path + "/.lock") << "process 1 on moon\n"; });  // of one that was killed
+  EXPECT_EQ(io::DirectoryLock(comm, path).take(), "");
 }
 
 TEST(AppendDurably, KeepsWhatWasBefore) {

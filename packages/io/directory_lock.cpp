@@ -1,0 +1,91 @@
+#include "io/directory_lock.hpp"
+
+#include "base/check.hpp"
+#include "io/file.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace sprekk::io {
+
+namespace {
+
+/// Whether the path still names the open file: the process that had its lock removes it.
+bool is_at(const std::string& path, int descriptor) {
+  struct stat open, there;
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_ino == there.st_ino &&
+         open.st_dev == there.st_dev;
+}
+
+/// Leaves in the file who has the lock, as far as the disk has room.
+void sign(int descriptor) {
+  char host[256] = "";
+  ::gethostname(host, sizeof host - 1);
+  const auto text = fmt::format("process {} on {}\n", ::getpid(), host);
+  [[maybe_unused]] const bool written =
+      ::ftruncate(descriptor, 0) == 0 && ::write(descriptor, text.data(), text.size()) > 0;
+}
+
+/// " (process 7 on node3)", or nothing if the file does not tell.
+std::string holder(int descriptor) {
+  char text[300];
+  const auto n = ::pread(descriptor, text, sizeof text, 0);
+  const std::string words(text, n > 0 ? n : 0);
+  return words.compare(0, 8, "process ") == 0 ? fmt::format(" ({})", words.substr(0, words.find('\n'))) : "";
+}
+
+}  // namespace
+
+DirectoryLock::DirectoryLock(RCP<const Comm> comm, std::string directory)
+    : comm_(std::move(comm)), directory_(std::move(directory)), file_(directory_ + "/.lock") {}
+
+DirectoryLock::~DirectoryLock() {
+  if (descriptor_ < 0) return;
+  if (is_at(file_, descriptor_)) ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+bool DirectoryLock::has_directory() const {
+  std::error_code none;
+  int found = comm_->getRank() == 0 && std::filesystem::is_directory(directory_, none);
+  Teuchos::broadcast(*comm_, 0, 1, &found);
+  return found != 0;
+}
+
+std::string DirectoryLock::take() {
+  if (std::exchange(asked_, true)) return "";
+  make_directory(*comm_, directory_);
+  std::string not_offered;
+  base::collectively(*comm_, [&] {
+    while (comm_->getRank() == 0 && descriptor_ < 0) {
+      const int file = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      SPREKK_CHECK(file >= 0, "{}: cannot be written to: {}", directory_, std::generic_category().message(errno));
+      const int error = ::flock(file, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+      if (error == 0 && is_at(file_, file)) {
+        sign(descriptor_ = file);
+        return;
+      }
+      const std::string other = holder(file);
+      ::close(file);
+      SPREKK_CHECK(error != EWOULDBLOCK,
+                   "{}: another run{} is writing its results here; wait until it has ended, or name another directory "
+                   "by --output",
+                   directory_, other);
+      if (error != 0) {
+        not_offered = std::generic_category().message(error);
+        return;
+      }
+    }
+  });
+  return from_rank_0(*comm_, not_offered);
+}
+
+}  // namespace sprekk::io
