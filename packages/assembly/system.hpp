@@ -171,7 +171,7 @@ class System : public fields::BlockProblem {
   Reference reference_;
   Scales scales_;
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
-  ConstView<Real**> anchor_;  // [owned fracture face, dim] of tether()
+  ConstView<Real**> anchor_;  // [owned fracture face, 2 dim] of tether()
   Real tether_ = 0;
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;

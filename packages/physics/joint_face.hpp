@@ -26,7 +26,7 @@ namespace sprekk::physics {
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 /// | tether       |                                                          | -    | share of c, see contact()    |
-/// | anchor       | [face, dim]                                              | m    | jump that it pulls to, global |
+/// | anchor       | [face, 2 dim]                                            | m, Pa | jump it pulls to, and traction there |
 template <mesh::Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
@@ -76,15 +76,22 @@ struct JointFace {
     }
   }
 
-  /// The part of the traction that contact and friction bear: a tether bears tether c (w - anchor) of it.
+  /// The part of the traction that contact and friction bear, and the jump that goes with it: a tether bears
+  /// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
+  /// stretches the joint as a whole: p = w_t - lambda_t/K_t.
   template <class T>
-  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&borne)[dim]) const {
+  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
+                                      T (&borne)[dim]) const {
     for (int k = 0; k < dim; ++k) {
+      jump[k] = w[k];
       borne[k] = traction[k];
       if (tether == 0) continue;
+      const Real compliance = k == 0 ? 0 : law(number(f)).elastic.compliance;
       Real there = 0;
-      for (int i = 0; i < dim; ++i) there += frame(f, k, i) * anchor(f, i);
-      borne[k] -= tether * constant(f) * (w[k] - there);
+      for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
+      const T pull = tether * constant(f) * (w[k] - compliance * traction[k] - there);
+      jump[k] -= compliance * pull;
+      borne[k] -= pull;
     }
   }
 
@@ -93,9 +100,9 @@ struct JointFace {
                                                      T (&R)[dim]) const {
     Real old[dim - 1];
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-    T borne[dim];
-    contact(f, w, traction, borne);
-    return laws::contact_residual<dim>(law(number(f)), constants(f), w, borne, old, R);
+    T jump[dim], borne[dim];
+    contact(f, w, traction, jump, borne);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), jump, borne, old, R);
   }
 
   /// Jump, traction, residual, state and constant of a face.

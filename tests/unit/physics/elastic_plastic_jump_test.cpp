@@ -177,6 +177,22 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
   }
 }
 
+/// A joint that stretches along its plane, without a plastic jump, does not feel it.
+TEST(ElasticPlasticJump, TetherLeavesTheElasticJumpAlone) {
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell);
+    const int dim = s.rock.dim();
+    auto r = fields::create_like(s.x);
+    const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
+    s.set({closed, 0, 0}, {-50, 0, 0});
+    s.rock.system->tether(2, s.x);
+    s.set({closed, 0.15, dim == 3 ? -0.2 : 0}, {-50, 0.3, dim == 3 ? -0.4 : 0});  // w_t = lambda_t / K_t
+    s.rock.system->raw_residual(s.x, r);
+    for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
+      for (int i = 1; i < dim; ++i) EXPECT_NEAR(r[2]->getData()[f * dim + i], 0, 1e-12) << cell;
+  }
+}
+
 TEST(ElasticPlasticJump, IsSymmetricUnlessItSlips) {
   ShiftedRock s("tetrahedron");
   const auto symmetric = [&](std::array<Real, 3> jump, std::array<Real, 3> traction) {

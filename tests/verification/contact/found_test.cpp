@@ -1,0 +1,21 @@
+// Scenes on which a random search has once found the solver to fail.
+#include "verification/contact/states.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+std::string failure(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  return run(read_scene(scene, overrides)).failure;
+}
+
+/// Steps towards zero of a search along a free motion grew too short for the arithmetic: it went on for ever.
+TEST(Found, PiecesCutOut) { EXPECT_EQ(failure("contact/network_cut_2d.xml"), ""); }
+
+/// Faces that slide back close what they had opened, and their friction falls: they slip at once, to a state that is
+/// far away, and only tethers that leave the joint's own stretch alone lead there.
+TEST(Found, SoftJointsThatDilate) {
+  EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
+}
+
+}  // namespace
+}  // namespace sprekk::tests
