@@ -289,6 +289,7 @@ void System::commit(const BlockVector& x) {
 /// What rounding leaves of a row is this times its diagonal, of a traction's times the constant of the face law; 0 of
 /// quantities for which it is not known.
 Real System::rounding(const BlockVector& x, Quantity value) const {
+  if (value == Quantity::stress) return rounding(x, Quantity::length);
   if (value != Quantity::length && value != Quantity::pressure) return 0;
   Real farthest = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
@@ -304,6 +305,12 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (unknowns_[b].value == Quantity::stress) {
+      const auto constant = diagonals_[b]->getLocalViewHost(Tpetra::Access::OverwriteAll);
+      const auto faces = grips();
+      for (std::size_t i = 0; i < constant.extent(0); ++i)
+        constant(i, 0) = faces[i / blocks_[b].n_components].augmentation;
+    }
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;

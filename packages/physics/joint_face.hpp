@@ -6,6 +6,8 @@
 
 #include <Sacado.hpp>
 
+#include <limits>
+
 namespace sprekk::physics {
 
 /// The joint law on one fracture face.
@@ -76,6 +78,20 @@ struct JointFace {
     }
   }
 
+  /// Sum of the sizes of the terms of w: what rounding leaves of w is in proportion to it.
+  KOKKOS_INLINE_FUNCTION Real size_of_terms(int f, const Real (&x)[Columns::size]) const {
+    const auto size = [](Real value) { return value < 0 ? -value : value; };
+    Real sum = 0;
+    for (int i = 0; i < dim; ++i) {
+      sum += bubble_mean(f) * (size(x[beta + dim + i]) + size(x[beta + i]));
+      for (int a = 0; a < 2 * n; ++a) {
+        sum += share(f, a % n) * size(x[a * dim + i]);
+        if (tips) sum += size(tip_share(f, a) * x[q + a * dim + i]);
+      }
+    }
+    return sum;
+  }
+
   /// The part of the traction that contact and friction bear, and the jump that goes with it: a tether bears
   /// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
   /// stretches the joint as a whole: p = w_t - lambda_t/K_t.
@@ -105,11 +121,11 @@ struct JointFace {
     return laws::contact_residual<dim>(law(number(f)), constants(f), jump, borne, old, R);
   }
 
-  /// Jump, traction, residual, state and constant of a face.
+  /// Jump, traction, residual, state and constant of a face; what rounding may leave of the jump, m.
   struct Point {
     Real w[dim], traction[dim], R[dim];
     laws::ContactState state;
-    Real constant;
+    Real constant, rounding;
   };
   KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
     Point p;
@@ -117,6 +133,7 @@ struct JointFace {
     for (int i = 0; i < dim; ++i) p.traction[i] = x[lambda + i];
     p.state = evaluate(f, p.w, p.traction, p.R);
     p.constant = constant(f);
+    p.rounding = 64 * std::numeric_limits<Real>::epsilon() * size_of_terms(f, x);
     return p;
   }
 

@@ -17,5 +17,10 @@ TEST(Found, SoftJointsThatDilate) {
   EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
 }
 
+/// The displacement is so large that its rounding is seen in the jumps.
+TEST(Found, StiffRockOnSoft) {
+  EXPECT_EQ(failure("contact/soft_foundation_2d.xml", {"Time.end=1", "Time.steps=1"}), "");
+}
+
 }  // namespace
 }  // namespace sprekk::tests
