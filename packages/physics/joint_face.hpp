@@ -28,7 +28,7 @@ namespace sprekk::physics {
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 /// | tether       |                                                          | -    | share of c, see contact()    |
-/// | anchor       | [face, 2 dim]                                            | m, Pa | jump it pulls to, and traction there |
+/// | anchor       | [face, 2 dim]                                            | m, Pa | jump, traction it pulls to |
 template <mesh::Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
