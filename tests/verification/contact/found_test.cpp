@@ -17,6 +17,10 @@ TEST(Found, SoftJointsThatDilate) {
   EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
 }
 
+/// Layers that are soft in bending by the square of their thickness over their length: tethers that are weak for the
+/// rock at a fracture hold them fast.
+TEST(Found, ThinLayers) { EXPECT_EQ(failure("contact/thin_layers_2d.xml"), ""); }
+
 /// The displacement is so large that its rounding is seen in the jumps.
 TEST(Found, StiffRockOnSoft) {
   EXPECT_EQ(failure("contact/soft_foundation_2d.xml", {"Time.end=1", "Time.steps=1"}), "");
