@@ -109,7 +109,7 @@ struct State {
   ConstView<Real*> damping = {};       ///< [owned fracture face], see BlockProblem::damp(); empty: zero
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
   Real tether = 0;                     ///< see BlockProblem::tether()
-  ConstView<Real**> anchor = {};       ///< [owned fracture face, dim] the jump that it pulls to, global, m
+  ConstView<Real**> anchor = {};       ///< [owned fracture face, 2 dim] jump that it pulls to, traction there; global
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;

@@ -176,7 +176,7 @@ class System : public fields::BlockProblem {
   Reference reference_;
   Scales scales_;
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
-  ConstView<Real**> anchor_;  // [owned fracture face, dim] of tether()
+  ConstView<Real**> anchor_;  // [owned fracture face, 2 dim] of tether()
   Real tether_ = 0;
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
   struct Lagged {

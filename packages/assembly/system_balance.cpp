@@ -1,5 +1,6 @@
 // Rock that nothing holds: what it is, and how far a step may move it.
 #include "assembly/system.hpp"
+#include "assembly/zero_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,44 +39,6 @@ namespace {
 
 constexpr int n_sweeps = 2;
 
-/// The zero of a function that does not fall, below zero at 0: bracketed by steps that grow fourfold, then by false
-/// position (Illinois), to a tenth of the value at 0.
-class Search {
- public:
-  /// `start`: the value at 0; no search unless it is below zero.
-  Search(Real start, Real first, Real reach) : s(start < 0 ? first : 0), start_(start), reach_(reach) {
-    done_ = !(start < 0);
-  }
-
-  Real s;  ///< where the function is to be evaluated next; at the end, the result
-  bool done() const { return done_; }
-  bool lost() const { return !(s <= reach_) || !std::isfinite(s); }  ///< no zero within reach
-
-  void next(Real value) {
-    if (done_) return;
-    if (value < 0) {
-      if (side_ < 0) at_high_ /= 2;
-      low_ = s;
-      at_low_ = value;
-    } else {
-      if (side_ > 0) at_low_ /= 2;
-      high_ = s;
-      at_high_ = value;
-    }
-    side_ = value < 0 ? -1 : 1;
-    const bool bracketed = high_ > 0;
-    done_ = bracketed && (std::abs(value) <= -0.1 * start_ || ++n_refined_ > 30);
-    if (done_) return;
-    s = bracketed ? (low_ * at_high_ - high_ * at_low_) / (at_high_ - at_low_) : 4 * s;
-    done_ = lost();
-  }
-
- private:
-  Real start_, reach_, low_ = 0, at_low_ = start_, high_ = 0, at_high_ = 0;
-  int side_ = 0, n_refined_ = 0;
-  bool done_;
-};
-
 }  // namespace
 
 /// [group] Of a motion, on what is out of balance at x; below zero where the motion is along the force.
@@ -110,7 +73,7 @@ std::string System::balance_along(const LoosePieces::Motion& motion, const Block
   };
   std::vector<Real> s(n, 0), sign(n, 1);
   const auto start = at(s);
-  std::vector<Search> searches;
+  std::vector<ZeroSearch> searches;
   const Real reach = 4 * reference_.length + 1e3 * scales_.length;
   for (int g = 0; g < n; ++g) {
     const Real largest = motion.largest[g];

@@ -73,10 +73,14 @@ bool System::tether(Real stiffness, const BlockVector& x) {
   if (stiffness == 0 || !contact) return contact;
   refresh_ghosts(x, false);
   const auto held = grips();
-  View<Real**> anchor("anchor", held.size(), mesh_->dim());
+  const int dim = mesh_->dim();
+  View<Real**> anchor("anchor", held.size(), 2 * dim);
   const auto host = Kokkos::create_mirror_view(anchor);
   for (std::size_t f = 0; f < held.size(); ++f)
-    for (int i = 0; i < mesh_->dim(); ++i) host(f, i) = held[f].jump[i];
+    for (int i = 0; i < dim; ++i) {
+      host(f, i) = held[f].jump[i];
+      host(f, dim + i) = held[f].traction[i];
+    }
   Kokkos::deep_copy(anchor, host);
   anchor_ = anchor;
   tether_ = stiffness;
@@ -335,8 +339,10 @@ void System::commit(const BlockVector& x) {
   }
 }
 
-/// What rounding leaves of a row is this times its diagonal; 0 of quantities for which it is not known.
+/// What rounding leaves of a row is this times its diagonal, of a traction's times the constant of the face law; 0 of
+/// quantities for which it is not known.
 Real System::rounding(const BlockVector& x, Quantity value) const {
+  if (value == Quantity::stress) return rounding(x, Quantity::length);
   if (value != Quantity::length && value != Quantity::pressure) return 0;
   Real farthest = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
@@ -346,11 +352,18 @@ Real System::rounding(const BlockVector& x, Quantity value) const {
 
 /// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
 /// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
-/// rock.
+/// rock. A traction row has jumps times the constant of the face law in it: where soft rock carries stiff rock far,
+/// their rounding is more than the deformation of the stiff one.
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (unknowns_[b].value == Quantity::stress) {
+      const auto constant = diagonals_[b]->getLocalViewHost(Tpetra::Access::OverwriteAll);
+      const auto faces = grips();
+      for (std::size_t i = 0; i < constant.extent(0); ++i)
+        constant(i, 0) = faces[i / blocks_[b].n_components].augmentation;
+    }
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;

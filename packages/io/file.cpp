@@ -51,6 +51,7 @@ void append_durably(const std::string& path, long long length, const std::string
   for (std::size_t done = 0; error == 0 && done < content.size();) {
     const auto n = ::write(file, content.data() + done, content.size() - done);
     if (n > 0) done += n;
+    if (n == 0) error = ENOSPC;  // as POSIX never does for a file; else this would go on for ever
     if (n < 0 && errno != EINTR) error = errno;
   }
   if (error == 0 && ::fsync(file) != 0) error = errno;

@@ -268,7 +268,8 @@ class PartRaiser {
       std::array<int, 4> corner{};  // of the cell's face, for each in the order of side minus
       for (int k = 0; k < n; ++k) {
         face.nodes[side][k] = moved(before[side][k]);
-        while (node(corner[k]) != face.nodes[side][k]) ++corner[k];
+        while (corner[k] < n && node(corner[k]) != face.nodes[side][k]) ++corner[k];
+        SPREKK_CHECK(corner[k] < n, "mesh: a corner of fracture face {} is none of its cell", face.id);
       }
       for (int k = n; k < n_face_nodes(shape_); ++k) face.nodes[side][k] = node(partner(corner, k));
     }

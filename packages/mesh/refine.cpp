@@ -58,7 +58,8 @@ class Divider {
     int corner = k;
     if (k < n_face_corners(shape_) && face.cell[side] >= 0)  // else its number alone is needed, the same at all corners
       for (corner = 0; node(face.cell[side], face_nodes(shape_)[face.local_face[side]][corner]) != face.nodes[side][k];)
-        ++corner;
+        SPREKK_CHECK(++corner < n_face_corners(shape_), "mesh: a corner of fracture face {} is none of its cell",
+                     face.id);
     return division_.of_face[face.local_face[side]][corner];
   }
 

@@ -14,7 +14,7 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
       [&](int region, int cell) {
         const auto& rock = material(region);
         return at_place(scene, rock,
-                        [&] { return rock.elasticity(cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell)); });
+                        [&] { return rock.elasticity(cell < 0 ? mesh::Vector{} : mesh::cell_centre(mesh, cell)); });
       });
 }
 

@@ -258,7 +258,7 @@ void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
 }
 
 /// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t
-/// where they stick or slip are held against the displacement scale.
+/// where they stick or slip are held against the displacement scale, less what rounding leaves of the jump.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, const assembly::Scales& scales,
                                               std::vector<fields::Measure>& measures) const {
@@ -268,7 +268,7 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
     const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, point.constant);
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
-    const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential);
+    const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential) - point.rounding;
     if (!(size <= largest)) largest = size;
   });
   measures.push_back({"split of the jump", largest / scales.length});

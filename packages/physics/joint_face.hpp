@@ -6,6 +6,8 @@
 
 #include <Sacado.hpp>
 
+#include <limits>
+
 namespace sprekk::physics {
 
 /// The joint law on one fracture face.
@@ -26,7 +28,7 @@ namespace sprekk::physics {
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 /// | tether       |                                                          | -    | share of c, see contact()    |
-/// | anchor       | [face, dim]                                              | m    | jump that it pulls to, global |
+/// | anchor       | [face, 2 dim]                                            | m, Pa | jump, traction it pulls to |
 template <mesh::Shape shape, bool tips>
 struct JointFace {
   using Cell = assembly::ReferenceCell<shape>;
@@ -76,15 +78,36 @@ struct JointFace {
     }
   }
 
-  /// The part of the traction that contact and friction bear: a tether bears tether c (w - anchor) of it.
+  /// Sum of the sizes of the terms of w: what rounding leaves of w is in proportion to it.
+  KOKKOS_INLINE_FUNCTION Real size_of_terms(int f, const Real (&x)[Columns::size]) const {
+    const auto size = [](Real value) { return value < 0 ? -value : value; };
+    Real sum = 0;
+    for (int i = 0; i < dim; ++i) {
+      sum += bubble_mean(f) * (size(x[beta + dim + i]) + size(x[beta + i]));
+      for (int a = 0; a < 2 * n; ++a) {
+        sum += share(f, a % n) * size(x[a * dim + i]);
+        if (tips) sum += size(tip_share(f, a) * x[q + a * dim + i]);
+      }
+    }
+    return sum;
+  }
+
+  /// The part of the traction that contact and friction bear, and the jump that goes with it: a tether bears
+  /// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
+  /// stretches the joint as a whole: p = w_t - lambda_t/K_t.
   template <class T>
-  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&borne)[dim]) const {
+  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
+                                      T (&borne)[dim]) const {
     for (int k = 0; k < dim; ++k) {
+      jump[k] = w[k];
       borne[k] = traction[k];
       if (tether == 0) continue;
+      const Real compliance = k == 0 ? 0 : law(number(f)).elastic.compliance;
       Real there = 0;
-      for (int i = 0; i < dim; ++i) there += frame(f, k, i) * anchor(f, i);
-      borne[k] -= tether * constant(f) * (w[k] - there);
+      for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
+      const T pull = tether * constant(f) * (w[k] - compliance * traction[k] - there);
+      jump[k] -= compliance * pull;
+      borne[k] -= pull;
     }
   }
 
@@ -93,16 +116,16 @@ struct JointFace {
                                                      T (&R)[dim]) const {
     Real old[dim - 1];
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-    T borne[dim];
-    contact(f, w, traction, borne);
-    return laws::contact_residual<dim>(law(number(f)), constants(f), w, borne, old, R);
+    T jump[dim], borne[dim];
+    contact(f, w, traction, jump, borne);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), jump, borne, old, R);
   }
 
-  /// Jump, traction, residual, last plastic jump, state and constant of a face.
+  /// Jump, traction, residual, last plastic jump, state and constant of a face; what rounding may leave of the jump, m.
   struct Point {
     Real w[dim], traction[dim], R[dim], p_old[dim - 1];
     laws::ContactState state;
-    Real constant;
+    Real constant, rounding;
   };
   KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
     Point p;
@@ -111,6 +134,7 @@ struct JointFace {
     for (int i = 0; i < dim - 1; ++i) p.p_old[i] = p_old(f, i);
     p.state = evaluate(f, p.w, p.traction, p.R);
     p.constant = constant(f);
+    p.rounding = 64 * std::numeric_limits<Real>::epsilon() * size_of_terms(f, x);
     return p;
   }
 

@@ -6,6 +6,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
+constexpr int most_refinements = 20;  // more than there are powers of next_accuracy
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);
@@ -56,7 +57,8 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
   if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
   const auto before = problem_.state_hash(problem_.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
-  for (auto states = states_after(dx); report.converged && report.residual > tolerance && asked > tolerance;) {
+  auto states = states_after(dx);
+  for (int k = 0; k < most_refinements && report.converged && report.residual > tolerance && asked > tolerance; ++k) {
     asked = states == before ? settled : std::max(next_accuracy * std::min(asked, report.residual), tolerance);
     if (report.residual <= asked) break;
     apply(dx, r);

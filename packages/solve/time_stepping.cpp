@@ -8,7 +8,8 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real first_tether = 10, least_tether = 1e-3, most_tether = 1e4, weaker = 0.3, stronger = 10;
+constexpr Real first_tether = 10, weak_tether = 1e-3, least_tether = 1e-9, most_tether = 1e4;
+constexpr Real weaker = 0.3, stronger = 10;
 constexpr int most_tethers = 60, least_cuts = 3, most_settlings = 4;
 
 struct Release {
@@ -40,19 +41,23 @@ NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
 }
 
 /// As if the bodies crept to their places: tethered to where they are, they move to where a tether holds them, are
-/// tethered there, and so on, with weaker tethers as long as Newton follows. At last without.
+/// tethered there, and so on, with weaker tethers as long as Newton follows. At last without: after a weak one, or, if
+/// Newton fails then, after the weakest, for thin layers yield to forces that are much smaller.
 NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
   auto place = fields::create_like(x);
   fields::copy(x, place);
   const Release release{problem_, x};  // also where an evaluation throws
-  Real stiffness = first_tether;
+  Real stiffness = first_tether, enough = weak_tether;
   for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
-    const bool last = stiffness < least_tether;
+    const bool last = stiffness < enough;
     if (!problem_.tether(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
-    if (last || newton.stopped) return newton;
+    if (newton.stopped || (last && (newton.converged || enough == least_tether))) return newton;
     fields::copy(newton.converged ? x : place, newton.converged ? place : x);
-    stiffness *= newton.converged ? weaker : stronger;
+    if (last)
+      enough = least_tether;
+    else
+      stiffness *= newton.converged ? weaker : stronger;
   }
   return {};
 }

@@ -1,0 +1,30 @@
+// Scenes on which a random search has once found the solver to fail.
+#include "verification/contact/states.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+std::string failure(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  return run(read_scene(scene, overrides)).failure;
+}
+
+/// Steps towards zero of a search along a free motion grew too short for the arithmetic: it went on for ever.
+TEST(Found, PiecesCutOut) { EXPECT_EQ(failure("contact/network_cut_2d.xml"), ""); }
+
+/// Faces that slide back close what they had opened, and their friction falls: they slip at once, to a state that is
+/// far away, and only tethers that leave the joint's own stretch alone lead there.
+TEST(Found, SoftJointsThatDilate) {
+  EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
+}
+
+/// Layers that are soft in bending by the square of their thickness over their length: tethers that are weak for the
+/// rock at a fracture hold them fast.
+TEST(Found, ThinLayers) { EXPECT_EQ(failure("contact/thin_layers_2d.xml"), ""); }
+
+/// The displacement is so large that its rounding is seen in the jumps.
+TEST(Found, StiffRockOnSoft) {
+  EXPECT_EQ(failure("contact/soft_foundation_2d.xml", {"Time.end=1", "Time.steps=1"}), "");
+}
+
+}  // namespace
+}  // namespace sprekk::tests
