@@ -87,56 +87,6 @@ bool System::tether(Real stiffness, const BlockVector& x) {
   return true;
 }
 
-/// In logarithms, for coefficients go over many orders of magnitude. Of y -> ln of the coefficients that f lagged by
-/// exp(y) leads to, each face has its own fixed-point iteration, relaxed by 1/(1 - s) with the secant's slope s, of
-/// which the steepest is remembered, by half with each iterate, and made steeper where that went too far, for faces act
-/// on each other. Where conductances follow a cubic law s is -3 if
-/// pressures decide on the aperture, and 0 if volumes do.
-Real System::lag(Lag how, const BlockVector& x) {
-  constexpr Real steepest = -10, first_slope = -1;
-  if (how == Lag::none) {
-    coefficients_ = {};
-    lagged_ = {};
-    return 0;
-  }
-  refresh_ghosts(x, false);
-  std::vector<Real> found(mesh_->n_fracture_faces(), 0);
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
-  auto& [used, before, led_to, slope] = lagged_;
-  Real here = -1, farthest = 0;
-  for (std::size_t f = 0; f < found.size(); ++f) {
-    if (!(found[f] > 0)) continue;
-    found[f] = std::log(found[f]);
-    here = std::max(here, used.empty() ? 0 : std::abs(found[f] - used[f]));
-  }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &farthest);
-  if (farthest < 0) return farthest;
-  auto next = found;
-  slope.resize(found.size(), 0);
-  if (how == Lag::follow && !used.empty()) {
-    for (std::size_t f = 0; f < found.size(); ++f) {
-      const Real away = found[f] - used[f], moved = before.empty() ? 0 : used[f] - before[f];
-      Real remembered = slope[f] / 2, secant = before.empty() ? first_slope : 0;
-      if (moved != 0) secant = (found[f] - led_to[f]) / moved;
-      if (moved * away < 0) remembered = 2 * slope[f] - 0.5;  // gone too far
-      slope[f] = std::clamp(std::min(secant, remembered), steepest, Real(0));
-      next[f] = used[f] + away / (1 - slope[f]);
-    }
-    before = used;
-    led_to = found;
-  } else {
-    before.clear();
-  }
-  used = next;
-  View<Real*> values("coefficients", next.size());
-  const auto host = Kokkos::create_mirror_view(values);
-  for (std::size_t f = 0; f < next.size(); ++f) host(f) = std::exp(next[f]);
-  Kokkos::deep_copy(values, host);
-  coefficients_ = values;
-  return farthest;
-}
-
 /// Evaluates the loads at time t and lets the scales grow with them.
 void System::update_scales(Real t) {
   Real here[3] = {0, 0, 0}, all[3];

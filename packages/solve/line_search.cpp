@@ -76,8 +76,7 @@ bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gr
   const bool lagged = picard_.lags();
   bool back = false;
   if (lagged) {
-    const auto x = solution_of(group);
-    back = picard_.follow(x, problem_.state_hash(problem_.states(x)) == pattern_);
+    back = picard_.follow(solution_of(group));
     if (!picard_.lags()) since_ = merits_.size();
   } else if (!merits_.empty()) {
     back = picard_.resume(solution_of(from), taken.a, taken.merit, merits_.back());

@@ -10,7 +10,6 @@ using Lag = BlockProblem::Lag;
 constexpr Real far = 1;        // |ln| of the ratio of coefficients
 constexpr Real closer = 0.1;   // where Newton's method failed, it is tried next at this part of the distance
 constexpr Real least_step = 0.25, most_growth = 1e3;
-constexpr int patience = 10, most_held = 4;  // then coefficients wait for discrete states, so many steps
 
 }  // namespace
 
@@ -19,10 +18,8 @@ Picard::Picard(BlockProblem& problem, const BlockVector& x) : problem_(problem) 
   possible_ = lags_ = problem_.lag(Lag::follow, x) >= 0;
 }
 
-bool Picard::follow(const BlockVector& x, bool settled) {
-  const bool first = n_++ == 0, holds = n_ > patience && !settled && n_held_ < most_held;
-  n_held_ = holds ? n_held_ + 1 : 0;
-  if (holds) return false;
+bool Picard::follow(const BlockVector& x) {
+  const bool first = n_++ == 0;
   const Real away = problem_.lag(Lag::follow, x);
   if (first && !(away <= far)) {
     problem_.lag(Lag::widest, x);

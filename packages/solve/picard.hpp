@@ -29,9 +29,8 @@ class Picard {
   bool lags() const { return lags_; }          ///< they are not those of x: its zeros are not those of f
   int n_steps() const { return n_; }           ///< while it lagged
 
-  /// After a full step of the f that lags, to x; `settled`: discrete states are those of the iterate before. True if the
-  /// step is to be taken back.
-  bool follow(const BlockVector& x, bool settled);
+  /// After a full step of the f that lags, to x. True if the step is to be taken back.
+  bool follow(const BlockVector& x);
   /// After a step of f itself from `from`, of which the search took the part `step`. True if it is to be taken back: f
   /// lags again.
   bool resume(const BlockVector& from, Real step, Real merit, Real merit_before);
@@ -39,8 +38,8 @@ class Picard {
  private:
   BlockProblem& problem_;
   bool possible_, lags_;
-  Real near_ = 0.3;         // |ln| of the ratio of coefficients
-  int n_ = 0, n_held_ = 0;  // steps; those in a row after which coefficients stayed
+  Real near_ = 0.3;  // |ln| of the ratio of coefficients
+  int n_ = 0;
 };
 
 }  // namespace sprekk::solve

@@ -57,6 +57,54 @@ TEST(Newton, SolvesContact) {
   }
 }
 
+/// x a(x)^3 = 1, a = max(x, 1e-3): a fluid that opens what it flows through. `lags`: it says that a is a coefficient.
+class OpeningProblem : public ScalarProblem {
+ public:
+  OpeningProblem(const RCP<const Comm>& comm, bool lags)
+      : ScalarProblem(
+            comm, 1, [this](Real x, Real, Real) { return x * std::pow(given_ > 0 ? given_ : width(x), 3) - 1; },
+            [this](Real x, Real, Real) {
+              if (given_ > 0) return std::pow(given_, 3);
+              return std::pow(width(x), 3) + (x > least ? 3 * x * x * x : 0);
+            }),
+        lags_(lags) {}
+
+  /// Relaxed as suits the slope of -3.
+  Real lag(Lag how, const BlockVector& x) override {
+    if (!lags_ || how == Lag::none) {
+      given_ = 0;
+      return lags_ ? 0 : -1;
+    }
+    const auto values = x[0]->getData();
+    const Real found = width(values.size() == 0 ? 0 : values[0]);
+    const Real here = given_ > 0 && values.size() > 0 ? std::abs(std::log(found / given_)) : 0;
+    given_ = how == Lag::widest ? 1e2 : given_ > 0 ? given_ * std::pow(found / given_, 0.25) : found;
+    Real away = 0;
+    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &away);
+    return away;
+  }
+
+ private:
+  static constexpr Real least = 1e-3;
+  static Real width(Real x) { return std::max(x, least); }
+  bool lags_;
+  Real given_ = 0;
+};
+
+TEST(Newton, FindsWhatAFluidOpensFromFixedPointsOnly) {
+  for (const bool lags : {false, true}) {
+    OpeningProblem problem(Tpetra::getDefaultComm(), lags);
+    Newton newton(problem, {});
+    auto x = problem.constant(0);
+    problem.set_time(1, 1);
+    const auto report = newton.solve(x);
+    EXPECT_EQ(report.converged, lags) << report.reason;
+    if (!lags) continue;
+    EXPECT_LE(report.iterations, 15);
+    for (const Real found : x[0]->getData()) EXPECT_NEAR(found, 1, 1e-10);
+  }
+}
+
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
   GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
   Newton newton(problem, {});
