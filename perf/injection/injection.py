@@ -19,6 +19,7 @@ from scenes import Scene  # noqa: E402
 END = 20 * 3600.0  # s
 MOST = 25          # Newton iterations of a step
 CUTS = 0.1         # of a run, per step
+QUICK = {"failures": 0, "newton_median": 10, "newton_max": 100, "cuts": 4}  # where --quick printed 0, 8, 66, 1
 PERMEABILITIES = (1e-20, 1e-17, 1e-15)  # m^2
 JOINT = "Materials.rough joint."
 JOINTS = {"mated": (),                                # 0.4 mm wide where nothing presses it
@@ -88,7 +89,7 @@ def row(case, solver, steps, run):
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf injection", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="six runs of ten steps; the status is 1 if anything is not as asked, too")
+    parser.add_argument("--quick", action="store_true", help="four runs of ten steps; the status is 1 above a stated bound, too")
     linear.add_only(parser, "scenes")
     parser.add_argument("--output", type=Path, default=Path("output/perf/injection"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
@@ -100,7 +101,7 @@ def main(words):
     chosen = [(case, *how) for case in cases() for how in RUNS]
     if options.quick:
         chosen = [(case, solver, steps) for case, solver, steps in chosen if case.network == "three" and case.permeability == 1e-17 and steps == 10
-                  and case.rate in (2e-4, 5e-4) and solver == ("iterative" if case.joint == "mated" else "direct")]
+                  and case.rate in (2e-4, 5e-4) and case.joint != "hard" and solver == ("iterative" if case.joint == "mated" else "direct")]
     chosen = linear.matching(options, chosen, lambda run: run[0].scene(*run[1:]).name)
     options.output.mkdir(parents=True, exist_ok=True)
     table, runs, beyond = linear.Table(COLUMNS, 38), [], []
@@ -118,8 +119,11 @@ def main(words):
     print(f"\n{len({case.name for case, *_ in chosen})} scenes, {len(runs)} runs, {len(newton)} steps in {sum(run.seconds for run in runs):.0f} s; injection.csv in {options.output}")
     for what in beyond:
         print("not as asked:", what)
+    above = linear.missed(total, QUICK) if options.quick and not options.only else []
+    for what in above:
+        print(what)
     print("failures={failures} newton_median={newton_median:g} newton_max={newton_max} cuts={cuts}".format(**total))
-    return 1 if total["failures"] or (options.quick and beyond) else 0
+    return 1 if total["failures"] or above else 0
 
 
 if __name__ == "__main__":

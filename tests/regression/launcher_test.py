@@ -59,7 +59,7 @@ class Launcher(ProgramTest):
             self.assertIn('"rok"', err)
             self.launch("run", PUSH, "--ranks", ranks, "--set=Time", expect=1)
             self.launch("run", PUSH, "--ranks", ranks, "--steps", "3", expect=2)
-            self.launch("run", "docs/shear_test.xml", "--ranks", ranks, "--set", "Solver.maximum iterations=1", "--set",
+            self.launch("run", "xml/verification/cyclic_2d.xml", "--ranks", ranks, "--set", "Solver.maximum iterations=1", "--set",
                         "Time.maximum halvings=0", expect=3)
 
     def test_interrupted(self):

@@ -163,14 +163,15 @@ class Restart(ProgramTest):
 
     def test_interrupted_in_a_long_step(self):
         """More iterations than are allowed: substeps, tethers and their halvings take long."""
-        scene = [CYCLIC, "Mesh.cells={30, 30}", "Time.maximum halvings=20", EVERY_STEP, QUIET]
+        scene = [CYCLIC, "Mesh.cells={150, 150}", "Time.maximum halvings=20", EVERY_STEP, QUIET]
         self.go(*scene, "Time.end=1", "Time.steps=1")
         before = self.last()
         for ranks, restart in ((1, True), (2, True), (1, False)):
             with self.subTest(ranks=ranks, restart=restart):
                 if not restart:
                     shutil.rmtree(self.folder / "out")
-                run = self.start(*scene, "Solver.maximum iterations=1", ranks=ranks, restart=restart)
+                slides = () if restart else ("Materials.joint.friction coefficient=0.2",)  # in the first step
+                run = self.start(*scene, *slides, "Solver.maximum iterations=1", ranks=ranks, restart=restart)
                 run.send_signal(signal.SIGTERM if ranks == 1 else signal.SIGUSR1)
                 words = run.stderr.read()
                 self.assertEqual(run.wait(timeout=20), 4, words)
