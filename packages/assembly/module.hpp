@@ -158,9 +158,9 @@ class Module {
   /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
   /// Schur complement, for preconditioners and for sizes of rows.
   virtual void add_schur(const State& state, const Rows& diagonals) const {}
-  /// Sets, of faces where a flux has a coefficient that depends on unknowns, what it is a power of, above zero [local
-  /// fracture face]: those of the state, or `widest`, the largest that it may well have under the present loads. Where
-  /// State::coefficients is given, residual() and jacobian() take that. Local.
+  /// Sets, of faces where a flux has a coefficient that depends on unknowns, what it is a power of, not below zero
+  /// [local fracture face]: those of the state, or `widest`, the largest that it may well have under the present loads.
+  /// Where State::coefficients is given, residual() and jacobian() take that. Local.
   virtual void coefficients(const State& state, bool widest, std::vector<Real>& values) const {}
   /// Appends measures that see what |residual| cannot, as maxima over this rank.
   virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}

@@ -9,26 +9,26 @@
 namespace sprekk::assembly {
 
 /// In logarithms, for coefficients go over many orders of magnitude. Of y -> ln of the coefficients that f lagged by
-/// exp(y) leads to, each face has its own fixed-point iteration, relaxed by 1/(1 - s) with the secant's slope s, of
-/// which the steepest is remembered, by a quarter with each iterate, and made steeper where that went too far, for faces act
-/// on each other. Where conductances follow a cubic law s is -3 if
-/// pressures decide on the aperture, and 0 if volumes do.
+/// exp(y) leads to, each face has its own fixed-point iteration, relaxed by 1/(1 - s) with the secant's slope s. The
+/// steepest slope is remembered, by a quarter with each iterate, and made steeper where that went too far, for faces
+/// act on each other. Where conductances follow a cubic law s is -3 if pressures decide on the aperture, 0 if volumes
+/// do.
 Real System::lag(Lag how, const fields::BlockVector& x) {
-  constexpr Real steepest = -100, first_slope = -1;
+  constexpr Real steepest = -100, first_slope = -1, least = 1e-12;
   if (how == Lag::none) {
     coefficients_ = {};
     lagged_ = {};
     return 0;
   }
   refresh_ghosts(x, false);
-  std::vector<Real> found(mesh_->n_fracture_faces(), 0);
+  std::vector<Real> found(mesh_->n_fracture_faces(), -1);  // below zero: none
   for (std::size_t m = 0; m < modules_.size(); ++m)
     modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
   auto& [used, before, led_to, slope] = lagged_;
   Real here = -1, farthest = 0;
   for (std::size_t f = 0; f < found.size(); ++f) {
-    if (!(found[f] > 0)) continue;
-    found[f] = std::log(found[f]);
+    if (found[f] < 0) continue;
+    found[f] = std::log(std::max(found[f], least));
     here = std::max(here, used.empty() ? 0 : std::abs(found[f] - used[f]));
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &farthest);

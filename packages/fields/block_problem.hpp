@@ -116,9 +116,9 @@ class BlockProblem {
   enum class Lag { none, follow, widest };
   /// Coefficients of fluxes may depend on x by high powers (the transmissivity of a fracture, on its aperture), which
   /// misleads Newton's method far from a solution. From now on f takes them as given: `follow`, first those of x, then
-  /// nearer to those of x with each call; `widest`, everywhere the largest of those of x. none: f is as it is. Returns
-  /// the largest |ln| of the ratio of those of x to those that were given before; below zero where there are none, and f
-  /// stays as it is. Collective.
+  /// nearer to those of x with each call; `widest`, as large as they may become under the present loads. none: f is as
+  /// it is. Returns the largest |ln| of the ratio of those of x to those that were given before; below zero where there
+  /// are none, and f stays as it is. Collective.
   virtual Real lag(Lag how, const BlockVector& x) { return -1; }
   /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
   /// about as much as the rock around it does): so every body is held, and where they rub friction decides little. Zero
@@ -129,7 +129,7 @@ class BlockProblem {
   /// and f is another function. The same on every rank.
   virtual bool calibrate(const BlockVector& x, bool first) { return false; }
   /// Where f leaves it open where a body is, replaces the zero x of f by the one nearest to the last accepted x, and
-  /// returns true if x changed. x may then be a zero to a lesser accuracy.
+  /// returns true if x moved farther than rounding. x may then be a zero to a lesser accuracy.
   virtual bool settle(BlockVector& x) { return false; }
   /// A hash of discrete states [as states()] (which faces are open, stick, slip), the same on every rank and for any
   /// partition.

@@ -18,6 +18,8 @@ namespace sprekk::io {
 
 namespace {
 
+constexpr int most_tries = 100;  // of runs that end at the same moment
+
 /// Whether the path still names the open file: the process that had its lock removes it.
 bool is_at(const std::string& path, int descriptor) {
   struct stat open, there;
@@ -65,7 +67,7 @@ std::string DirectoryLock::take() {
   make_directory(*comm_, directory_);
   std::string not_offered;
   base::collectively(*comm_, [&] {
-    while (comm_->getRank() == 0 && descriptor_ < 0) {
+    for (int tries = 0; comm_->getRank() == 0 && tries < most_tries; ++tries) {
       const int file = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
       SPREKK_CHECK(file >= 0, "{}: cannot be written to: {}", directory_, std::generic_category().message(errno));
       const int error = ::flock(file, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
@@ -84,6 +86,7 @@ std::string DirectoryLock::take() {
         return;
       }
     }
+    if (comm_->getRank() == 0) not_offered = "the file that was locked is another one than its name leads to";
   });
   return from_rank_0(*comm_, not_offered);
 }

@@ -308,7 +308,8 @@ json Results::reactions() const {
   };
   for (const auto& reaction : model_.system().reactions(model_.state())) {
     if (reaction.region >= 0) {
-      add(into_regions[model_.mesh().region_names[reaction.region]], reaction.force);
+      const auto& name = model_.mesh().region_names[reaction.region];
+      into_regions[name] = into_regions.value(name, Real(0)) + reaction.force.at(0);
       continue;
     }
     const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;

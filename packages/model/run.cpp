@@ -167,7 +167,8 @@ void tell_loose(base::Log& log, Real t, const std::string& before, const std::st
   if (now.empty())
     log.info("t = {:.6g}: all rock is held again", t);
   else
-    log.warning("t = {:.6g}: {}, and nothing holds it; of all such states the one nearest to the last is taken", t, now);
+    log.warning("t = {:.6g}: {}, and nothing holds it; of all such states the one nearest to the last is taken", t,
+                now);
 }
 
 /// Ends a run that was asked to stop, with the results of all whole steps.
@@ -255,8 +256,9 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
   const std::string directory = options.output.empty() ? default_directory(options) : options.output;
   io::DirectoryLock lock(comm, directory);
+  const bool reserved = base::any_rank(*comm, [&] { return options.reserved; });  // ranks elsewhere may not be told
   const auto reserve = [&] {
-    if (options.reserved) return;
+    if (reserved) return;
     if (const auto why = lock.take(); !why.empty())
       log.warning("{}: its file system has no locks ({}): see to it that no other run writes there", directory, why);
   };

@@ -83,6 +83,7 @@ struct JointFace {
     const auto size = [](Real value) { return value < 0 ? -value : value; };
     Real sum = 0;
     for (int i = 0; i < dim; ++i) {
+      if (rest.extent(0) > 0) sum += size(rest(f, i));
       sum += bubble_mean(f) * (size(x[beta + dim + i]) + size(x[beta + i]));
       for (int a = 0; a < 2 * n; ++a) {
         sum += share(f, a % n) * size(x[a * dim + i]);

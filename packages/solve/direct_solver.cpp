@@ -103,19 +103,21 @@ class DirectSolver : public LinearSolver {
       if (slow) break;
     }
     Tpetra::deep_copy(x, best);
-    report.converged = report.residual <= std::max(acceptable_linear_residual, noise(b, x));
+    const Real acceptable = std::max(acceptable_linear_residual, noise(b, x));
+    report.converged = report.residual <= acceptable;
     if (!report.converged)
       report.reason = fmt::format(
           "direct solve: relative residual {:.1e}, at most {:.0e} is acceptable: the matrix is "
           "singular or nearly so",
-          report.residual, acceptable_linear_residual);
+          report.residual, acceptable);
     return report;
   }
 
   const Teuchos::ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Relative residual that rounding leaves where there are pressures, whose rows may differ by many orders of magnitude.
+  /// Relative residual that rounding leaves where there are pressures, whose rows may differ by many orders of
+  /// magnitude: what wide fractures let through is known to the rounding of their transmissivity times the pressure.
   Real noise(const Vector& b, const Vector& x) const {
     if (!flows_) return 0;
     Vector Dx(x.getMap());

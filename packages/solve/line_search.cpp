@@ -34,7 +34,8 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto dx = direction.clone();
   auto blocks = blocks_of(*dx);
   bool solved = model_.linear_history().back().converged;
-  report_.damped = damping_ > 0 || std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
+  report_.damped = picard_.lags() || damping_ > 0 ||
+                   std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
   const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
   if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
@@ -50,6 +51,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
     if (solved) found = attempt();
   }
+  if (!found && solved && goes_back(group, from)) return true;
   if (!found) {
     if (solved) report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
     group = from;
@@ -71,13 +73,31 @@ std::optional<LineSearch::Trial> LineSearch::full(NOX::Abstract::Group& group, c
   return Trial{1, merit};
 }
 
+/// Merits of f that lagged say nothing of f itself.
+void LineSearch::begin_search() {
+  since_ = merits_.size();
+  monotone_ = false;
+  visited_.clear();
+}
+
+/// Where no step of f itself was found, to f that lags.
+bool LineSearch::goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from) {
+  if (!picard_.possible() || picard_.lags() || merits_.empty()) return false;
+  group = from;
+  picard_.resume(solution_of(group), 0, 0, 0);
+  problem_.damp(damping_ = 0, swinging_);
+  group.setX(group.getX());
+  group.computeF();
+  return true;
+}
+
 /// Lets Picard look at a step. Where f changes, it is evaluated anew, and so is the merit.
 bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken) {
   const bool lagged = picard_.lags();
   bool back = false;
   if (lagged) {
     back = picard_.follow(solution_of(group));
-    if (!picard_.lags()) since_ = merits_.size();
+    if (!picard_.lags()) begin_search();
   } else if (!merits_.empty()) {
     back = picard_.resume(solution_of(from), taken.a, taken.merit, merits_.back());
   }
@@ -114,6 +134,7 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
     group.computeF();
     merit = problem_.merit(x, residual_of(group));
     merits_.clear();
+    since_ = 0;
     visited_.clear();
   }
   merits_.push_back(merit);
@@ -126,8 +147,9 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
 bool LineSearch::is_stagnant() {
   const int now = static_cast<int>(merits_.size()) - 1;
   if (picard_.possible()) {
-    if (now == 0 || changed_ || merits_.back() < 0.5 * least_) progress_ = merits_.size();
-    least_ = now == 0 ? merits_.back() : std::min(least_, merits_.back());
+    const bool first = now == static_cast<int>(since_);
+    if (first || changed_ || merits_.back() < 0.5 * least_) progress_ = merits_.size();
+    least_ = first ? merits_.back() : std::min(least_, merits_.back());
     return merits_.size() > progress_ + trial_period;
   }
   if (problem_.stores() && steps_.size() >= short_steps &&
@@ -154,7 +176,7 @@ void LineSearch::compare(const std::vector<char>& states, Real merit) {
   pattern_ = problem_.state_hash(states);
   changed_ = pattern_ != before;
   const auto seen = visited_.find(pattern_);
-  if (seen != visited_.end() && merit >= seen->second) monotone_ = true;
+  if (seen != visited_.end() && merit >= seen->second && !picard_.lags()) monotone_ = true;
   visited_[pattern_] = merit;
 }
 

@@ -49,6 +49,8 @@ class LineSearch : public NOX::LineSearch::Generic {
                               const NOX::Abstract::Vector& dx) const;
   std::optional<Trial> full(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                             const NOX::Abstract::Vector& dx) const;
+  void begin_search();
+  bool goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from);
   bool takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken);
   Real limit() const;
   void accept(NOX::Abstract::Group& group, Real step, Real merit);

@@ -48,7 +48,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
       status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
-    } else if (picard_.n_steps() >= most_lagged || report_.iterations - picard_.n_steps() >= options_.max_iterations) {
+    } else if ((picard_.lags() && picard_.n_steps() >= most_lagged) ||
+               report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (search_.stagnant) {
@@ -191,7 +192,6 @@ NewtonReport Newton::solve(BlockVector& x) {
   const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
   RCP<NOX::Solver::Generic> solver;
   report.converged = solve_by(solver, group, test, parameters) == NOX::StatusTest::Converged;
-  const bool lagged = picard->lags() && picard->n_steps() > 0;
   picard.reset();
   if (!report.stopped) refuse_unread(options_.nox, *parameters, "Sprekk > Solver > NOX");
   fields::copy(solution_of(solver->getSolutionGroup()), x);
@@ -199,7 +199,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.iterations > 0) {
-    const int here = search.damped || lagged;
+    const int here = search.damped;
     int anywhere = 0;
     Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
     factors_ = anywhere > 0 ? Factors::damped : Factors::good;

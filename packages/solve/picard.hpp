@@ -12,11 +12,11 @@ using fields::BlockVector;
 /// linearises that at closed ones: the fluid of a step then stays in one face, which opens far too wide, in the next
 /// iterate in its neighbours, and so on; and a search for less residual forbids the way, for residuals of flow rise by
 /// orders of magnitude while volume moves. So f first takes transmissivities as given, see BlockProblem::lag(): a
-/// problem of contact and linear flow, of which one full Newton step is made for each new set of them. If the first step
-/// goes far, it is taken back, and transmissivities start from wide fractures: T ~ a^3 is convex, and iterates that come
-/// from above do not pass over the solution. Once apertures agree, Newton's method takes over; a step of it that comes
-/// no nearer is taken back, and the fixed-point iteration goes on, to a tenth of the distance. All members are
-/// collective but for those that return what is stored.
+/// problem of contact and linear flow, of which one full Newton step is made for each new set of them. If the first
+/// step goes far, it is taken back, and transmissivities start from wide fractures: T ~ a^3 is convex, and iterates
+/// that come from above do not pass over the solution. Once apertures agree, Newton's method takes over; a step of it
+/// that comes no nearer is taken back, and the fixed-point iteration goes on, to a tenth of the distance. All members
+/// are collective but for those that return what is stored.
 class Picard {
  public:
   /// Refers to the problem, whose f lags from now on, at x, if it has such coefficients, until the end of its life.

@@ -59,8 +59,8 @@ class Launcher(ProgramTest):
             self.assertIn('"rok"', err)
             self.launch("run", PUSH, "--ranks", ranks, "--set=Time", expect=1)
             self.launch("run", PUSH, "--ranks", ranks, "--steps", "3", expect=2)
-            self.launch("run", "xml/verification/cyclic_2d.xml", "--ranks", ranks, "--set", "Solver.maximum iterations=1", "--set",
-                        "Time.maximum halvings=0", expect=3)
+            self.launch("run", ROOT / "xml/verification/cyclic_2d.xml", "--ranks", ranks,
+                        "--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", expect=3)
 
     def test_interrupted(self):
         """Ctrl-C reaches all processes of the terminal's group. A second one ends a step that takes long."""
