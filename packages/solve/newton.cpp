@@ -119,6 +119,8 @@ void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
     if (const auto* entry = nox.getEntryPtr(name); entry && !entry->isList())
       section.fail_inside(fmt::format("NOX > \"{}\": is {}, must be a section", name, base::describe(*entry)));
   if (nox.isSublist("Direction")) check(nox.sublist("Direction"), "NOX > Direction", "Method", "Newton");
+  if (nox.isSublist("Line Search") && nox.sublist("Line Search").isParameter("Method"))
+    section.fail_inside("NOX > Line Search > \"Method\": must not be given: the search is Sprekk's own");
 }
 
 /// What NOX says of its parameters, on one line and without the place in its sources.

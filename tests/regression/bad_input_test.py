@@ -438,9 +438,10 @@ class Scenes(BadInput):
                                     ("Nonlinear Solver", "Foo", 'is the string "Foo", must be "Line Search Based"'),
                                     ("Direction.Method", "Steepest Descent", 'Direction > "Method": is the string "Steepest Descent", must be "Newton"'),
                                     ("Direction.Method", "3", 'is the integer 3, must be "Newton"'),
+                                    ("Line Search.Method", "More'-Thuente", 'Line Search > "Method": must not be given'),
                                     ("Printing", "3", '"Printing": is the integer 3, must be a section')):
             self.refuse_set([place, words], f"Solver.NOX.{entry}={value}")
-        for entry in ("Line Search.Method=Foo", "Direction.Newton.Rescue Bad Newton Solve=3"):  # what only NOX knows
+        for entry in ("Direction.Newton.Rescue Bad Newton Solve=3",):  # what only NOX knows
             self.refuse([PUSH, "Sprekk > Solver > NOX: NOX does not take these parameters: Error"], "run", self.scene(PUSH),
                         "--set", "Solver.NOX." + entry)
 

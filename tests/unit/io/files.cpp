@@ -82,6 +82,7 @@ TEST(DirectoryLock, IsHeldByOne) {
   }
   comm->barrier();
   EXPECT_FALSE(fs::exists(path + "/.lock"));
+  comm->barrier();
   scratch.on_rank_0([&] { std::ofstream(path + "/.lock") << "process 1 on moon\n"; });  // of one that was killed
   EXPECT_EQ(io::DirectoryLock(comm, path).take(), "");
 }
