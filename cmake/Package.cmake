@@ -1,8 +1,9 @@
 # sprekk_package(NAME [USES packages...] [LINKS external targets...])
-# A package is every .cpp of its folder; one without any is header-only. Includes read "package/header.hpp".
+# A package is every .cpp of its folder and of those in it; one without any is header-only. Includes read
+# "package/header.hpp".
 function(sprekk_package name)
   cmake_parse_arguments(ARG "" "" "USES;LINKS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(uses ${ARG_USES})
   list(TRANSFORM uses PREPEND sprekk_)
   if(sources)

@@ -3,7 +3,7 @@
 #include "assembly/prescribed_error.hpp"
 #include "mesh/extents.hpp"
 #include "model/scene_check.hpp"
-#include "physics/traction_recovery.hpp"
+#include "physics/mechanics/traction_recovery.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

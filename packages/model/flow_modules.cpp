@@ -4,12 +4,12 @@
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "model/properties.hpp"
-#include "physics/darcy_flow.hpp"
-#include "physics/fluid_storage.hpp"
-#include "physics/fracture_flow.hpp"
-#include "physics/given_pressure.hpp"
-#include "physics/poroelastic_coupling.hpp"
-#include "physics/wells.hpp"
+#include "physics/flow/darcy_flow.hpp"
+#include "physics/flow/fluid_storage.hpp"
+#include "physics/flow/fracture_flow.hpp"
+#include "physics/poroelasticity/given_pressure.hpp"
+#include "physics/poroelasticity/poroelastic_coupling.hpp"
+#include "physics/flow/wells.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

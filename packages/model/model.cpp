@@ -12,8 +12,8 @@
 #include "model/properties.hpp"
 #include "model/scene_check.hpp"
 #include "model/uniqueness.hpp"
-#include "physics/given_pressure.hpp"
-#include "physics/mechanics.hpp"
+#include "physics/poroelasticity/given_pressure.hpp"
+#include "physics/mechanics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

@@ -8,7 +8,7 @@
 #include "base/timer.hpp"
 #include "io/checkpoints.hpp"
 #include "model/scene.hpp"
-#include "physics/stress_recovery.hpp"
+#include "physics/mechanics/stress_recovery.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/time_stepping.hpp"
 

@@ -9,8 +9,8 @@
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
 #include "model/network.hpp"
-#include "physics/elastic_plastic_jump.hpp"
-#include "physics/fracture_flow.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "physics/flow/fracture_flow.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
 

@@ -4,7 +4,7 @@
 #include "assembly/jacobian_check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/distribute.hpp"
-#include "physics/bulk_momentum.hpp"
+#include "physics/mechanics/bulk_momentum.hpp"
 #include "solve/newton.hpp"
 
 #include <Tpetra_Core.hpp>

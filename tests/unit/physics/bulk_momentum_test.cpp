@@ -1,4 +1,4 @@
-#include "physics/bulk_momentum.hpp"
+#include "physics/mechanics/bulk_momentum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // History, outputs and measures of the elastic-plastic jump, and that no partition changes an answer.
-#include "physics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <gtest/gtest.h>
 

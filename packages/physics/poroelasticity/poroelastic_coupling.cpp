@@ -1,8 +1,8 @@
-#include "physics/poroelastic_coupling.hpp"
+#include "physics/poroelasticity/poroelastic_coupling.hpp"
 
 #include "assembly/assembler.hpp"
 #include "mesh/facets.hpp"
-#include "physics/coupling_volumes.hpp"
+#include "physics/poroelasticity/coupling_volumes.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // All modules of the mechanics of fractured rock.
 #pragma once
 
-#include "physics/bulk_momentum.hpp"
-#include "physics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/bulk_momentum.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 namespace sprekk::physics {
 

@@ -4,7 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
 #include "laws/joint.hpp"
-#include "physics/loads.hpp"
+#include "physics/mechanics/loads.hpp"
 
 #include <array>
 #include <memory>

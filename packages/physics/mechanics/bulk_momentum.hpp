@@ -3,7 +3,7 @@
 
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
-#include "physics/loads.hpp"
+#include "physics/mechanics/loads.hpp"
 
 #include <memory>
 #include <optional>

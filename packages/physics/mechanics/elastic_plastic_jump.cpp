@@ -1,9 +1,9 @@
-#include "physics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
-#include "physics/joint_face.hpp"
+#include "physics/mechanics/joint_face.hpp"
 
 #include <algorithm>
 #include <cmath>

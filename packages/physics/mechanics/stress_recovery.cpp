@@ -1,7 +1,7 @@
-#include "physics/stress_recovery.hpp"
+#include "physics/mechanics/stress_recovery.hpp"
 
-#include "physics/bubble_stiffness.hpp"
-#include "physics/recovery_patches.hpp"
+#include "physics/mechanics/bubble_stiffness.hpp"
+#include "physics/mechanics/recovery_patches.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

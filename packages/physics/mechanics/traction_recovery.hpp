@@ -3,8 +3,8 @@
 
 #include "fields/layout.hpp"
 #include "mesh/mesh.hpp"
-#include "physics/loads.hpp"
-#include "physics/stress_recovery.hpp"
+#include "physics/mechanics/loads.hpp"
+#include "physics/mechanics/stress_recovery.hpp"
 
 namespace sprekk::physics {
 

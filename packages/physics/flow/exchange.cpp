@@ -1,4 +1,4 @@
-#include "physics/exchange.hpp"
+#include "physics/flow/exchange.hpp"
 
 namespace sprekk::physics {
 

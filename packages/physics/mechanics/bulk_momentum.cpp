@@ -1,9 +1,9 @@
-#include "physics/bulk_momentum.hpp"
+#include "physics/mechanics/bulk_momentum.hpp"
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
-#include "physics/elastic_cell.hpp"
+#include "physics/mechanics/elastic_cell.hpp"
 
 #include <algorithm>
 #include <cmath>

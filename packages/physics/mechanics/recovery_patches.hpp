@@ -3,7 +3,7 @@
 
 #include "assembly/loop.hpp"
 #include "assembly/tip_cell.hpp"
-#include "physics/tip_modes.hpp"
+#include "physics/mechanics/tip_modes.hpp"
 
 #include <Teuchos_LAPACK.hpp>
 

@@ -1,7 +1,7 @@
-#include "physics/given_pressure.hpp"
+#include "physics/poroelasticity/given_pressure.hpp"
 
 #include "assembly/assembler.hpp"
-#include "physics/coupling_volumes.hpp"
+#include "physics/poroelasticity/coupling_volumes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "physics/darcy_flow.hpp"
+#include "physics/flow/darcy_flow.hpp"
 
 #include "base/check.hpp"
 #include "mesh/extents.hpp"
-#include "physics/exchange.hpp"
+#include "physics/flow/exchange.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

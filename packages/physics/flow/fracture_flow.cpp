@@ -1,10 +1,10 @@
-#include "physics/fracture_flow.hpp"
+#include "physics/flow/fracture_flow.hpp"
 
 #include "assembly/assembler.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/exchange.hpp"
-#include "physics/face_plane.hpp"
+#include "physics/flow/exchange.hpp"
+#include "physics/flow/face_plane.hpp"
 
 #include <algorithm>
 #include <cmath>

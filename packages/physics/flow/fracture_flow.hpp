@@ -3,7 +3,7 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
-#include "physics/darcy_flow.hpp"
+#include "physics/flow/darcy_flow.hpp"
 
 #include <memory>
 #include <vector>

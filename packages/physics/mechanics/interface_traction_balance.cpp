@@ -1,7 +1,7 @@
-#include "physics/interface_traction_balance.hpp"
+#include "physics/mechanics/interface_traction_balance.hpp"
 
 #include "assembly/assembler.hpp"
-#include "physics/bubble_stiffness.hpp"
+#include "physics/mechanics/bubble_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>

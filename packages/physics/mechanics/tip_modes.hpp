@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/facets.hpp"
-#include "physics/symmetric.hpp"
+#include "physics/mechanics/symmetric.hpp"
 
 #include <array>
 #include <complex>

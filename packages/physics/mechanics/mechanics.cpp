@@ -1,7 +1,7 @@
-#include "physics/mechanics.hpp"
+#include "physics/mechanics/mechanics.hpp"
 
-#include "physics/interface_traction_balance.hpp"
-#include "physics/tip_enrichment.hpp"
+#include "physics/mechanics/interface_traction_balance.hpp"
+#include "physics/mechanics/tip_enrichment.hpp"
 
 namespace sprekk::physics {
 

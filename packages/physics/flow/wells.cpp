@@ -1,9 +1,9 @@
-#include "physics/wells.hpp"
+#include "physics/flow/wells.hpp"
 
 #include "mesh/extents.hpp"
-#include "physics/equivalent_radius.hpp"
-#include "physics/exchange.hpp"
-#include "physics/face_plane.hpp"
+#include "physics/flow/equivalent_radius.hpp"
+#include "physics/flow/exchange.hpp"
+#include "physics/flow/face_plane.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 

@@ -1,4 +1,4 @@
-#include "physics/fluid_storage.hpp"
+#include "physics/flow/fluid_storage.hpp"
 
 #include "assembly/assembler.hpp"
 

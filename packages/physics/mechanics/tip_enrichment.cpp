@@ -1,4 +1,4 @@
-#include "physics/tip_enrichment.hpp"
+#include "physics/mechanics/tip_enrichment.hpp"
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"

@@ -1,7 +1,7 @@
 // Momentum of the functions that enrich the displacement around crack tips.
 #pragma once
 
-#include "physics/bulk_momentum.hpp"
+#include "physics/mechanics/bulk_momentum.hpp"
 
 namespace sprekk::physics {
 

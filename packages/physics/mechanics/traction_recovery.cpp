@@ -1,4 +1,4 @@
-#include "physics/traction_recovery.hpp"
+#include "physics/mechanics/traction_recovery.hpp"
 
 #include "assembly/loop.hpp"
 #include "assembly/tip_cell.hpp"
