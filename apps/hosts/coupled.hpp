@@ -89,7 +89,7 @@ class Exchange {
  public:
   Exchange(int dim, int cells, RCP<const Comm> comm, model::Scene scene)
       : grid_(grid(dim, cells)), reservoir_(grid_, fluid()), room_(reservoir_.size(), 0), p_(room_) {
-    scene.host_fluid = model::HostFluid();
+    scene.host_fluid = physics::HostFluid();
     model_ = std::make_unique<model::Model>(scene, comm);
     const auto& mesh = model_->mesh();
     for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
@@ -159,7 +159,7 @@ class Exchange {
 
 /// The block and the host's flow in one Jacobian.
 inline std::unique_ptr<model::Model> make_together(model::Scene scene, RCP<const Comm> comm) {
-  scene.host_fluid = model::HostFluid{true};
+  scene.host_fluid = physics::HostFluid{true};
   const auto flow = [](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> modules;
     modules.push_back(make_own_flow(mesh, fluid()));

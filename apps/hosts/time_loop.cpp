@@ -30,9 +30,13 @@ model::Scene block() {
   joint.friction_coefficient = mu;
   scene.bulk.material = "rock";
   scene.fractures["joint"].material = "smooth";
-  scene.boundary_conditions["floor"] = {"south", {}, {0, 0}, {}};
+  auto& floor = scene.boundary_conditions["floor"];
+  floor.boundary = "south";
+  floor.displacement = {0, 0};
   const base::Expression right("1e-3*max(t - 1, 0)"), down("-1e-3*min(t, 1)");
-  scene.boundary_conditions["top"] = {"north", {}, {right, down}, {}};
+  auto& top = scene.boundary_conditions["top"];
+  top.boundary = "north";
+  top.displacement = {right, down};
   return scene;
 }
 

@@ -28,9 +28,13 @@ model::Scene block(int kind) {
   joint.friction_coefficient = kind == 0 ? 0.4 : 0.7;
   scene.bulk.material = "rock";
   scene.fractures["joint"].material = "smooth";
-  scene.boundary_conditions["floor"] = {"south", {}, {0, 0}, {}};
+  auto& floor = scene.boundary_conditions["floor"];
+  floor.boundary = "south";
+  floor.displacement = {0, 0};
   const base::Expression right("2e-3*t"), down(kind == 0 ? "-1e-3*t" : "-5e-4*t");
-  scene.boundary_conditions["top"] = {"north", {}, {right, down}, {}};
+  auto& top = scene.boundary_conditions["top"];
+  top.boundary = "north";
+  top.displacement = {right, down};
   scene.solver.linear_solver.reproducible = true;  // MUMPS on several ranks adds in the order in which messages come
   return scene;
 }

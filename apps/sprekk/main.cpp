@@ -2,7 +2,7 @@
 #include "base/check.hpp"
 #include "base/heap.hpp"
 #include "base/memory.hpp"
-#include "model/material_library.hpp"
+#include "physics/material_library.hpp"
 #include "model/network.hpp"
 #include "model/point.hpp"
 #include "model/run.hpp"
@@ -94,7 +94,7 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   const bool speaks = comm->getRank() == 0;
   if (command == "run") return run_scene(options, comm);
   if (command == "reference" && speaks) std::cout << (arguments.schema ? model::schema() : model::reference());
-  if (command == "materials" && speaks) std::cout << model::library_markdown();
+  if (command == "materials" && speaks) std::cout << physics::library_markdown();
   if (command == "mesh-info")
     base::collectively(*comm, [&] {
       if (speaks) std::cout << model::mesh_info(arguments.mesh_file, arguments.fractures);

@@ -2,7 +2,7 @@
 
 #include "assembly/prescribed_error.hpp"
 #include "mesh/extents.hpp"
-#include "model/scene_check.hpp"
+#include "physics/comparison.hpp"
 #include "physics/mechanics/traction_recovery.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -22,6 +22,12 @@ const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, cons
   return std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; })->values;
 }
 
+std::unique_ptr<physics::StressRecovery> make_recovery(const Model& model,
+                                                       const physics::ByField<const fields::Layout*>& layouts) {
+  const auto rock = physics::elasticity(model.scene(), model.mesh());
+  return physics::make_stress_recovery(Teuchos::rcpFromRef(model.mesh()), layouts, rock.values, rock.number);
+}
+
 /// part / whole; close to 0 where the whole is nothing but round-off of something as large as scale.
 Real share(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / std::max(whole, 1e-10 * scale); }
 
@@ -39,7 +45,7 @@ nlohmann::json ErrorEstimate::summary() const {
 ErrorEstimator::ErrorEstimator(Model& model)
     : model_(model),
       blocks_{block("displacement"), block("side bubble"), block("tip displacement")},
-      recovery_(make_stress_recovery(model.scene(), Teuchos::rcpFromRef(model.mesh()), layouts())) {
+      recovery_(make_recovery(model, layouts())) {
   section_ = std::pow(mesh::largest_extent(model.mesh()), model.mesh().dim() - 1);
 }
 
@@ -74,7 +80,8 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
 void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
   const auto& system = model_.system();
   const auto& mesh = model_.mesh();
-  const auto conditions = dirichlet_conditions(model_.scene().boundary_conditions, group_names(mesh));
+  const auto conditions = physics::dirichlet_conditions(
+      model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
   const auto error =
       assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
   const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -96,7 +103,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
   physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda],
-                                   model_.scene().initial_stress(mesh.region_names), *model_.state()[lambda],
+                                   physics::initial_stress(model_.scene(), mesh.region_names), *model_.state()[lambda],
                                    stress.forces);
   try {
     prescribe(right_side);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/model.hpp"
+#include "physics/mechanics/stress_recovery.hpp"
 
 #include <nlohmann/json.hpp>
 

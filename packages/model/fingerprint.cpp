@@ -59,6 +59,12 @@ json unknowns(const assembly::System& system) {
   return all;
 }
 
+/// Whether a section may be another one where a run goes on, or is compared otherwise.
+bool is_free(const std::string& section) {
+  constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output"};
+  return std::find(std::begin(free), std::end(free), section) != std::end(free);
+}
+
 /// The points of `later` begin with those of `earlier`.
 bool extends(const json& earlier, const json& later) {
   return earlier.size() <= later.size() && std::equal(earlier.begin(), earlier.end(), later.begin());
@@ -80,12 +86,14 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"unknowns", unknowns(system)},
                  {"Time > start", scene.time.start},
                  {"Tables", json::object()}};
-  if (scene.has_unknown_pressure()) result["Time > scheme"] = scene.time.scheme;
+  physics::for_each_physics([&](auto physics) {
+    if (physics.has_rates(scene)) result["Time > scheme"] = scene.time.scheme;
+  });
   if (const auto& host = scene.host_fluid) result["host_fluid"] = {host->unknown, host->initial_pressure};
-  for (const char* name : {"Materials", "Bulk", "Regions", "Fractures", "Boundary conditions"})
-    result[name] = base::to_xml(sections.sublist(name));
-  if (!scene.expressions.empty()) result["Expressions"] = base::to_xml(sections.sublist("Expressions"));
-  if (scene.flow) result["Flow"] = base::to_xml(sections.sublist("Flow"));
+  for (const auto& named_entry : sections) {
+    const std::string& name = named_entry.first;
+    if (!is_free(name) && sections.isSublist(name)) result[name] = base::to_xml(sections.sublist(name));
+  }
   for (const auto& module : system.modules())
     result["module \"" + module->name() + "\""].push_back(module->fingerprint());
   for (const auto& [name, table] : scene.tables)

@@ -8,12 +8,8 @@
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
-#include "model/flow_modules.hpp"
-#include "model/properties.hpp"
 #include "model/scene_check.hpp"
-#include "model/uniqueness.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
-#include "physics/mechanics/mechanics.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -25,62 +21,9 @@ namespace sprekk::model {
 
 namespace {
 
-/// Mean over a fracture face whose cell on side minus is local.
-Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const Material::Value& value) {
-  Real sum = 0, total = 0;
-  mesh::for_shape(mesh.shape, [&](auto shape) {
-    assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                           [&](const auto&, Real area, const auto& x) {
-                                             sum += area * value(x, 0);
-                                             total += area;
-                                           });
-  });
-  return sum / total;
-}
-
-/// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
-/// means, too.
-Properties<physics::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto section = [&](int fracture) -> const Fracture& {
-    return scene.fractures.at(mesh.fracture_names[fracture]);
-  };
-  const auto material = [&](int fracture) -> const Material& { return scene.materials.at(section(fracture).material); };
-  std::vector<int> fracture_of;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_of.push_back(mesh.fracture_faces[f].fracture);
-  return properties<physics::JointParameters>(
-      static_cast<int>(mesh.fracture_names.size()), fracture_of,
-      [&](int fracture) {
-        const auto& jump = section(fracture).plastic_jump;
-        return material(fracture).is_uniform() &&
-               std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
-      },
-      [&](int fracture, int f) {
-        const auto& jump = section(fracture).plastic_jump;
-        auto joint = at_place(scene, material(fracture), [&] {
-          return material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
-        });
-        for (std::size_t k = 0; k < jump.size(); ++k)
-          joint.plastic_jump[k] = f < 0 ? jump[k]({}, 0) : mean(mesh, mesh.fracture_faces[f], jump[k]);
-        if (f < 0) return joint;
-        const auto& face = mesh.fracture_faces[f];
-        if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
-          joint.law.gap.initial = mean(mesh, face, gap);
-        return joint;
-      });
-}
-
-physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
-  physics::BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
-  if (force.gravity.empty()) return force;
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
-    force.density_of_cell.push_back(
-        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
-  return force;
-}
-
 assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  return {scene.deforms() ? largest_modulus(scene, mesh) : 1, mesh::largest_extent(mesh),
-          scene.flow ? largest_mobility(scene, mesh) : 0};
+  return {physics::Mechanics::is_in(scene) ? physics::largest_modulus(scene, mesh) : 1, mesh::largest_extent(mesh),
+          scene.flow ? physics::largest_mobility(scene, mesh) : 0};
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -108,54 +51,13 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
   to.doImport(from, fields::Import(from.getMap(), to.getMap()), Tpetra::REPLACE);
 }
 
-physics::MechanicsParameters mechanics(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto rock = elasticity(scene, mesh);
-  physics::BulkMomentumParameters bulk{
-      rock.values, body_force(scene, mesh), {}, scene.initial_stress(mesh.region_names), rock.number};
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (!condition.traction.empty())
-      bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
-                                condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  if (mesh.fracture_names.empty()) return {bulk};
-  const auto joint = joints(scene, mesh);
-  physics::FluidPressure initial;
-  if (scene.has_unknown_pressure()) initial.value.assign(mesh.fracture_names.size(), scene.initial_pressure());
-  return {bulk,
-          joint.values,
-          joint.number,
-          scene.fluid_pressure(mesh.fracture_names),
-          initial,
-          scene.has_unknown_pressure(),
-          scene.time.start,
-          scene.augmentation};
-}
-
 }  // namespace
 
-std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh) {
-  if (!scene.deforms()) return make_flow(scene, mesh);
-  physics::MechanicsParameters parameters;
-  base::collectively(*mesh.comm, [&] { parameters = mechanics(scene, mesh); });
-  auto modules = physics::make_mechanics(mesh, parameters);
-  if (scene.host_fluid) {
-    modules.push_back(scene.host_fluid->unknown ? make_coupling(scene, mesh) : make_given(scene, mesh));
-    return modules;
-  }
-  if (!scene.flow) return modules;
-  std::vector<Real> widths;
-  base::collectively(*mesh.comm, [&] {
-    for (const auto& jump : physics::initial_jumps(mesh, physics::jump_parameters(mesh, parameters)))
-      widths.push_back(jump[0]);
-  });
-  for (auto& module : make_flow(scene, mesh, widths)) modules.push_back(std::move(module));
-  modules.push_back(make_coupling(scene, mesh));
+physics::Modules make_modules(const Scene& scene, const mesh::Mesh& mesh) {
+  physics::Modules modules;
+  physics::for_each_physics(
+      [&](auto physics) { physics.add_modules({scene, mesh, scene.time.start}, modules); });
   return modules;
-}
-
-std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
-                                                              const physics::ByField<const fields::Layout*>& layouts) {
-  const auto rock = elasticity(scene, *mesh);
-  return physics::make_stress_recovery(mesh, layouts, rock.values, rock.number);
 }
 
 namespace {
@@ -169,11 +71,11 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), anywhere.data());
   for (const auto& [name, condition] : scene.boundary_conditions) {
     if (!condition.fracture) continue;
-    const auto first = anywhere.begin() + index_of(mesh.fracture_names, *condition.fracture) * n;
+    const auto first = anywhere.begin() + physics::index_of(mesh.fracture_names, *condition.fracture) * n;
     std::vector<std::string> ends;
     for (std::size_t b = 0; b < n; ++b)
       if (first[b]) ends.push_back(mesh.boundary_names[b]);
-    SPREKK_CHECK(first[index_of(mesh.boundary_names, condition.boundary)],
+    SPREKK_CHECK(first[physics::index_of(mesh.boundary_names, condition.boundary)],
                  "{}: Sprekk > Boundary conditions > {} > \"fracture\": \"{}\" does not end on \"{}\"; it ends on {}",
                  scene.origin, name, *condition.fracture, condition.boundary,
                  ends.empty() ? "no boundary" : base::quoted_list(ends));
@@ -191,7 +93,9 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     const auto scope = timers_->scope("mesh");
     mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
     mesh = draft.value.refined(mesh);
-    if (draft.value.has_unknown_pressure()) mesh = mesh::with_facets(mesh);
+    bool facets = false;
+    physics::for_each_physics([&](auto physics) { facets = facets || physics.needs_facets(draft.value); });
+    if (facets) mesh = mesh::with_facets(mesh);
   }
   scene_ = std::move(draft.value);
   check_ends(scene_, *mesh);
@@ -203,14 +107,8 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     const bool held = std::any_of(modules.begin(), modules.end(), [](const auto& m) { return m->holds_bodies(); });
     SPREKK_CHECK(unheld.empty() || held, "{}: {}", scene_.origin, unheld);
   });
-  std::vector<assembly::DirichletCondition> conditions;
-  for (const char* field : {"displacement", "face pressure"})
-    for (auto& condition : dirichlet_conditions(scene_.boundary_conditions, group_names(*mesh), field))
-      conditions.push_back(std::move(condition));
-  for (const auto& [name, region] : scene_.regions)
-    for (const char* field : {"pressure", "face pressure"})
-      if (region.pressure)
-        conditions.push_back({"Regions > " + name, field, -1, {*region.pressure}, index_of(mesh->region_names, name)});
+  const auto conditions =
+      physics::dirichlet_conditions(scene_.boundary_conditions, scene_.regions, physics::names_of(*mesh));
   system_ = std::make_unique<assembly::System>(
       mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
@@ -232,12 +130,12 @@ solve::StepReport Model::step_to(Real t) {
   beginning_ = beginning();
   auto report = stepper_->advance(x_, time_, t);
   if (report.converged || report.stopped) return report;
-  if (const auto doubt = friction_doubt(scene_); !doubt.empty()) report.reason += "; " + doubt;
-  const bool changes = base::any_rank(*mesh().comm, [&] {
+  const bool oscillates = base::any_rank(*mesh().comm, [&] {
     return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();
   });
-  if (!changes) return report;  // it fails for another reason
-  if (const auto doubt = dilation_doubt(scene_, mesh()); !doubt.empty()) report.reason += "; " + doubt;
+  physics::for_each_physics([&](auto physics) {
+    for (const auto& doubt : physics.doubts(setting(), oscillates)) report.reason += "; " + doubt;
+  });
   return report;
 }
 
@@ -277,7 +175,7 @@ void Model::set_fluid_pressure(const std::vector<Real>& rock, const std::vector<
   });
   const auto above = [&](std::vector<Real> values, fields::Entity entity) {
     for (Real& p : values) p -= scene_.host_fluid->initial_pressure;
-    return with_ghosts(mesh(), entity, values);
+    return physics::with_ghosts(mesh(), entity, values);
   };
   given->set(above(rock, fields::Entity::cell), above(fractures, fields::Entity::fracture_face));
 }

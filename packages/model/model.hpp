@@ -8,7 +8,6 @@
 #include "base/timer.hpp"
 #include "io/checkpoints.hpp"
 #include "model/scene.hpp"
-#include "physics/mechanics/stress_recovery.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/time_stepping.hpp"
 
@@ -68,6 +67,7 @@ class Model {
 
   Real time() const { return time_; }
   const Scene& scene() const { return scene_; }
+  physics::Setting setting() const { return {scene_, mesh(), scene_.time.start}; }
   const mesh::Mesh& mesh() const { return system_->mesh(); }
   assembly::System& system() { return *system_; }
   const assembly::System& system() const { return *system_; }
@@ -98,11 +98,7 @@ class Model {
   std::optional<Beginning> beginning_;  // of the last step
 };
 
-/// The equation system of a scene is a list of modules.
-std::vector<std::unique_ptr<assembly::Module>> make_modules(const Scene& scene, const mesh::Mesh& mesh);
-
-/// Recovers the stress of the displacement in this rock; refers to the layouts. Collective.
-std::unique_ptr<physics::StressRecovery> make_stress_recovery(const Scene& scene, RCP<const mesh::Mesh> mesh,
-                                                              const physics::ByField<const fields::Layout*>& layouts);
+/// The equation system of a scene is a list of modules. Collective.
+physics::Modules make_modules(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::model

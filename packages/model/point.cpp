@@ -3,7 +3,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
-#include "model/material_library.hpp"
+#include "physics/material_library.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -233,8 +233,8 @@ void PointScene::describe(base::Section& s) {
   s.section(time, "Time", "steps");
   s.section(point, "Point", "what drives the point");
   if (!s.complete()) return;
-  add_library_materials(materials, {point.material});
-  const std::string wrong = wrong_material(point.material, "joint", materials);
+  physics::add_library_materials(materials, {point.material});
+  const std::string wrong = physics::wrong_material(point.material, "joint", materials);
   if (!wrong.empty()) s.fail_inside("Point > \"material\": " + wrong);
 }
 

@@ -6,10 +6,8 @@
 #include "io/directory_lock.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
-#include "mesh/tips.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
-#include "model/uniqueness.hpp"
 
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -113,13 +111,6 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
   }
 }
 
-/// Whether fractures end inside of the rock; not known of plain tips with periodic sides. Collective.
-bool has_tips(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto& tied = scene.mesh_file ? scene.mesh_file->periodic : scene.mesh.periodic;
-  const auto tips = scene.tips() == "plain" && tied.empty() ? mesh::tip_nodes(mesh) : mesh.tip;
-  return base::any_rank(*mesh.comm, [&] { return std::find(tips.begin(), tips.end(), 1) != tips.end(); });
-}
-
 void describe(const Model& model, base::Log& log) {
   const auto& mesh = model.mesh();
   const int n_ranks = mesh.comm->getSize();
@@ -134,20 +125,12 @@ void describe(const Model& model, base::Log& log) {
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
-  const auto& scene = model.scene();
-  for (const auto& doubt : {friction_doubt(scene), dilation_doubt(scene, mesh)})
-    if (!doubt.empty()) log.warning("{}", doubt);
-  if (scene.deforms() && mesh.dim() == 3 && mesh::order(mesh.shape) == 1 && has_tips(scene, mesh))
-    log.warning(
-        "{}: fractures end inside of the rock: in 3D their slip and opening come out some percent too small with cells "
-        "of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
-        scene.origin);
-  for (const auto& [name, material] : scene.materials)
-    if (scene.flow && scene.deforms() && material.type == "elastic" && material.biot < material.porosity)
-      log.warning(
-          "{}: Sprekk > Materials > {} > \"Biot coefficient\": is {}, below the porosity {}; rock whose grains are "
-          "stiffer than its skeleton has more",
-          scene.origin, name, material.biot, material.porosity);
+  physics::for_each_physics([&](auto physics) {
+    for (const auto& doubt : physics.doubts(model.setting(), true)) log.warning("{}", doubt);
+  });
+  physics::for_each_physics([&](auto physics) {
+    for (const auto& warning : physics.warnings(model.setting())) log.warning("{}", warning);
+  });
 }
 
 /// A line for each part of the preconditioner: what it has cost on this rank.

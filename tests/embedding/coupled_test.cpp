@@ -74,7 +74,7 @@ TEST(GivenPressure, ChangesTheEffectiveStress) {
     for (const Real at_start : {0.0, 5e5}) {
       auto scene = hosts::block(dim, 4);
       scene.boundary_conditions["north"].traction[0] = 0;
-      scene.host_fluid = model::HostFluid{false, at_start};
+      scene.host_fluid = physics::HostFluid{false, at_start};
       model::Model model(scene, comm);
       const auto& mesh = model.mesh();
       const Real P_0 = 2e6, p = 1e6, above = p - at_start;
@@ -125,7 +125,7 @@ TEST(TakeBack, MistakesAreErrors) {
   model::Model without(scene, comm);
   EXPECT_THAT(error_of([&] { without.take_back(); }), HasSubstr("there is no step to take back, at t = 0"));
   EXPECT_THAT(error_of([&] { without.set_fluid_pressure({}, {}); }), HasSubstr("the scene has no host_fluid"));
-  scene.host_fluid = model::HostFluid();
+  scene.host_fluid = physics::HostFluid();
   model::Model given(scene, comm);
   scene.fractures.begin()->second.fluid_pressure = 1;
   EXPECT_THAT(error_of([&] { model::Model twice(scene, comm); }), HasSubstr("is not given but found"));

@@ -46,8 +46,10 @@ model::Scene make_scene(const std::string& cell, int order, const Law& law) {
   scene.bulk.material = "rock";
   scene.bulk.body_force.assign(dim, base::Expression(1e4));
   for (const auto& [name, fracture] : scene.mesh.fractures) scene.fractures[name].material = "joint";
-  scene.boundary_conditions["floor"] = {"south", {}, std::vector<base::Expression>(dim, base::Expression(0)), {}};
-  scene.boundary_conditions["lid"] = {"north", {}, std::vector<base::Expression>(dim, base::Expression(0.01)), {}};
+  for (const auto& [name, side, value] : {std::tuple("floor", "south", 0.0), std::tuple("lid", "north", 0.01)}) {
+    scene.boundary_conditions[name].boundary = side;
+    scene.boundary_conditions[name].displacement.assign(dim, base::Expression(value));
+  }
   return scene;
 }
 

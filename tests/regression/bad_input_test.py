@@ -315,7 +315,7 @@ class Scenes(BadInput):
         refuse(['Materials > rock > "permeability": "permeability" = {-1} is not positive definite'], "Materials.rock.permeability={-1}")
         refuse(['"permeability" = {1, 1, 2} is not positive definite'], "Materials.rock.permeability={1, 1, 2}")
         refuse(['"permeability" has 4 values, must have 1, 2 or 3 in 2D'], "Materials.rock.permeability={1, 1, 0, 0}")
-        refuse(['Materials > rock: 0 elastic constants given'], "Materials.rock.permeability={}")
+        refuse(['Materials > rock > "permeability": missing'], "Materials.rock.permeability={}")
         refuse(['"porosity": is -0.1, must be'], "Materials.rock.porosity=-0.1")
         refuse(['Materials > rock: give either "compressibility of pores" or "Biot modulus"'],
                "Materials.rock.compressibility of pores=0", "Materials.rock.Biot modulus=1")
@@ -374,7 +374,7 @@ class Scenes(BadInput):
         xml = self.scene_with(('      <Parameter name="friction coefficient" type="double" value="1"/>\n', ""))
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
-        self.refuse_set(['"fracture": goes with "pressure" or "flux" only'], "Boundary conditions.moved.fracture=fracture")
+        self.refuse_set(['"fracture": goes without "displacement" and "traction"'], "Boundary conditions.moved.fracture=fracture")
 
     def test_tables(self):
         table = ["Tables.ramp.arguments={0, 1}", "Tables.ramp.values={0, 1}"]

@@ -1,37 +1,212 @@
 #include "physics/mechanics/mechanics.hpp"
 
-#include "physics/mechanics/interface_traction_balance.hpp"
-#include "physics/mechanics/tip_enrichment.hpp"
+#include "base/any_rank.hpp"
+#include "mesh/facets.hpp"
+#include "mesh/tips.hpp"
+#include "physics/mechanics/modules.hpp"
+#include "physics/mechanics/uniqueness.hpp"
+#include "physics/ranged_entry.hpp"
+#include "physics/scene.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
 
 namespace sprekk::physics {
 
-ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
-  const auto& bulk = parameters.bulk;
-  const auto& fluid = parameters.holds_fluid ? parameters.initial_pressure : parameters.fluid_pressure;
-  return {parameters.joints,
-          bulk.elasticity,
-          bulk.initial_stress,
-          bulk.elasticity_of_cell,
-          parameters.joint_of_face,
-          parameters.augmentation,
-          fluid,
-          parameters.start,
-          mesh.n_global_enriched > 0,
-          parameters.holds_fluid};
+namespace {
+
+int number_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
-                                                              const MechanicsParameters& parameters) {
-  const auto& bulk = parameters.bulk;
-  const auto& fluid = parameters.fluid_pressure;
-  std::vector<std::unique_ptr<assembly::Module>> modules;
-  modules.push_back(make_bulk_momentum(mesh.shape, bulk));
-  if (mesh.fracture_names.empty()) return modules;
-  modules.push_back(make_interface_traction_balance(
-      mesh.shape, {bulk.elasticity, bulk.body_force, bulk.initial_stress, bulk.elasticity_of_cell, fluid}));
-  modules.push_back(make_elastic_plastic_jump(mesh.shape, jump_parameters(mesh, parameters)));
-  if (mesh.n_global_enriched > 0) modules.push_back(make_tip_enrichment(mesh.shape, bulk, fluid));
-  return modules;
+/// Mean over a fracture face whose cell on side minus is local.
+Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const base::Expression& value) {
+  Real sum = 0, total = 0;
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                           [&](const auto&, Real area, const auto& x) {
+                                             sum += area * value(x, 0);
+                                             total += area;
+                                           });
+  });
+  return sum / total;
+}
+
+/// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
+/// means, too.
+Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto section = [&](int fracture) -> const Fracture& {
+    return scene.fractures.at(mesh.fracture_names[fracture]);
+  };
+  const auto material = [&](int fracture) -> const Material& { return scene.materials.at(section(fracture).material); };
+  std::vector<int> fracture_of;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_of.push_back(mesh.fracture_faces[f].fracture);
+  return properties<JointParameters>(
+      static_cast<int>(mesh.fracture_names.size()), fracture_of,
+      [&](int fracture) {
+        const auto& jump = section(fracture).plastic_jump;
+        return material(fracture).is_uniform() &&
+               std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
+      },
+      [&](int fracture, int f) {
+        const auto& jump = section(fracture).plastic_jump;
+        auto joint = at_place(scene, material(fracture), [&] {
+          return material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
+        });
+        for (std::size_t k = 0; k < jump.size(); ++k)
+          joint.plastic_jump[k] = f < 0 ? jump[k]({}, 0) : mean(mesh, mesh.fracture_faces[f], jump[k]);
+        if (f < 0) return joint;
+        const auto& face = mesh.fracture_faces[f];
+        if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
+          joint.law.gap.initial = mean(mesh, face, gap);
+        return joint;
+      });
+}
+
+BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
+  BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
+  if (force.gravity.empty()) return force;
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
+    force.density_of_cell.push_back(
+        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
+  return force;
+}
+
+/// In the fractures; of a fluid that flows its pressure at the start.
+FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>& fracture_names) {
+  FluidPressure fluid;
+  if (has_fluid(scene)) {
+    if (!is_zero(initial_pressure(scene)) || has_unknown_pressure(scene))
+      fluid.value.assign(fracture_names.size(), initial_pressure(scene));
+    return fluid;
+  }
+  bool any = false;
+  for (const auto& name : fracture_names) {
+    const auto& p = fluid.value.emplace_back(scene.fractures.at(name).fluid_pressure);
+    any = any || !is_zero(p);
+  }
+  return any ? fluid : FluidPressure();
+}
+
+MechanicsParameters parameters_of(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const auto rock = elasticity(scene, mesh);
+  BulkMomentumParameters bulk{
+      rock.values, body_force(scene, mesh), {}, initial_stress(scene, mesh.region_names), rock.number};
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (!condition.traction.empty())
+      bulk.tractions.push_back({number_of(mesh.boundary_names, condition.boundary), condition.traction,
+                                condition.region ? number_of(mesh.region_names, *condition.region) : -1});
+  if (mesh.fracture_names.empty()) return {bulk};
+  const auto joint = joints(scene, mesh);
+  const auto fluid = fluid_pressure(scene, mesh.fracture_names);
+  const bool unknown = has_unknown_pressure(scene);
+  return {bulk,
+          joint.values,
+          joint.number,
+          unknown ? FluidPressure() : fluid,
+          unknown ? fluid : FluidPressure(),
+          unknown,
+          start,
+          scene.augmentation};
+}
+
+std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
+  const auto& [surface, horizontal_ratio] = *scene.bulk.lithostatic_stress;
+  const auto& gravity = scene.bulk.gravity;
+  const int dim = static_cast<int>(gravity.size()), up = dim - 1;
+  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: it points down
+  std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
+  for (int i = 0; i < 3; ++i) {
+    const Real factor = weight * (i == up ? 1 : horizontal_ratio);
+    stress[i] = base::Expression(fmt::format("{:.17g}*({}-({:.17g}))", factor, "xyz"[up], surface));
+  }
+  for (auto& component : stress) component.compile();
+  return stress;
+}
+
+/// Whether fractures end inside of the rock; not known of plain tips with periodic sides. Collective.
+bool has_tips(const mesh::Mesh& mesh) {
+  const auto has = [](const std::vector<char>& tips) { return std::find(tips.begin(), tips.end(), 1) != tips.end(); };
+  if (base::any_rank(*mesh.comm, [&] { return has(mesh.tip); })) return true;
+  if (base::any_rank(*mesh.comm, [&] { return !mesh.tied_to.empty(); })) return false;
+  const auto tips = mesh::tip_nodes(mesh);
+  return base::any_rank(*mesh.comm, [&] { return has(tips); });
+}
+
+}  // namespace
+
+bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.flow && scene.flow->rigid_rock); }
+
+Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
+  return properties<laws::Elasticity>(
+      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
+      [&](int region) { return material(region).is_uniformly_elastic(); },
+      [&](int region, int cell) {
+        const auto& rock = material(region);
+        return at_place(scene, rock,
+                        [&] { return rock.elasticity(cell < 0 ? mesh::Vector{} : mesh::cell_centre(mesh, cell)); });
+      });
+}
+
+Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
+  Real here = 0, modulus = 0;
+  for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
+    const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
+    if (cell > 0 && material.is_uniformly_elastic() && mesh.cell_region[cell] == mesh.cell_region[cell - 1]) continue;
+    here = std::max(here, material.elasticity(mesh::cell_centre(mesh, cell)).youngs_modulus());
+  }
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
+  return modulus;
+}
+
+InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names) {
+  const auto common = scene.bulk.lithostatic_stress ? lithostatic_stress(scene) : scene.bulk.initial_stress;
+  InitialStress stress;
+  std::size_t n_components = 0;
+  for (const auto& name : region_names) {
+    const auto region = scene.regions.find(name);
+    const bool own = region != scene.regions.end() && !region->second.initial_stress.empty();
+    n_components =
+        std::max(n_components, stress.value.emplace_back(own ? region->second.initial_stress : common).size());
+  }
+  if (n_components == 0) return {};
+  for (auto& components : stress.value) components.resize(n_components, base::Expression(0));
+  return stress;
+}
+
+std::vector<Real> initial_openings(const Setting& setting) {
+  std::vector<Real> openings;
+  base::collectively(*setting.mesh.comm, [&] {
+    for (const auto& jump : initial_jumps(setting.mesh, jump_parameters(setting.mesh, parameters_of(setting))))
+      openings.push_back(jump[0]);
+  });
+  return openings;
+}
+
+void Mechanics::add_modules(const Setting& setting, Modules& modules) {
+  if (!is_in(setting.scene)) return;
+  MechanicsParameters parameters;
+  base::collectively(*setting.mesh.comm, [&] { parameters = parameters_of(setting); });
+  for (auto& module : make_mechanics(setting.mesh, parameters)) modules.push_back(std::move(module));
+}
+
+std::vector<std::string> Mechanics::warnings(const Setting& setting) {
+  const auto& mesh = setting.mesh;
+  if (!is_in(setting.scene) || mesh.dim() != 3 || mesh::order(mesh.shape) != 1 || !has_tips(mesh)) return {};
+  return {fmt::format(
+      "{}: fractures end inside of the rock: in 3D their slip and opening come out some percent too small with cells "
+      "of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
+      setting.scene.origin)};
+}
+
+std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {
+  std::vector<std::string> all = {friction_doubt(setting.scene)};
+  if (oscillates) all.push_back(dilation_doubt(setting.scene, setting.mesh));
+  all.erase(std::remove(all.begin(), all.end(), ""), all.end());
+  return all;
 }
 
 }  // namespace sprekk::physics

@@ -1,28 +1,108 @@
-// All modules of the mechanics of fractured rock.
+// Mechanics of fractured rock: its entries of a scene and its modules.
 #pragma once
 
-#include "physics/mechanics/bulk_momentum.hpp"
+#include "base/expression.hpp"
+#include "laws/elasticity.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "physics/physics.hpp"
+#include "physics/properties.hpp"
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace sprekk::physics {
 
-struct MechanicsParameters {
-  BulkMomentumParameters bulk;
-  std::vector<JointParameters> joints = {};  ///< different ones
-  std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
-  FluidPressure fluid_pressure = {};
-  FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
-  bool holds_fluid = false;             ///< of unknown pressure
-  Real start = 0;                       ///< time of the initial state, s
-  Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
+/// Initial stress of rock at rest under gravity along the last coordinate.
+struct Lithostatic {
+  Real surface = 0;           ///< coordinate where the vertical stress is zero, m
+  Real horizontal_ratio = 1;  ///< horizontal over vertical stress
+  void describe(base::Section& section);
 };
 
-/// Of the module for jumps.
-ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
+struct Mechanics : Physics<Mechanics> {
+  /// Every number may be an expression of x, y, z.
+  struct Rock : Physics::Rock {
+    std::optional<base::Expression> E, nu, G, lambda, K;  ///< exactly two
+    std::optional<base::Expression> density;              ///< needed with gravity
+    void describe(base::Section& section);
+    void check(base::Section& section) const;
+    bool has_elasticity() const { return E || nu || G || lambda || K; }
+    bool is_uniformly_elastic() const;  ///< no value depends on the place
+    /// The law at a point. Throws an Error that names the entry, the value and the point where it is out of range.
+    laws::Elasticity elasticity(const std::array<Real, 3>& x) const;
+  };
 
-/// What a mesh needs: the momentum of the bulk; with fractures, the traction balance of their sides and the split of
-/// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them.
-std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
-                                                              const MechanicsParameters& parameters);
+  struct Joint : Physics::Joint {
+    base::Expression tangential_stiffness = std::numeric_limits<Real>::infinity();
+    std::optional<base::Expression> friction_coefficient, friction_angle;  ///< exactly one where the rock deforms
+    base::Expression dilation_angle = 0, initial_gap = 0, initial_aperture = 0;
+    std::optional<base::Expression> normal_stiffness;  ///< needed where there is closure; absent: none
+    std::optional<base::Expression> maximum_closure;   ///< absent: infinite, closure is linear
+    void describe(base::Section& section);
+    void check(base::Section& section) const;
+    bool is_uniform() const;                       ///< no value depends on the place
+    std::optional<Real> uniform_friction() const;  ///< mu, if it does not depend on the place
+    /// The law at a point; throws as elasticity() does.
+    JointParameters joint(const std::array<Real, 3>& x) const;
+  };
+
+  struct Bulk : Physics::Bulk {
+    bool rigid = false;  ///< it does not deform: no mechanics
+    std::vector<base::Expression> body_force;
+    std::vector<base::Expression> initial_stress;   ///< XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D
+    std::optional<Lithostatic> lithostatic_stress;  ///< or this
+    void describe(base::Section& section);
+    void check(base::Section& section) const;
+  };
+
+  struct Region : Physics::Region {
+    std::vector<base::Expression> initial_stress;
+    void describe(base::Section& section);
+    bool is_given() const { return !initial_stress.empty(); }
+  };
+
+  struct Fracture : Physics::Fracture {
+    base::Expression fluid_pressure = 0;
+    std::vector<base::Expression> plastic_jump;  ///< tangential, at the start, in the frame of the face
+    void describe(base::Section& section);
+  };
+
+  struct BoundaryCondition : Physics::BoundaryCondition {
+    static constexpr const char* kinds = "either \"displacement\" or \"traction\"";
+    std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
+    std::vector<base::Expression> traction;
+    void describe(base::Section& section);
+    void check(base::Section& section) const;
+    bool is_given() const { return !(displacement.empty() && traction.empty()); }
+    std::vector<Prescribed> prescribed() const;
+  };
+
+  struct Sections : Physics::Sections {
+    /// Of ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
+    Real augmentation = ElasticPlasticJumpParameters().augmentation;
+    void keep(const Sections& other) { augmentation = other.augmentation; }
+  };
+
+  static bool is_in(const Scene& scene);
+  static void compare(Comparison& comparison);
+  static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
+  static void add_modules(const Setting& setting, Modules& modules);
+  static std::vector<std::string> warnings(const Setting& setting);
+  static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
+};
+
+/// Of local cells.
+Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
+
+/// Young's, Pa. Collective.
+Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
+
+/// As given, or the lithostatic one; of a region its own, where it has one.
+InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names);
+
+/// Along the normal, of owned fracture faces, m. Collective.
+std::vector<Real> initial_openings(const Setting& setting);
 
 }  // namespace sprekk::physics

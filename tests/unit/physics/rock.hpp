@@ -9,7 +9,7 @@
 #include "assembly/system.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/facets.hpp"
-#include "physics/mechanics/mechanics.hpp"
+#include "physics/mechanics/modules.hpp"
 #include "unit/assembly/dense.hpp"
 #include "unit/mesh/meshes.hpp"
 

@@ -1,5 +1,5 @@
 // Where dilation makes more than one state possible, and that a scene is told so from there on.
-#include "model/uniqueness.hpp"
+#include "physics/mechanics/uniqueness.hpp"
 #include "verification/scenes.hpp"
 
 #include <gmock/gmock.h>
@@ -65,7 +65,7 @@ TEST(Uniqueness, IsToldOfAScene) {
                       fmt::format("Materials.joint.dilation angle={:.17g}", std::atan(tangent) * 180 / M_PI)});
     const model::Model model(read_scene(fmt::format("contact/block_{}d.xml", dim), overrides),
                              Tpetra::getDefaultComm());
-    return model::dilation_doubt(model.scene(), model.mesh());
+    return physics::dilation_doubt(model.scene(), model.mesh());
   };
   for (const int dim : {2, 3}) {
     EXPECT_EQ(doubt(dim, 0.999 * limit), "");

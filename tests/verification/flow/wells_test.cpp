@@ -25,7 +25,7 @@ void hold_sides(model::Scene& scene, const std::string& pressure) {
   for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, pressure);
 }
 
-model::Well& add_well(model::Scene& scene, const std::vector<Real>& points) {
+physics::WellSection& add_well(model::Scene& scene, const std::vector<Real>& points) {
   auto& well = scene.flow->wells["well"];
   well.points = points;
   well.radius = radius;

@@ -1,11 +1,11 @@
 // Joints whose law may have no state, or more than one.
 #pragma once
 
-#include "model/scene.hpp"
+#include "physics/scene.hpp"
 
 #include <string>
 
-namespace sprekk::model {
+namespace sprekk::physics {
 
 /// Names the joint with the largest friction coefficient above 1, and the coefficient; empty without such a joint.
 /// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
@@ -21,4 +21,4 @@ std::string friction_doubt(const Scene& scene);
 /// domain and B' = 1/K_n; of several rocks, the largest G and the smallest lambda + 2G count. Collective.
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
-}  // namespace sprekk::model
+}  // namespace sprekk::physics

@@ -1,4 +1,4 @@
-#include "model/uniqueness.hpp"
+#include "physics/mechanics/uniqueness.hpp"
 
 #include "mesh/extents.hpp"
 
@@ -9,18 +9,18 @@
 #include <string>
 #include <utility>
 
-namespace sprekk::model {
+namespace sprekk::physics {
 
 namespace {
 
 /// The most compliant in compression and the stiffest in shear of a scene's rocks, if they are uniform.
 std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
-  if (!scene.deforms()) return {};
+  if (!Mechanics::is_in(scene)) return {};
   std::vector<const Material*> rocks = {&scene.materials.at(scene.bulk.material)};
   for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.material_of(name));
   Real shear = 0, uniaxial = std::numeric_limits<Real>::infinity();
   for (const auto* rock : rocks) {
-    if (!rock->is_uniform()) return {};
+    if (!rock->is_uniformly_elastic()) return {};
     const auto elasticity = rock->elasticity({});
     shear = std::max(shear, elasticity.G);
     uniaxial = std::min(uniaxial, elasticity.lambda + 2 * elasticity.G);
@@ -36,8 +36,7 @@ PerPiece over_ranks(const mesh::Mesh& mesh, Teuchos::EReductionType how, const P
   return all;
 }
 
-/// [3 piece + component]: whether a displacement in this direction is given, or sides are tied across it, which is not
-/// known of turned boxes and meshes of gmsh.
+/// [3 piece + component]: whether a displacement in this direction is given, or sides that are apart in it are tied.
 PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   PerPiece held(3 * mesh.n_pieces, 0);
   for (const auto& [name, condition] : scene.boundary_conditions)
@@ -46,10 +45,12 @@ PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
         if (mesh.boundary_names[face.boundary] == condition.boundary && condition.displacement[i].text() != "free" &&
             (!condition.region || mesh.region_names[mesh.cell_region[face.cell]] == *condition.region))
           held[3 * mesh.cell_piece[face.cell] + i] = 1;
-  const bool known = !scene.mesh_file && scene.mesh.rotation == 0;
-  for (const auto& direction : scene.mesh_file ? scene.mesh_file->periodic : scene.mesh.periodic)
-    for (std::size_t k = 0; k < held.size(); ++k)
-      if (!known || k % 3 == std::string("xyz").find(direction)) held[k] = 1;
+  const int dim = mesh.dim();
+  for (std::size_t k = 0; k < mesh.tied_to.size(); ++k)
+    for (int i = 0; i < dim; ++i) {
+      const Real apart = mesh.coordinates[(mesh.n_free_nodes + k) * dim + i] - mesh.coordinates[mesh.tied_to[k] * dim + i];
+      for (int piece = 0; piece < mesh.n_pieces && apart != 0; ++piece) held[3 * piece + i] = 1;
+    }
   return over_ranks(mesh, Teuchos::REDUCE_MAX, held);
 }
 
@@ -125,4 +126,4 @@ std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   return "";
 }
 
-}  // namespace sprekk::model
+}  // namespace sprekk::physics

@@ -1,12 +1,12 @@
 // Rock and joints with published values that scenes may name without defining them.
 #pragma once
 
-#include "model/scene.hpp"
+#include "physics/scene.hpp"
 
 #include <map>
 #include <string>
 
-namespace sprekk::model {
+namespace sprekk::physics {
 
 /// The sets of materials.xml, which is part of the library. Not collective.
 std::map<std::string, Material> library_materials();
@@ -21,4 +21,4 @@ std::string wrong_material(const std::string& name, const std::string& type,
 /// All sets with their values and sources, as Markdown.
 std::string library_markdown();
 
-}  // namespace sprekk::model
+}  // namespace sprekk::physics

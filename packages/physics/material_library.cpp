@@ -1,10 +1,10 @@
-#include "model/material_library.hpp"
+#include "physics/material_library.hpp"
 
 #include "base/text.hpp"
 #include "base/value.hpp"
 #include "base/xml.hpp"
 
-namespace sprekk::model {
+namespace sprekk::physics {
 
 const char* materials_text();  // materials_text.cpp.in
 
@@ -76,4 +76,4 @@ std::string library_markdown() {
          table("Rock", "elastic") + table("Joints", "joint");
 }
 
-}  // namespace sprekk::model
+}  // namespace sprekk::physics

@@ -1,0 +1,124 @@
+#include "physics/comparison.hpp"
+
+#include "base/check.hpp"
+#include "physics/material_library.hpp"
+
+namespace sprekk::physics {
+
+void Comparison::fail(const std::string& place, const std::string& what) {
+  const auto line = fmt::format("{}: Sprekk > {}: {}", scene_.origin, place, what);
+  if (!has(errors_, line)) errors_.push_back(line);  // of a joint that several fractures have
+}
+
+bool Comparison::check_name(const std::string& section, const std::string& place, const std::string& name,
+                            const std::optional<Names>& allowed) {
+  if (!allowed || has(*allowed, name) || (name.empty() && !is_sound(section))) return true;
+  fail(place, allowed->empty() ? fmt::format("is \"{}\", but the mesh has none with a name", base::shortened(name))
+                               : fmt::format("is \"{}\", must be one of {}{}", base::shortened(name),
+                                             base::quoted_list(*allowed), base::did_you_mean(name, *allowed)));
+  return false;
+}
+
+void Comparison::check_length(const std::string& place, std::size_t n, const std::optional<int>& wanted) {
+  if (wanted && n != 0 && n != static_cast<std::size_t>(*wanted))
+    fail(place, fmt::format("has {}, must have {}", base::counted(n, "value"), *wanted));
+}
+
+void Comparison::check_material(const std::string& section, const std::string& name, const std::string& type) {
+  const auto found = scene_.materials.find(name);
+  const bool unreadable =
+      found == scene_.materials.end()
+          ? !is_sound("Materials > " + name) || (scene_.materials.empty() && !is_absent("Materials"))
+          : found->second.type.empty();
+  if (unreadable || (name.empty() && !is_sound(section))) return;
+  const std::string wrong = wrong_material(name, type, scene_.materials);
+  if (!wrong.empty()) fail(section + " > \"material\"", wrong);
+}
+
+const Material* Comparison::rock_of(const std::string& region) const {
+  const auto own = scene_.regions.find(region);
+  const auto found = scene_.materials.find(
+      own == scene_.regions.end() ? scene_.bulk.material : own->second.material.value_or(scene_.bulk.material));
+  return found == scene_.materials.end() || found->second.type != "elastic" ? nullptr : &found->second;
+}
+
+const Material* Comparison::joint_of(const Fracture& fracture) const {
+  const auto found = scene_.materials.find(fracture.material);
+  const bool known = found != scene_.materials.end() && found->second.type == "joint";
+  return known && is_sound("Materials > " + fracture.material) ? &found->second : nullptr;
+}
+
+std::string Comparison::name_of(const Material& material) const {
+  const auto is_it = [&](const auto& one) { return &one.second == &material; };
+  return std::find_if(scene_.materials.begin(), scene_.materials.end(), is_it)->first;
+}
+
+void Comparison::compare_regions() {
+  for (const auto& [name, region] : scene_.regions)
+    if (check_name("Regions", fmt::format("Regions > \"{}\"", name), name, names_.regions) && region.material)
+      check_material("Regions > " + name, *region.material, "elastic");
+}
+
+void Comparison::compare_fractures() {
+  if (scene_.fractures.count("intersections"))
+    fail("Fractures > \"intersections\"", "is how files of results call what fractures meet in; choose another name");
+  for (const auto& [name, fracture] : scene_.fractures)
+    if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
+      check_material("Fractures > " + name, fracture.material, "joint");
+  if (!names_.fractures || (scene_.fractures.empty() && !is_absent("Fractures"))) return;
+  for (const auto& name : *names_.fractures)
+    if (!scene_.fractures.count(name) && is_sound("Fractures > " + name))
+      fail("Fractures", fmt::format("\"{}\" is in the mesh and has no section here", name));
+}
+
+void Comparison::compare_boundary_conditions() {
+  for (const auto& [name, condition] : scene_.boundary_conditions) {
+    const std::string section = "Boundary conditions > " + name;
+    check_name(section, section + " > \"boundary\"", condition.boundary, names_.boundaries);
+    if (has(tied_, condition.boundary))
+      fail(section + " > \"boundary\"",
+           fmt::format("is \"{}\", which \"periodic\" ties to the opposite side; such a side is inside of the rock and "
+                       "takes no conditions",
+                       condition.boundary));
+    if (condition.region) check_name(section, section + " > \"region\"", *condition.region, names_.regions);
+    if (condition.fracture) check_name(section, section + " > \"fracture\"", *condition.fracture, names_.fractures);
+  }
+}
+
+void Comparison::compare() {
+  check_material("Bulk", scene_.bulk.material, "elastic");
+  check_length("Bulk > \"gravity\"", scene_.bulk.gravity.size(), names_.dim);
+  compare_regions();
+  compare_fractures();
+  compare_boundary_conditions();
+  for_each_physics([&](auto physics) { physics.compare(*this); });
+}
+
+void Comparison::compare(const mesh::GlobalMesh& mesh) {
+  for_each_physics([&](auto physics) { physics.compare_mesh(*this, mesh); });
+}
+
+std::vector<assembly::DirichletCondition> dirichlet_conditions(
+    const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
+    const MeshNames& names, const std::string& field) {
+  std::vector<assembly::DirichletCondition> all;
+  const auto add = [&](assembly::DirichletCondition condition, const std::vector<Prescribed>& prescribed) {
+    for (const auto& one : prescribed) {
+      if (!field.empty() && one.field != field) continue;
+      condition.field = one.field;
+      condition.values.clear();
+      for (const auto& value : one.values)
+        condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
+      all.push_back(condition);
+    }
+  };
+  for (const auto& [name, one] : conditions)
+    add({name, "", index_of(*names.boundaries, one.boundary), {}, one.region ? index_of(*names.regions, *one.region) : -1,
+         one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
+        one.prescribed());
+  for (const auto& [name, one] : regions)
+    add({"Regions > " + name, "", -1, {}, index_of(*names.regions, name)}, one.prescribed());
+  return all;
+}
+
+}  // namespace sprekk::physics

@@ -1,0 +1,145 @@
+// What scenes may ask of flow.
+#include "base/text.hpp"
+#include "physics/comparison.hpp"
+#include "physics/ranged_entry.hpp"
+
+#include <algorithm>
+
+namespace sprekk::physics {
+
+namespace {
+
+bool no_flow(const Comparison& c) { return !c.scene().flow && c.is_absent("Flow"); }
+
+/// What is of a fluid in a scene without one.
+void compare_without_flow(Comparison& c) {
+  if (!no_flow(c)) return;
+  const auto needs_flow = [&](const std::string& place) { c.fail(place, "needs the section \"Flow\""); };
+  for (const auto& [name, region] : c.scene().regions)
+    if (region.pressure) needs_flow("Regions > " + name + " > \"pressure\"");
+  for (const auto& [name, fracture] : c.scene().fractures) {
+    if (!is_zero(fracture.source)) needs_flow("Fractures > " + name + " > \"source\"");
+    if (!fracture.cuts.empty()) needs_flow("Fractures > " + name + " > \"cuts\"");
+  }
+  for (const auto& [name, condition] : c.scene().boundary_conditions)
+    if (condition.pressure || condition.flux)
+      needs_flow("Boundary conditions > " + name + (condition.pressure ? " > \"pressure\"" : " > \"flux\""));
+}
+
+void compare_fractures(Comparison& c) {
+  const auto& scene = c.scene();
+  for (const auto& [name, fracture] : scene.fractures) {
+    for (const auto& other : fracture.cuts) {
+      const std::string place = fmt::format("Fractures > {} > \"cuts\"", name);
+      if (c.check_name("Fractures > " + name, place, other, c.names().fractures) && other == name)
+        c.fail(place, fmt::format("is \"{}\", the fracture itself", other));
+      if (scene.flow && Mechanics::is_in(scene)) c.fail(place, "needs \"Flow > rigid rock\"");
+    }
+    const auto* joint = c.joint_of(fracture);
+    if (!joint || !c.is_sound("Flow")) continue;
+    if (has_fluid(scene) && !is_zero(fracture.fluid_pressure))
+      c.fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
+    if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
+      c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
+             "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
+  }
+}
+
+void compare_wells(Comparison& c) {
+  const auto& dim = c.names().dim;
+  for (const auto& [name, well] : c.scene().flow->wells) {
+    const std::string place = fmt::format("Flow > Wells > {} > \"points\"", name);
+    const auto n = well.points.size();
+    if (dim == 2) c.check_length(place, n, 2);
+    if (dim == 3 && n > 0 && (n < 6 || n % 3 != 0))
+      c.fail(place, fmt::format("has {}, must have three for each of two or more points", base::counted(n, "value")));
+    for (std::size_t k = 3; dim == 3 && k + 2 < n; k += 3)
+      if (std::equal(&well.points[k], &well.points[k] + 3, &well.points[k - 3]))
+        c.fail(place, fmt::format("has the point ({}, {}, {}) twice in a row", well.points[k], well.points[k + 1],
+                                  well.points[k + 2]));
+  }
+}
+
+bool gives_pressure(const BoundaryCondition& condition) {
+  return condition.pressure && !(condition.conductance && is_zero(*condition.conductance));
+}
+
+/// Flow that no pressure and no storage ties to a level has none, or any.
+void compare_level(Comparison& c) {
+  const auto& scene = c.scene();
+  const auto any = [](const auto& all, const auto& has) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
+  };
+  const bool given = any(scene.flow->wells, [](const auto& well) { return well.pressure.has_value(); }) ||
+                     any(scene.boundary_conditions, gives_pressure) ||
+                     any(scene.regions, [](const auto& region) { return region.pressure.has_value(); });
+  const auto& [dim, regions, boundaries, fractures] = c.names();
+  if (!regions || !fractures) return;
+  const bool deforms = Mechanics::is_in(scene);
+  const Real fluid = scene.flow->compressibility;
+  const bool in_fractures = !fractures->empty() && (fluid > 0 || deforms);
+  const bool stored = in_fractures || std::any_of(regions->begin(), regions->end(), [&](const auto& name) {
+                        const auto* rock = c.rock_of(name);
+                        return !rock || rock->growth_of_pores(fluid) + rock->porosity * fluid > 0 ||
+                               (deforms && rock->biot > 0);
+                      });
+  const bool known = c.is_sound("Boundary conditions") &&
+                     (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
+  if (!given && !stored && known && c.is_sound("Materials") && c.is_sound("Flow"))
+    c.fail("Flow",
+           "nothing says how high the pressure is: give a \"pressure\" on a boundary, in a well or in a region, or "
+           "storage (\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
+           "\"compressibility\" of the fluid)");
+}
+
+/// What flows through a part of the boundary cannot be given where the pressure is.
+void compare_conditions(Comparison& c) {
+  const auto overlap = [](const BoundaryCondition& held, const BoundaryCondition& other) {
+    if (held.boundary != other.boundary) return false;
+    if (other.fracture) return held.fracture ? *held.fracture == *other.fracture : !held.region;
+    return !held.fracture && (!held.region || !other.region || *held.region == *other.region);
+  };
+  for (const auto& [name, held] : c.scene().boundary_conditions)
+    for (const auto& [second, other] : c.scene().boundary_conditions)
+      if (held.pressure && !held.conductance && (other.flux || other.conductance) && overlap(held, other))
+        c.fail("Boundary conditions > " + second,
+               fmt::format("gives a {} where \"{}\" gives the pressure", other.flux ? "flux" : "conductance", name));
+}
+
+void compare_rock(Comparison& c, const Material& rock) {
+  const std::string name = c.name_of(rock);
+  const Real least = rock.porosity * c.scene().flow->compressibility;  // storage that pores add to
+  if (rock.biot_modulus && least * *rock.biot_modulus > 1 + 1e-12)
+    c.fail(fmt::format("Materials > {} > \"Biot modulus\"", name),
+           fmt::format("is {:.6g} Pa, must not be above {:.6g} Pa, which \"porosity\" and \"compressibility\" of the "
+                       "fluid make without any growth of pores",
+                       *rock.biot_modulus, 1 / least));
+  const std::string place = fmt::format("Materials > {} > \"permeability\"", name);
+  if (rock.permeability.empty() && c.is_sound("Materials > " + name))
+    c.fail(place, "missing; it is required with \"Flow\"");
+  if (rock.permeability.empty() || !c.names().dim) return;
+  try {
+    if (rock.flows_uniformly()) rock.mobility(*c.names().dim, c.scene().flow->viscosity, {});
+  } catch (const Error& error) {
+    c.fail(place, error.what());
+  }
+}
+
+}  // namespace
+
+std::string Flow::no_error_estimate(const Scene& scene) {
+  return scene.flow ? "is of stress and jumps without a fluid; not available with \"Flow\"" : "";
+}
+
+void Flow::compare(Comparison& c) {
+  if (c.scene().flow && c.scene().host_fluid) c.fail("Flow", "goes without a host_fluid, which brings its own flow");
+  compare_without_flow(c);
+  compare_fractures(c);
+  if (!c.scene().flow) return;
+  compare_wells(c);
+  compare_level(c);
+  compare_conditions(c);
+  c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
+}
+
+}  // namespace sprekk::physics

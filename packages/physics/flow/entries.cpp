@@ -1,0 +1,145 @@
+// What scenes say of flow.
+#include "physics/flow/flow.hpp"
+#include "physics/ranged_entry.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace sprekk::physics {
+
+void Flow::Rock::describe(base::Section& s) {
+  s.entry(permeability, "permeability", "m^2", base::any(),
+          "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ "
+          "in 3D");
+  s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
+  s.entry(
+      compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
+      "growth of the porosity with the fluid's pressure; of rock that deforms: at constant strain, (Biot coefficient "
+      "- porosity)/bulk modulus of the grains");
+  s.entry(biot_modulus, "Biot modulus", "Pa", base::positive_or_infinite(),
+          "M, instead of the compressibility of pores: 1/M is that plus the porosity times the compressibility of "
+          "the fluid, the storage at constant strain");
+  for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
+}
+
+void Flow::Rock::check(base::Section& s) const {
+  if (compressibility && biot_modulus) s.fail("give either \"compressibility of pores\" or \"Biot modulus\"");
+}
+
+bool Flow::Rock::flows_uniformly() const {
+  return std::all_of(permeability.begin(), permeability.end(), [](const auto& k) { return k.is_constant(); });
+}
+
+Real Flow::Rock::growth_of_pores(Real of_fluid) const {
+  return biot_modulus ? std::max(Real(0), 1 / *biot_modulus - porosity * of_fluid) : compressibility.value_or(0);
+}
+
+laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const {
+  std::vector<Real> k;
+  for (const auto& value : permeability) k.push_back(value(x, 0));
+  const auto n = static_cast<int>(k.size()), n_all = dim * (dim + 1) / 2;
+  SPREKK_CHECK(n == 1 || n == dim || n == n_all, "\"permeability\" has {}, must have 1, {} or {} in {}D",
+               base::counted(k.size(), "value"), dim, n_all, dim);
+  laws::Mobility m;
+  for (int i = 0; i < dim; ++i) m.value[i][i] = k[n == 1 ? 0 : i] / viscosity;
+  for (int i = dim; i < n; ++i) {
+    const int row = i == 4 ? 1 : 0, column = i == 3 || dim == 2 ? 1 : 2;
+    m.value[row][column] = m.value[column][row] = k[i] / viscosity;
+  }
+  std::vector<std::string> texts;
+  for (const auto& value : permeability) texts.push_back(value.text());
+  SPREKK_CHECK(m.is_positive(dim), "\"permeability\" = {{{}}} is not positive definite{}", fmt::join(texts, ", "),
+               flows_uniformly() ? "" : fmt::format(" at x = ({}, {}, {})", x[0], x[1], x[2]));
+  return m;
+}
+
+void Flow::Joint::describe(base::Section& s) {
+  s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
+          "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
+  s.entry(
+      tangential_permeability, "tangential permeability", "m^2", base::positive(),
+      "k_t of the flow along the fracture, with \"Flow\"; without it the cubic law holds, (hydraulic aperture)^2/12");
+  s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
+          "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
+          "beside it");
+  check_constant_in_time(s, std::vector<RangedEntry>{{"residual aperture", residual_aperture, 0},
+                                                     {"tangential permeability", tangential_permeability, 0},
+                                                     {"normal permeability", normal_permeability, 0}});
+}
+
+void FlowSection::describe(base::Section& s) {
+  s.entry(rigid_rock, "rigid rock", "-", "the rock does not deform: flow alone, without displacements");
+  s.entry(viscosity, "viscosity", "Pa*s", base::positive(), "mu of the fluid");
+  s.entry(density, "density", "kg/m^3", base::at_least(0),
+          "rho_0 of the fluid, at the reference pressure; its weight counts where \"Bulk\" has gravity");
+  s.entry(compressibility, "compressibility", "Pa^-1", base::at_least(0),
+          "c of the fluid: its density is rho_0 exp(c (p - reference pressure))");
+  s.entry(reference_pressure, "reference pressure", "Pa", base::any(),
+          "with a compressibility: where the density is as given; volumes of fluid are at this pressure");
+  s.entry(source, "source", "s^-1", base::any(),
+          "volume of fluid per volume of rock and time, an expression of x, y, z, t");
+  s.entry(initial_pressure, "initial pressure", "Pa", base::any(), "at the start, where fluid is stored; of x, y, z");
+  s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
+           "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
+           "orthogonal, else mimetic");
+  s.named_sections(wells, "Wells", "by names of your choice");
+  check_constant_in_time(s, "initial pressure", initial_pressure);
+}
+
+void WellSection::describe(base::Section& s) {
+  s.required(points, "points", "m", base::any(),
+             "2D: x, y of a line of length 1 across the plane; 3D: of a polyline, x0, y0, z0, x1, y1, z1, ...");
+  s.required(radius, "radius", "m", base::positive(), "r_w of the hole");
+  s.entry(skin, "skin", "-", base::any(),
+          "S: the pressure falls by S like flow by a further factor exp(S) of distance");
+  s.entry(rate, "rate", "m^3/s", base::any(),
+          "volume of fluid per time that is put in (2D: m^2/s), negative: taken out; an expression of t");
+  s.entry(pressure, "pressure", "Pa", base::any(), "in the well at its first point, an expression of t");
+  if (s.complete() && rate.has_value() == pressure.has_value()) s.fail("give either \"rate\" or \"pressure\"");
+}
+
+void Flow::Sections::describe(base::Section& s) { s.section(flow, "Flow", "a fluid that flows through the rock"); }
+
+void Flow::Region::describe(base::Section& s) {
+  s.entry(
+      pressure, "pressure", "Pa", base::any(),
+      "of the fluid in its cells and in fractures inside of it, with \"Flow\": a value or an expression of x, y, z, t");
+}
+
+std::vector<Prescribed> Flow::Region::prescribed() const {
+  if (!pressure) return {};
+  return {{"pressure", {*pressure}}, {"face pressure", {*pressure}}};
+}
+
+void Flow::Fracture::describe(base::Section& s) {
+  s.entry(
+      source, "source", "m/s", base::any(),
+      "volume of fluid per area and time that is put into the fracture, with \"Flow\", an expression of x, y, z, t");
+  s.entry(
+      cuts, "cuts", "-",
+      "names of fractures that it divides where they meet: what flows from one part to the other crosses it, by its "
+      "normal permeability, with \"Flow\"");
+}
+
+void Flow::BoundaryCondition::describe(base::Section& s) {
+  s.entry(pressure, "pressure", "Pa", base::any(),
+          "of the fluid, with \"Flow\": a value or an expression of x, y, z, t; without a \"fracture\" and without a "
+          "conductance it holds for rock and fractures, all else for rock");
+  s.entry(flux, "flux", "m/s", base::any(), "volume of fluid that leaves per area and time, with \"Flow\"");
+  s.entry(conductance, "conductance", "m/(Pa*s)", base::at_least(0),
+          "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
+  if (conductance) check_constant_in_time(s, "conductance", *conductance);
+}
+
+void Flow::BoundaryCondition::check(base::Section& s) const {
+  if (conductance && !pressure) s.fail("conductance", "needs a \"pressure\" beyond the boundary");
+  if (pressure && flux) s.fail("give either \"pressure\" or \"flux\"");
+}
+
+std::vector<Prescribed> Flow::BoundaryCondition::prescribed() const {
+  if (!pressure || conductance) return {};
+  return {{"face pressure", {*pressure}}};
+}
+
+}  // namespace sprekk::physics

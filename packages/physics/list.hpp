@@ -1,0 +1,15 @@
+// The physics that there are. One line each here, and nothing else outside of its room.
+#pragma once
+
+#include "physics/flow/flow.hpp"
+#include "physics/mechanics/mechanics.hpp"
+#include "physics/poroelasticity/poroelasticity.hpp"
+
+namespace sprekk::physics {
+
+template <template <class...> class Of>
+using OfAll = Of<Mechanics,  //
+                 Flow,       //
+                 Poroelasticity>;
+
+}  // namespace sprekk::physics

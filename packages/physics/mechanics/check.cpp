@@ -1,0 +1,134 @@
+// What scenes may ask of mechanics.
+#include "assembly/free_motion.hpp"
+#include "physics/comparison.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace sprekk::physics {
+
+namespace {
+
+/// The entry that says that the rock does not deform.
+std::string rigid_entry(const Scene& scene) { return scene.bulk.rigid ? "\"Bulk > rigid\"" : "\"Flow > rigid rock\""; }
+
+void check_stress(Comparison& c, const std::string& section, const std::vector<base::Expression>& stress) {
+  std::optional<int> wanted;
+  if (c.names().dim) wanted = *c.names().dim == 2 ? 4 : 6;
+  c.check_length(section + " > \"initial stress\"", stress.size(), wanted);
+  if (!Mechanics::is_in(c.scene()) && !stress.empty())
+    c.fail(section + " > \"initial stress\"",
+           "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
+}
+
+void compare_rock(Comparison& c) {
+  const auto& bulk = c.scene().bulk;
+  c.check_length("Bulk > \"body force\"", bulk.body_force.size(), c.names().dim);
+  check_stress(c, "Bulk", bulk.initial_stress);
+  for (const auto& [name, region] : c.scene().regions) check_stress(c, "Regions > " + name, region.initial_stress);
+  if (!Mechanics::is_in(c.scene())) {
+    if (!bulk.body_force.empty() || bulk.lithostatic_stress)
+      c.fail("Bulk", "has a force or stress of the rock, which " + rigid_entry(c.scene()) + " says does not deform");
+    return;
+  }
+  c.for_each_rock([&](const Material& rock) {
+    const auto place = "Materials > " + c.name_of(rock);
+    if (!rock.has_elasticity() && c.is_sound(place) && c.is_sound("Flow"))
+      c.fail(place, "no elastic constants given, exactly two are needed where the rock deforms");
+  });
+}
+
+void compare_fractures(Comparison& c) {
+  for (const auto& [name, fracture] : c.scene().fractures) {
+    const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
+    c.check_length(jump, fracture.plastic_jump.size(), c.names().dim ? std::optional(*c.names().dim - 1) : std::nullopt);
+    const auto* joint = c.joint_of(fracture);
+    if (!Mechanics::is_in(c.scene())) {
+      if (!fracture.plastic_jump.empty())
+        c.fail(jump, "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
+    } else if (joint && c.is_sound("Flow") && !joint->friction_coefficient && !joint->friction_angle) {
+      c.fail("Materials > " + fracture.material, "give either \"friction coefficient\" or \"friction angle\"");
+    }
+  }
+}
+
+void compare_conditions(Comparison& c) {
+  for (const auto& [name, condition] : c.scene().boundary_conditions) {
+    const std::string section = "Boundary conditions > " + name;
+    c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
+    c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
+    const bool given = !(condition.displacement.empty() && condition.traction.empty());
+    if (given && condition.fracture) c.fail(section + " > \"fracture\"", "goes without \"displacement\" and \"traction\"");
+    if (given && !Mechanics::is_in(c.scene()))
+      c.fail(section, "moves or loads the rock, which " + rigid_entry(c.scene()) + " says does not deform");
+  }
+}
+
+void compare_gravity(Comparison& c) {
+  const auto& scene = c.scene();
+  if (scene.bulk.gravity.empty() || !Mechanics::is_in(scene) || !c.names().regions || !c.is_sound("Regions")) return;
+  std::set<const Material*> heavy;
+  for (const auto& name : *c.names().regions) heavy.insert(c.rock_of(name));
+  if (scene.bulk.lithostatic_stress) heavy.insert(c.rock_of("bulk"));  // whose density it takes
+  for (const auto& [name, material] : scene.materials)
+    if (heavy.count(&material) && !material.density && c.is_sound("Materials > " + name))
+      c.fail(fmt::format("Materials > {} > \"density\"", name), "missing; it is required with \"gravity\"");
+}
+
+void compare_lithostatic_stress(Comparison& c) {
+  const auto& gravity = c.scene().bulk.gravity;
+  if (!c.scene().bulk.lithostatic_stress || !c.is_sound("Bulk")) return;
+  if (gravity.size() != 2 && gravity.size() != 3) {
+    c.fail("Bulk > \"gravity\"", "must have 2 or 3 components for a \"lithostatic stress\"");
+    return;
+  }
+  const std::string place = "Bulk > lithostatic stress";
+  if (const auto* rock = c.rock_of("bulk"); rock && rock->density && !rock->density->is_constant())
+    c.fail(place, "needs a density that is a number; give an \"initial stress\" instead");
+  if (std::any_of(gravity.begin(), gravity.end() - 1, [](Real g) { return g != 0; }))
+    c.fail(place, "needs gravity along the last coordinate only");
+}
+
+/// The conditions that could be read and fit to the mesh.
+std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c) {
+  std::map<std::string, BoundaryCondition> result;
+  for (const auto& [name, condition] : c.scene().boundary_conditions) {
+    const auto n = condition.displacement.size();
+    if (c.is_sound("Boundary conditions > " + name) && has(*c.names().boundaries, condition.boundary) &&
+        (!condition.region || has(*c.names().regions, *condition.region)) &&
+        (!condition.fracture || has(*c.names().fractures, *condition.fracture)) &&
+        (n == 0 || n == static_cast<std::size_t>(*c.names().dim)))
+      result.emplace(name, condition);
+  }
+  return result;
+}
+
+/// Whether the values of a condition at the end of the first step are known.
+bool can_be_evaluated(const Comparison& c, const BoundaryCondition& condition) {
+  return (c.begin() && c.is_sound("Tables")) ||
+         std::all_of(condition.displacement.begin(), condition.displacement.end(),
+                     [](const auto& value) { return value.text() == "free" || value.is_constant(); });
+}
+
+}  // namespace
+
+void Mechanics::compare(Comparison& c) {
+  compare_rock(c);
+  compare_fractures(c);
+  compare_conditions(c);
+  compare_gravity(c);
+  compare_lithostatic_stress(c);
+}
+
+void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
+  auto conditions = fitting_conditions(c);
+  const auto held = [&] { return dirichlet_conditions(conditions, {}, c.names(), "displacement"); };
+  const bool all = conditions.size() == c.scene().boundary_conditions.size() &&
+                   (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
+  if (is_in(c.scene()) && all) c.fail_unheld(assembly::unheld(mesh, held()));
+  for (auto it = conditions.begin(); it != conditions.end();)
+    it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);
+  for (const auto& conflict : assembly::find_conflicts(mesh, held(), c.begin().value_or(0))) c.add(conflict);
+}
+
+}  // namespace sprekk::physics

@@ -1,0 +1,28 @@
+// All modules of the mechanics of fractured rock.
+#pragma once
+
+#include "physics/mechanics/bulk_momentum.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
+
+namespace sprekk::physics {
+
+struct MechanicsParameters {
+  BulkMomentumParameters bulk;
+  std::vector<JointParameters> joints = {};  ///< different ones
+  std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
+  FluidPressure fluid_pressure = {};
+  FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
+  bool holds_fluid = false;             ///< of unknown pressure
+  Real start = 0;                       ///< time of the initial state, s
+  Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
+};
+
+/// Of the module for jumps.
+ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
+
+/// What a mesh needs: the momentum of the bulk; with fractures, the traction balance of their sides and the split of
+/// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them.
+std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
+                                                              const MechanicsParameters& parameters);
+
+}  // namespace sprekk::physics

@@ -1,0 +1,88 @@
+// What a physics states of itself: entries of a scene, modules, and what they need to know of each other.
+#pragma once
+
+#include "assembly/module.hpp"
+#include "base/expression.hpp"
+#include "base/parameters.hpp"
+#include "mesh/mesh.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprekk::physics {
+
+struct Material;
+struct Region;
+struct BoundaryCondition;
+struct Scene;
+class Comparison;
+
+using Modules = std::vector<std::unique_ptr<assembly::Module>>;
+
+/// What modules are made for.
+struct Setting {
+  const Scene& scene;
+  const mesh::Mesh& mesh;
+  Real start;  ///< time of the initial state, s
+};
+
+/// The values of a field that a condition prescribes, per component; the text "free" leaves one free.
+struct Prescribed {
+  std::string field;
+  std::vector<base::Expression> values;
+};
+
+/// Base of each physics, of what it has nothing to say about. A physics is one room of packages/physics and a line in
+/// list.hpp. It hides those of the following that it has:
+///
+/// - parts of sections that are there without it: Rock and Joint of a material, Bulk, Region, Fracture and
+///   BoundaryCondition, whose members become members of physics::Material, ..., and Sections of its own, whose members
+///   become members of physics::Scene. describe() describes their entries, check() compares them after all of the
+///   section have been read;
+/// - functions, which are called for each physics in the order of the list.
+template <class Self>
+struct Physics {
+  template <int>
+  struct Part {
+    void describe(base::Section&) {}
+    void check(base::Section&) const {}
+    bool is_given() const { return false; }                 ///< of a region or a boundary condition: it says something
+    std::vector<Prescribed> prescribed() const { return {}; }  ///< of these: fields whose unknowns it holds
+  };
+  using Rock = Part<0>;
+  using Joint = Part<1>;
+  using Bulk = Part<2>;
+  using Region = Part<3>;
+  using Fracture = Part<4>;
+  struct BoundaryCondition : Part<5> {
+    static constexpr const char* kinds = "";  ///< for a message: `"pressure" or "flux"`
+  };
+  struct Sections : Part<6> {
+    void keep(const Sections&) {}  ///< takes over from another scene what is no entry
+  };
+
+  /// Whether the scene has it.
+  static bool is_in(const Scene&) { return false; }
+  /// Whether it has unknowns on facets.
+  static bool needs_facets(const Scene&) { return false; }
+  /// Whether it has rates of what it stores, which the scheme in time is of.
+  static bool has_rates(const Scene&) { return false; }
+  /// Names of the sections with which it has.
+  static std::vector<std::string> sections_with_rates() { return {}; }
+  /// Why errors of a state cannot be estimated with it; empty if they can.
+  static std::string no_error_estimate(const Scene&) { return ""; }
+  /// Reports what does not fit together.
+  static void compare(Comparison&) {}
+  /// The same of conditions on a mesh that has all of their names; not collective.
+  static void compare_mesh(Comparison&, const mesh::GlobalMesh&) {}
+  /// Appends its modules. Collective.
+  static void add_modules(const Setting&, Modules&) {}
+  /// What may be wrong with a scene that has a mesh, a line each. Collective.
+  static std::vector<std::string> warnings(const Setting&) { return {}; }
+  /// Why there may be no solution, or more than one; `oscillates`: faces change their contact state from one iterate of
+  /// Newton's method to the next. Collective.
+  static std::vector<std::string> doubts(const Setting&, bool oscillates) { return {}; }
+};
+
+}  // namespace sprekk::physics

@@ -1,0 +1,19 @@
+// What flow and mechanics are to each other where a scene has both.
+#pragma once
+
+#include "physics/physics.hpp"
+
+namespace sprekk::physics {
+
+struct Poroelasticity : Physics<Poroelasticity> {
+  struct Rock : Physics::Rock {
+    Real biot = 1;  ///< Biot's coefficient
+    void describe(base::Section& section);
+  };
+
+  static bool is_in(const Scene& scene);
+  static void add_modules(const Setting& setting, Modules& modules);
+  static std::vector<std::string> warnings(const Setting& setting);
+};
+
+}  // namespace sprekk::physics

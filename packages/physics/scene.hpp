@@ -1,0 +1,169 @@
+// What a scene says of physics: its sections are made of the parts that each physics has in them.
+#pragma once
+
+#include "base/check.hpp"
+#include "base/table.hpp"
+#include "physics/list.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprekk::physics {
+
+namespace detail {
+
+template <class... P>
+struct Materials : P::Rock..., P::Joint... {
+ protected:
+  void describe_rock(base::Section& s) { (P::Rock::describe(s), ...); }
+  void describe_joint(base::Section& s) { (P::Joint::describe(s), ...); }
+  void check_rock(base::Section& s) const { (P::Rock::check(s), ...); }
+  void check_joint(base::Section& s) const { (P::Joint::check(s), ...); }
+};
+
+template <class... P>
+struct Bulks : P::Bulk... {
+ protected:
+  void describe_parts(base::Section& s) { (P::Bulk::describe(s), ...); }
+  void check_parts(base::Section& s) const { (P::Bulk::check(s), ...); }
+};
+
+template <class... P>
+struct Fractures : P::Fracture... {
+ protected:
+  void describe_parts(base::Section& s) { (P::Fracture::describe(s), ...); }
+  void check_parts(base::Section& s) const { (P::Fracture::check(s), ...); }
+};
+
+template <class... P>
+struct Regions : P::Region... {
+  std::vector<Prescribed> prescribed() const {
+    std::vector<Prescribed> all;
+    const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+    (add(P::Region::prescribed()), ...);
+    return all;
+  }
+
+ protected:
+  void describe_parts(base::Section& s) { (P::Region::describe(s), ...); }
+  void check_parts(base::Section& s) const { (P::Region::check(s), ...); }
+  bool is_any_given() const { return (P::Region::is_given() || ...); }
+};
+
+template <class... P>
+struct BoundaryConditions : P::BoundaryCondition... {
+  std::vector<Prescribed> prescribed() const {
+    std::vector<Prescribed> all;
+    const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+    (add(P::BoundaryCondition::prescribed()), ...);
+    return all;
+  }
+
+ protected:
+  void describe_parts(base::Section& s) { (P::BoundaryCondition::describe(s), ...); }
+  void check_parts(base::Section& s) const { (P::BoundaryCondition::check(s), ...); }
+  bool is_any_given() const { return (P::BoundaryCondition::is_given() || ...); }
+  static std::vector<std::string> kinds() { return {P::BoundaryCondition::kinds...}; }
+};
+
+template <class... P>
+struct Sections : P::Sections... {
+ protected:
+  void describe_parts(base::Section& s) { (P::Sections::describe(s), ...); }
+  template <class Other>
+  void keep_parts(const Other& other) {
+    (P::Sections::keep(other), ...);
+  }
+};
+
+template <class... P>
+struct Each {
+  template <class Call>
+  static void call(const Call& call) {
+    (call(P()), ...);
+  }
+};
+
+}  // namespace detail
+
+/// Calls call(P()) for each physics P.
+template <class Call>
+void for_each_physics(const Call& call) {
+  OfAll<detail::Each>::call(call);
+}
+
+/// Rock, or the surface of a fracture.
+struct Material : OfAll<detail::Materials> {
+  std::string type;                   ///< "elastic" or "joint"
+  std::optional<std::string> source;  ///< where the values come from
+  void describe(base::Section& section);
+};
+
+/// The rock as a whole.
+struct Bulk : OfAll<detail::Bulks> {
+  std::string material;       ///< of all regions that have none of their own
+  std::vector<Real> gravity;  ///< m/s^2; its force is the density times this
+  void describe(base::Section& section);
+};
+
+/// What a part of the rock has of its own, in place of what Bulk says.
+struct Region : OfAll<detail::Regions> {
+  std::optional<std::string> material;
+  void describe(base::Section& section);
+};
+
+struct Fracture : OfAll<detail::Fractures> {
+  std::string material;
+  void describe(base::Section& section);
+};
+
+struct BoundaryCondition : OfAll<detail::BoundaryConditions> {
+  std::string boundary;
+  std::optional<std::string> region;    ///< only where the boundary touches this region
+  std::optional<std::string> fracture;  ///< only where this fracture ends on the boundary
+  void describe(base::Section& section);
+};
+
+struct Scene : OfAll<detail::Sections> {
+  std::string origin = "scene";  ///< opens messages about it: the file that it was read from
+  base::Tables tables;
+  base::Expression::Named expressions;  ///< that others call by name
+  std::map<std::string, Material> materials;
+  Bulk bulk;
+  std::map<std::string, Region> regions;
+  std::map<std::string, Fracture> fractures;
+  std::map<std::string, BoundaryCondition> boundary_conditions;
+
+  /// Tables and named expressions, which all later entries may call.
+  void describe_expressions(base::Section& section);
+  /// All others; adds materials of the library that are named.
+  void describe_physics(base::Section& section);
+  /// Takes over from another scene what is no entry.
+  void keep(const Scene& other) { keep_parts(other); }
+  const Material& material_of(const std::string& region) const;
+};
+
+/// Of the materials of the mesh's regions, by their numbers.
+template <class Of>
+auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
+  std::vector<decltype(of(scene.material_of("")))> values;
+  for (const auto& name : mesh.region_names) values.push_back(of(scene.material_of(name)));
+  return values;
+}
+
+/// What `find` finds of a material; its errors get the place of the material in the scene.
+template <class Find>
+auto at_place(const Scene& scene, const Material& material, const Find& find) {
+  try {
+    return find();
+  } catch (const Error& error) {
+    const auto is_it = [&](const auto& one) { return &one.second == &material; };
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
+    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
+  }
+}
+
+}  // namespace sprekk::physics
