@@ -124,7 +124,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_flow(const Scene& scene, con
   if (!flow.wells.empty()) {
     physics::WellsParameters all{
         wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
-    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.along.transmissivity());
+    for (const auto& face : fractures.faces) all.faces.push_back(face.along);
+    all.widens = fractures.widens && !mesh.fracture_names.empty();
+    all.softness = fractures.softness;
     modules.push_back(physics::make_wells(mesh.shape, std::move(all)));
   }
   modules.push_back(physics::make_darcy_flow(mesh.shape, std::move(darcy)));
