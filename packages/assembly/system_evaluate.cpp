@@ -147,6 +147,9 @@ void System::set_time(Real t, Real dt) {
       changes = changes || !module->constant_load();
     }
   });
+  base::collectively(*comm(), [&] {
+    for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->start_step(state(static_cast<int>(m)));
+  });
   if (!changes) return;
   for (std::size_t b = 0; b < load_.size(); ++b) {
     load_[b]->putScalar(0);

@@ -12,6 +12,16 @@
 namespace sprekk {
 namespace {
 
+/// One with a pressure and one with a rate; both cross (2D: lie on) the fracture "a", and in 3D run through rock.
+void add_wells(model::Scene& scene, int dim) {
+  for (const bool by_rate : {false, true}) {
+    auto& well = scene.flow->wells[by_rate ? "by rate" : "by pressure"];
+    well.points = dim == 2 ? std::vector<Real>{1.4, 2} : std::vector<Real>{1.4, 1.2, 0.6, 1.6, 2.7, 1.3};
+    well.radius = 1e-3;
+    (by_rate ? well.rate : well.pressure) = base::Expression(2);
+  }
+}
+
 /// Rock with fractures that cross and end in it, filled with a fluid; apertures grow and shrink.
 model::Scene make_scene(const std::string& cell, Real compressibility) {
   model::Scene scene;
@@ -41,6 +51,7 @@ model::Scene make_scene(const std::string& cell, Real compressibility) {
   scene.flow->density = 3;
   scene.flow->compressibility = compressibility;
   scene.flow->initial_pressure = base::Expression("0.1*x + 0.2*y");
+  add_wells(scene, dim);
   for (const auto& [name, fracture] : scene.mesh.fractures) scene.fractures[name].material = "joint";
   auto &floor = scene.boundary_conditions["floor"], &lid = scene.boundary_conditions["lid"];
   floor.boundary = "south";

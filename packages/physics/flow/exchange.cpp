@@ -2,24 +2,56 @@
 
 namespace sprekk::physics {
 
-void Exchange::add(LocalIndex row, Real coefficient) {
-  rows_.push_back(row);
-  coefficients_.push_back(coefficient);
+/// Of one exchange, and its derivative in the widening of its face.
+struct Exchange::Coefficient {
+  ConstView<Real*> factor, widening;
+  ConstView<LocalIndex*> face;
+  PresentConduits conduits;
+
+  KOKKOS_INLINE_FUNCTION bool widens() const { return conduits.conduit.extent(0) > 0; }
+  KOKKOS_INLINE_FUNCTION Real operator()(int k) const {
+    return widens() ? factor(k) * conduits.transmissivity(face(k), widening(face(k))) : factor(k);
+  }
+  KOKKOS_INLINE_FUNCTION Real derivative(int k) const {
+    return factor(k) * conduits.dtransmissivity(face(k), widening(face(k)));
+  }
+};
+
+namespace {
+
+using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
+
+KOKKOS_INLINE_FUNCTION void add_entry(const LocalMatrix& matrix, LocalIndex row, LocalIndex column, Real value) {
+  for (auto i = matrix.graph.row_map(row); i < matrix.graph.row_map(row + 1); ++i)
+    if (matrix.graph.entries(i) == column) Kokkos::atomic_add(&matrix.values(i), value);
 }
 
-void Exchange::bind(const assembly::Context& context, int block, const laws::Fluid& fluid) {
+}  // namespace
+
+void Exchange::add(LocalIndex row, Real coefficient, LocalIndex face) {
+  rows_.push_back(row);
+  coefficients_.push_back(coefficient);
+  faces_.push_back(face);
+}
+
+void Exchange::bind(const assembly::Context& context, int block, const laws::Fluid& fluid,
+                    const std::vector<laws::Conduit>& conduits) {
   block_ = block;
   fluid_ = fluid;
-  std::vector<LocalIndex> rows;
+  std::vector<LocalIndex> rows, faces;
   std::vector<Real> coefficients;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     kept_.push_back(rows_[k] < context.layout(block).n_owned());
     if (!kept_.back()) continue;
     rows.push_back(rows_[k]);
+    faces.push_back(faces_[k]);
     coefficients.push_back(coefficients_[k]);
   }
   row_ = assembly::to_device(rows, "rows");
+  face_ = assembly::to_device(faces, "faces");
   coefficient_ = assembly::to_device(coefficients, "coefficients");
+  conduit_ = assembly::to_device(conduits, "conduits");
+  if (!conduits.empty()) widening_ = context.field("widening");
   set_outside(std::vector<Real>(rows_.size(), 0));
 }
 
@@ -30,10 +62,15 @@ void Exchange::set_outside(const std::vector<Real>& pressures) {
   outside_ = assembly::to_device(kept, "pressures outside");
 }
 
+Exchange::Coefficient Exchange::coefficient(const assembly::State& state) const {
+  return {coefficient_, widening_ < 0 ? ConstView<Real*>() : state.x[widening_], face_, {conduit_, state.coefficients}};
+}
+
 void Exchange::add_residual(const assembly::State& state, const assembly::Rows& r) const {
   const auto fluid = fluid_;
   const auto row = row_;
-  const auto coefficient = coefficient_, outside = outside_;
+  const auto outside = outside_;
+  const auto coefficient = this->coefficient(state);
   const auto x = state.x[block_];
   const auto rows = r[block_];
   Kokkos::parallel_for(
@@ -45,15 +82,20 @@ void Exchange::add_residual(const assembly::State& state, const assembly::Rows& 
 /// Columns of owned unknowns have the numbers of their rows.
 void Exchange::add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   const auto fluid = fluid_;
-  const auto row = row_;
-  const auto coefficient = coefficient_, outside = outside_;
+  const auto row = row_, face = face_;
+  const auto outside = outside_;
+  const auto coefficient = this->coefficient(state);
   const auto x = state.x[block_];
   const auto local = J(block_, block_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
       "exchange", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int k) {
-        const Real slope = coefficient(k) * fluid.ddrop_da(x(row(k)), outside(k), 0);
-        for (auto i = local.graph.row_map(row(k)); i < local.graph.row_map(row(k) + 1); ++i)
-          if (local.graph.entries(i) == row(k)) Kokkos::atomic_add(&local.values(i), slope);
+        add_entry(local, row(k), row(k), coefficient(k) * fluid.ddrop_da(x(row(k)), outside(k), 0));
+      });
+  if (widening_ < 0 || J(block_, widening_).is_null()) return;
+  const auto by_widening = J(block_, widening_)->getLocalMatrixDevice();
+  Kokkos::parallel_for(
+      "exchange", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int k) {
+        add_entry(by_widening, row(k), face(k), coefficient.derivative(k) * fluid.drop(x(row(k)), outside(k), 0));
       });
 }
 

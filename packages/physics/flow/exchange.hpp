@@ -3,31 +3,38 @@
 
 #include "assembly/module.hpp"
 #include "laws/fluid.hpp"
+#include "physics/flow/present_conduits.hpp"
 
 #include <vector>
 
 namespace sprekk::physics {
 
-/// Exchanges c (p - p_outside) in rows of a field of pressures, of a compressible fluid c (e - e_outside)/c_f.
+/// Exchanges c (p - p_outside) in rows of a field of pressures, of a compressible fluid c (e - e_outside)/c_f. With
+/// conduits c is the coefficient times the present transmissivity of a fracture face.
 class Exchange {
  public:
-  /// Adds one with the coefficient c to a row; those that other ranks own are dropped.
-  void add(LocalIndex row, Real coefficient);
-  /// Once all are added. `block`: that of the field.
-  void bind(const assembly::Context& context, int block, const laws::Fluid& fluid);
+  /// Adds one with a coefficient to a row; those that other ranks own are dropped. `face`: owned, needed with conduits.
+  void add(LocalIndex row, Real coefficient, LocalIndex face = -1);
+  /// Once all are added. `block`: that of the field. `conduits`: [local fracture face], which "widening" widens.
+  void bind(const assembly::Context& context, int block, const laws::Fluid& fluid,
+            const std::vector<laws::Conduit>& conduits = {});
   /// The pressures outside, in the order in which exchanges were added.
   void set_outside(const std::vector<Real>& pressures);
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const;
 
  private:
-  int block_ = -1;
+  struct Coefficient;
+  Coefficient coefficient(const assembly::State& state) const;
+
+  int block_ = -1, widening_ = -1;
   laws::Fluid fluid_;
-  std::vector<LocalIndex> rows_;
+  std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> coefficients_;
   std::vector<char> kept_;  // [exchange as added]
-  ConstView<LocalIndex*> row_;
+  ConstView<LocalIndex*> row_, face_;
   ConstView<Real*> coefficient_, outside_;
+  ConstView<laws::Conduit*> conduit_;
 };
 
 }  // namespace sprekk::physics

@@ -166,7 +166,9 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto fluid = darcy.fluid;
   if (!flow.wells.empty()) {
     WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
-    for (const auto& face : fractures.faces) all.transmissivity.push_back(face.along.transmissivity());
+    for (const auto& face : fractures.faces) all.faces.push_back(face.along);
+    all.widens = fractures.widens && !mesh.fracture_names.empty();
+    all.softness = fractures.softness;
     modules.push_back(make_wells(mesh.shape, std::move(all)));
   }
   modules.push_back(make_darcy_flow(mesh.shape, std::move(darcy)));

@@ -5,6 +5,7 @@
 #include "mesh/facets.hpp"
 #include "physics/flow/exchange.hpp"
 #include "physics/flow/face_plane.hpp"
+#include "physics/flow/present_conduits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,18 +54,18 @@ struct WideningFace : FractureFace<n> {
   using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
   using Rows = typename Base::Columns;
 
-  ConstView<Real*> aperture;  // [face] hydraulic, m, where it is given
+  PresentConduits conduits;
 
-  explicit WideningFace(const Base& base, ConstView<Real*> aperture = {}) : Base(base), aperture(aperture) {}
+  WideningFace(const Base& base, ConstView<Real*> aperture) : Base(base), conduits{base.conduit, aperture} {}
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
-    evaluate(face, x, transmissivity(face, x[1 + n]), r);
+    evaluate(face, x, conduits.transmissivity(face, x[1 + n]), r);
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
     Real p[1 + n], by_widening[1 + n], own[1 + n][1 + n];
     for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
     Base::at(face).jacobian(p, own);
-    evaluate(face, x, is_given() ? 0 : this->conduit(face).dtransmissivity(x[1 + n]), by_widening);
-    const Real transmissivity = this->transmissivity(face, x[1 + n]);
+    evaluate(face, x, conduits.dtransmissivity(face, x[1 + n]), by_widening);
+    const Real transmissivity = conduits.transmissivity(face, x[1 + n]);
     for (int i = 0; i < 1 + n; ++i) {
       for (int k = 0; k < 1 + n; ++k) J[i][k] = transmissivity * own[i][k];
       J[i][1 + n] = by_widening[i];
@@ -72,11 +73,6 @@ struct WideningFace : FractureFace<n> {
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION bool is_given() const { return aperture.extent(0) > 0; }
-  KOKKOS_INLINE_FUNCTION Real transmissivity(int face, Real widening) const {
-    const laws::Conduit& conduit = this->conduit(face);
-    return is_given() ? conduit.transmissivity_of(aperture(face)) : conduit.transmissivity(widening);
-  }
   KOKKOS_INLINE_FUNCTION void evaluate(int face, const Real (&x)[2 + n], Real transmissivity, Real (&r)[1 + n]) const {
     Real p[1 + n];
     for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
@@ -339,7 +335,7 @@ class FractureFlow final : public assembly::Module {
   RCP<const mesh::Mesh> mesh_;
   int block_ = -1, widening_ = -1;  // face pressure, widening
   Real size_ = 0;                   // largest extent of the domain, m
-  Real open_ = 0;  // aperture of a fracture that is wide open, m
+  Real open_ = 0;                   // aperture of a fracture that is wide open, m
   bool loaded_ = false;
   std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
   Op op_;

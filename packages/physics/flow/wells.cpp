@@ -31,8 +31,9 @@ struct Segment {
 struct Connection {
   int well, fracture;  ///< -1: rock
   LocalIndex row;      ///< cell, or facet
-  Real index;          ///< W, m^3/(Pa s)
+  Real index;          ///< W, m^3/(Pa s); of a face over its transmissivity, -
   Vector x;            ///< the centre of the cell or the face, where its pressure is
+  LocalIndex face;     ///< -1: rock
 };
 
 template <Shape shape>
@@ -48,6 +49,10 @@ class Wells final : public assembly::Module {
     assembly::Declaration d;
     d.couplings = {{assembly::Loop::cells, "pressure", {"pressure"}},
                    {assembly::Loop::cells, "face pressure", {"face pressure"}}};
+    if (parameters_.widens) {
+      d.couplings.push_back({assembly::Loop::fracture_cells, "face pressure", {"widening"}});
+      d.history = {{"widening", fields::Entity::fracture_face, 1}};
+    }
     d.linear = is_linear();
     return d;
   }
@@ -60,16 +65,18 @@ class Wells final : public assembly::Module {
     find_cells_of_nodes();
     std::string failure = find_connections();
     cells_of_node_.clear();
-    shares_.assign(parameters_.wells.size(), 0);
-    std::vector<Real> here(shares_.size(), 0);
-    for (const auto& connection : connections_) here[connection.well] += connection.index;
-    Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), shares_.data());
+    if (parameters_.widens) widening_ = context.field("widening");
+    sums_ = sums([](LocalIndex) { return 0; });
+    for (Real p = least_pressure; parameters_.softness > 0 && p <= largest_pressure; p *= 2)
+      under_.push_back(sums([&](LocalIndex) { return parameters_.softness * p; }));
     for (const auto& c : connections_) {
-      const int k = c.fracture >= 0;
-      if (well(c).pressure) exchange_[k].add(c.row, c.index);
+      const bool widens = parameters_.widens && c.face >= 0;
+      if (well(c).pressure) exchange_[c.face >= 0].add(c.row, widens ? c.index : index(c), c.face);
     }
     for (int k = 0; k < 2; ++k) {
-      exchange_[k].bind(context, blocks[k], parameters_.fluid);
+      const bool widens = parameters_.widens && k == 1;
+      exchange_[k].bind(context, blocks[k], parameters_.fluid,
+                        widens ? parameters_.faces : std::vector<laws::Conduit>());
       load_[k] = View<Real*>("load", context.layout(blocks[k]).n_owned());
       blocks_[k] = blocks[k];
     }
@@ -91,11 +98,16 @@ class Wells final : public assembly::Module {
   }
 
   bool constant_load() const override {
-    return std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
-                       [](const Well& well) { return control(well).constant_in_time(); });
+    return !parameters_.widens && std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
+                                              [](const Well& well) { return control(well).constant_in_time(); });
   }
 
-  void set_time(Real t, const assembly::Scales&) override {
+  void start_step(const assembly::State& state) override {
+    if (parameters_.widens) {
+      const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
+      start_ = {before.data(), before.data() + before.extent(0)};
+      sums_ = sums([&](LocalIndex face) { return start_[face]; });
+    }
     std::array<std::vector<Real>, 2> outside;
     for (int k = 0; k < 2; ++k) {
       const auto host = Kokkos::create_mirror_view(load_[k]);
@@ -103,13 +115,22 @@ class Wells final : public assembly::Module {
       for (const auto& c : connections_) {
         if ((c.fracture >= 0) != (k == 1)) continue;
         if (well(c).pressure)
-          outside[k].push_back(pressure(c, t));
+          outside[k].push_back(pressure(c, state.t));
         else
-          host(c.row) -= rate(c, t);
+          host(c.row) -= rate(c, state.t);
       }
       Kokkos::deep_copy(load_[k], host);
       exchange_[k].set_outside(outside[k]);
     }
+  }
+
+  void commit(assembly::State& state) const override {
+    if (!parameters_.widens) return;
+    const auto widening = state.x[widening_];
+    const auto kept = state.history[0];
+    Kokkos::parallel_for(
+        "widening", Kokkos::RangePolicy<Execution>(0, kept.extent(0)),
+        KOKKOS_LAMBDA(int f) { kept(f, 0) = widening(f); });
   }
 
   /// The pressure in wells, or what draws a rate.
@@ -118,7 +139,7 @@ class Wells final : public assembly::Module {
     for (std::size_t w = 0; w < parameters_.wells.size(); ++w) {
       const auto& one = parameters_.wells[w];
       const Real value = std::abs(control(one)(one.points[0], t));
-      largest = std::max(largest, one.pressure ? value : value / shares_[w]);
+      largest = std::max(largest, one.pressure ? value : pressure_for(w, value));
     }
     return largest;
   }
@@ -135,25 +156,54 @@ class Wells final : public assembly::Module {
       p[k] = Kokkos::View<Real*>::HostMirror("p", state.x[blocks_[k]].extent(0));
       Kokkos::deep_copy(p[k], state.x[blocks_[k]]);
     }
+    const auto widening =
+        parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p[1];
     for (const auto& c : connections_) {
-      const Real at = p[c.fracture >= 0](c.row), share = c.index / shares_[c.well];
+      const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
+      const Real W = index(c, parameters_.widens && c.face >= 0 ? widening(c.face) : 0);
       const bool held = well(c).pressure.has_value();
-      const Real flow = held ? c.index * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
+      const Real flow = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
-      totals[of_well + 1].value += share * (held ? control(well(c))(well(c).points[0], state.t)
-                                                 : at + flow / c.index - head(c, at + flow / c.index));
+      totals[of_well + 1].value +=
+          share * (held ? control(well(c))(well(c).points[0], state.t) : at + flow / W - head(c, at + flow / W));
       totals[of_well + 3 + c.fracture].value += flow;
     }
   }
 
  private:
-  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
+  /// Between which pressures W is known, Pa.
+  static constexpr Real least_pressure = 1, largest_pressure = 1e12;
+
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
   const Well& well(const Connection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
 
-  Real rate(const Connection& c, Real t) const {
-    return control(well(c))(well(c).points[0], t) * c.index / shares_[c.well];
+  /// W.
+  Real index(const Connection& c, Real widening = 0) const {
+    return c.face < 0 ? c.index : c.index * parameters_.faces[c.face].transmissivity(widening);
+  }
+  /// Of all connections of each well on all ranks, with widening(face). Collective.
+  template <class Widening>
+  std::vector<Real> sums(const Widening& widening) const {
+    std::vector<Real> here(parameters_.wells.size(), 0), all(here);
+    for (const auto& c : connections_) here[c.well] += index(c, c.face < 0 ? 0 : widening(c.face));
+    Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+    return all;
+  }
+  Real share(const Connection& c) const {
+    return index(c, c.face < 0 || start_.empty() ? 0 : start_[c.face]) / sums_[c.well];
+  }
+  Real rate(const Connection& c, Real t) const { return control(well(c))(well(c).points[0], t) * share(c); }
+
+  /// About p with p W = rate, W that of fractures which p has opened: see FractureFlowParameters::softness.
+  Real pressure_for(std::size_t w, Real rate) const {
+    Real p = least_pressure;
+    for (const auto& W : under_) {
+      if (p * W[w] >= rate) return rate / W[w];
+      p *= 2;
+    }
+    return rate / sums_[w];
   }
 
   Real lift(const Connection& c) const {
@@ -271,7 +321,7 @@ class Wells final : public assembly::Module {
   }
 
   /// 2 pi K over ln(r_0/r_w) + skin.
-  Real index(int number, Real conductance, Real log_ratio) const {
+  Real radial_index(int number, Real conductance, Real log_ratio) const {
     return 2 * M_PI * conductance / (log_ratio + parameters_.wells[number].skin);
   }
 
@@ -284,8 +334,8 @@ class Wells final : public assembly::Module {
                                                                : log_patch_radius(cell, segment, mobility, line);
     const Real ratio = radius - std::log(line.stretch * parameters_.wells[segment.well].radius);
     const Real length = (high - low) * segment.length;
-    const Real W = index(segment.well, line.conductance * length, ratio);
-    connections_.push_back({segment.well, -1, cell, W, centre(cell)});
+    const Real W = radial_index(segment.well, line.conductance * length, ratio);
+    connections_.push_back({segment.well, -1, cell, W, centre(cell), -1});
   }
 
   Vector centre(LocalIndex cell) const {
@@ -356,8 +406,8 @@ class Wells final : public assembly::Module {
     if constexpr (dim == 2) {
       if (std::abs(mesh::dot(away, normal)) > 1e-8 * size_ || std::abs(mesh::dot(away, face.frame[1])) > face.area / 2)
         return false;
-      const Real W = 2 * parameters_.transmissivity[f] / ((1 + well.skin) * well.radius);
-      connections_.push_back({segment.well, face.fracture, mesh_->facets->fracture_face[f], W, face.centre});
+      const Real index = 2 / ((1 + well.skin) * well.radius);
+      connections_.push_back({segment.well, face.fracture, mesh_->facets->fracture_face[f], index, face.centre, f});
       return true;
     } else {
       const Real towards = mesh::dot(segment.along, normal), height = mesh::dot(away, normal);
@@ -402,13 +452,12 @@ class Wells final : public assembly::Module {
   void connect_face(LocalIndex f, const Segment& segment, const Vector& x, Real slant) {
     constexpr int n = mesh::n_face_corners(shape);
     const auto& face = mesh_->fracture_faces[f];
-    const Real T = parameters_.transmissivity[f];
-    const LineFlow line(dim, laws::Mobility::isotropic(T), x, face.frame[0]);
+    const LineFlow line(dim, laws::Mobility::isotropic(1), x, face.frame[0]);
     std::vector<PatchEntity> patch;
     std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // of ends: face, ridge
     const auto add = [&](LocalIndex one) {
-      const FacePlane<shape> plane(*mesh_, one, T, parameters_.scheme);
-      patch.push_back({{}, one == f ? 2 * M_PI * T : 0, {}});
+      const FacePlane<shape> plane(*mesh_, one, 1, parameters_.scheme);
+      patch.push_back({{}, one == f ? 2 * M_PI : 0, {}});
       for (int k = 0; k < n; ++k) {
         for (int j = 0; j < n; ++j) patch.back().T.push_back(plane.T[k][j]);
         patch.back().ends.push_back(mesh_->facets->ridge[one * n + k]);
@@ -433,8 +482,8 @@ class Wells final : public assembly::Module {
       return sum;
     });
     const Real ratio = radius - std::log(line.stretch * parameters_.wells[segment.well].radius * (1 + slant) / 2);
-    connections_.push_back(
-        {segment.well, face.fracture, mesh_->facets->fracture_face[f], index(segment.well, T, ratio), face.centre});
+    connections_.push_back({segment.well, face.fracture, mesh_->facets->fracture_face[f],
+                            radial_index(segment.well, 1, ratio), face.centre, f});
   }
 
   WellsParameters parameters_;
@@ -442,11 +491,14 @@ class Wells final : public assembly::Module {
   Real size_ = 0;  // largest extent of the domain, m
   std::vector<Segment> segments_;
   std::vector<std::vector<LocalIndex>> cells_of_node_;
-  std::vector<Connection> connections_;  // of this rank
-  std::vector<Real> shares_;             // [well] sum of W over all ranks
-  std::array<int, 2> blocks_{};          // pressure, face pressure
-  std::array<Exchange, 2> exchange_;     // of wells with a pressure
-  std::array<View<Real*>, 2> load_;      // [owned row] of wells with a rate, m^3/s
+  std::vector<Connection> connections_;   // of this rank
+  std::vector<Real> start_;               // [owned fracture face] widening at the start of the step; empty: none
+  std::vector<Real> sums_;                // [well] sum of W over all ranks then
+  std::vector<std::vector<Real>> under_;  // [doubling of pressure][well] that under a pressure
+  std::array<int, 2> blocks_{};           // pressure, face pressure
+  int widening_ = -1;
+  std::array<Exchange, 2> exchange_;  // of wells with a pressure
+  std::array<View<Real*>, 2> load_;   // [owned row] of wells with a rate, m^3/s
 };
 
 }  // namespace

@@ -28,20 +28,23 @@ struct WellsParameters {
   FluxScheme scheme = FluxScheme::rt0;
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
-  std::vector<Real> transmissivity;  ///< [local fracture face] m^3/(Pa s)
+  std::vector<laws::Conduit> faces;  ///< [local fracture face]
+  bool widens = false;               ///< as in FractureFlowParameters, and the next
+  Real softness = 0;
 };
 
 /// Adds -W (p_w - p) to the rows of "pressure" of cells that a well runs through and of "face pressure" of fracture
 /// faces that it crosses (2D: lies on), of a compressible fluid -W (e_w - e)/c. In a cell
 ///   W = 2 pi k_w L/(ln(r_0/r_w) + skin)
 /// with the length L of the well in it, k_w = LineFlow::conductance and the equivalent radius r_0 of the cell, see
-/// log_equivalent_radius(); in a fracture likewise with its transmissivity for k_w L; in 2D, where flow in the fracture
-/// is along a line, W = 2 T/((1 + skin) r_w). p_w is the pressure at the first point plus the weight of fluid at rest
-/// between there and the middle of what is in the cell. A well with a rate puts it in by the shares of W, as if it drew
-/// all cells down by the same. Lengths do not depend on the partition, and a well in a face between cells counts once:
-/// wells are moved by 1e-9 of the domain's extent, in a direction that no face has. Errors, on every rank: a well
-/// leaves the domain, lies in a fracture, or is as wide as an equivalent radius. Totals: "wells", the name, then
-/// "rate", "pressure" (of a well with a rate the mean by shares), "in rock" and "in FRACTURE", rates.
+/// log_equivalent_radius(); in a fracture likewise with its transmissivity T for k_w L, of one that widens the present
+/// one, or that of State::coefficients; in 2D, where flow in the fracture is along a line, W = 2 T/((1 + skin) r_w).
+/// p_w is the pressure at the first point plus the weight of fluid at rest between there and the middle of what is in
+/// the cell. A well with a rate puts it in by the shares of W at the start of the step, as if it drew all cells down by
+/// the same. Lengths do not depend on the partition, and a well in a face between cells counts once: wells are moved by
+/// 1e-9 of the domain's extent, in a direction that no face has. Errors, on every rank: a well leaves the domain, lies
+/// in a fracture, or is as wide as an equivalent radius. Totals: "wells", the name, then "rate", "pressure" (of a well
+/// with a rate the mean by shares), "in rock" and "in FRACTURE", rates.
 std::unique_ptr<assembly::Module> make_wells(mesh::Shape shape, WellsParameters parameters);
 
 }  // namespace sprekk::physics

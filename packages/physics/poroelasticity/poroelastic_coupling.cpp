@@ -25,7 +25,8 @@ template <class... Displacements>
 struct Work {
   using Columns = assembly::Slots<Displacements..., Slot<1, 1>>;
   using Rows = Columns;
-  static constexpr int m = Columns::size - 1;
+  static constexpr int m = Columns::size - 1, last = sizeof...(Displacements);
+  static constexpr bool couples(int row, int column) { return (row == last) != (column == last); }
   View<Real**> volume;
   ConstView<Real*> reference = {};
   Real rate = 0;
@@ -59,7 +60,8 @@ template <class... Displacements>
 struct Opening {
   using Columns = assembly::Slots<Displacements..., Slot<1, 1>, Slot<1, 1>>;
   using Rows = assembly::Slots<Displacements..., Slot<1, 1>>;
-  static constexpr int m = Rows::size - 1;
+  static constexpr int m = Rows::size - 1, last = sizeof...(Displacements);
+  static constexpr bool couples(int row, int column) { return (row == last) != (column == last); }
   View<Real**> volume;
   ConstView<Real*> part;
 
