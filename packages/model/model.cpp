@@ -4,7 +4,6 @@
 #include "base/any_rank.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
-#include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
@@ -76,11 +75,6 @@ physics::BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
     force.density_of_cell.push_back(
         (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
   return force;
-}
-
-assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  return {scene.deforms() ? largest_modulus(scene, mesh) : 1, mesh::largest_extent(mesh),
-          scene.flow ? largest_mobility(scene, mesh) : 0};
 }
 
 /// The element of that name, or an Error that lists those there are.
@@ -212,7 +206,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
       if (region.pressure)
         conditions.push_back({"Regions > " + name, field, -1, {*region.pressure}, index_of(mesh->region_names, name)});
   system_ = std::make_unique<assembly::System>(
-      mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_,
+      mesh, std::move(modules), conditions, timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
   x_ = system_->initial();
   start_solver();
@@ -309,13 +303,11 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {
-      {"time", time_},
-      {"dt", memory.dt},
-      {"scales",
-       {{"stress", memory.scales.stress}, {"length", memory.scales.length}, {"pressure", memory.scales.pressure}}},
-      {"calibration", memory.calibration},
-      {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {{"time", time_},
+                        {"dt", memory.dt},
+                        {"scales", memory.scales},
+                        {"calibration", memory.calibration},
+                        {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
 }
@@ -332,11 +324,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     Kokkos::deep_copy(values, entries(vector, field.n_components));
   }
   time_ = content.at("time");
-  const auto& scales = content.at("scales");
-  system_->resume(x_, {time_,
-                       content.at("dt"),
-                       {scales.at("stress"), scales.at("length"), scales.value("pressure", Real(0))},
-                       content.value("calibration", std::vector<Real>())});
+  system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration")});
   start_solver();
 }
 
