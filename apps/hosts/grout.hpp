@@ -1,6 +1,7 @@
 // A module of a host, with an unknown of its own: grout that is sealed in the fractures and resists to be squeezed.
 #pragma once
 
+#include "mesh/extents.hpp"
 #include "model/model.hpp"
 
 namespace hosts {
@@ -48,8 +49,8 @@ struct GroutedSide {
 inline auto make_grout(const mesh::Mesh& mesh, Real h, Real K, const std::string& local_group = "fracture face") {
   const fields::Field pressure{"grout pressure", fields::Entity::fracture_face, 1, "Pa"};
   assembly::Description grout{"grout", fmt::format("h = {} m, K = {} Pa", h, K)};
-  grout.unknowns = {
-      {pressure, assembly::Quantity::stress, assembly::Quantity::volume, assembly::NearNullSpace::none, local_group}};
+  grout.unknowns = {{pressure, "stress", {{"displacement", mesh::typical_face_area(mesh)}}}};
+  grout.unknowns[0].local_group = local_group;
   grout.linear = true;  // and symmetric
   return mesh::for_shape(mesh.shape, [&](auto shape) {
     return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes<shape()>(mesh), h / K});

@@ -101,15 +101,16 @@ class OwnFlow final : public assembly::Module {
 
   std::string name() const override { return "own flow"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     using assembly::Loop;
-    using assembly::Quantity;
-    assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, Quantity::pressure, Quantity::flow};
-    assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, Quantity::pressure, Quantity::flow};
+    assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, "pressure", {}};
+    assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, "pressure", {}};
     facets.near_null_space = assembly::NearNullSpace::constants;  // multigrid, for the pressure of faces
     cells.condensed_into = "face pressure";                       // from which those of cells are eliminated
+    cells.balance = facets.balance = true;                        // of volume per time
     assembly::Declaration d;
     d.unknowns = {cells, facets};
+    d.scales = {{"pressure", 1e-12}};
     for (const char* row : {"pressure", "face pressure"})
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
     d.couplings.push_back({Loop::fracture_cells, "face pressure", {"face pressure", "widening"}});

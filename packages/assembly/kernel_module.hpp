@@ -15,6 +15,7 @@ namespace sprekk::assembly {
 struct Description {
   std::string name, fingerprint;
   std::vector<Unknown> unknowns = {};
+  Scales scales = {};
   bool linear = false, holds_bodies = false;
   Real merit_weight = 0;  ///< of the rows of the own unknowns, if not linear: see Module::merit_weights
 };
@@ -32,14 +33,16 @@ class KernelModule final : public Module {
   std::string fingerprint() const override { return description_.fingerprint; }
   bool holds_bodies() const override { return description_.holds_bodies; }
 
-  Declaration declare() const override {
+  Declaration declare(const mesh::Mesh&) const override {
     Declaration d;
     d.unknowns = description_.unknowns;
     d.linear = description_.linear;
     for (const char* row : Op::fields) d.couplings.push_back({Op::loop, row, {Op::fields.begin(), Op::fields.end()}});
-    for (const auto& unknown : d.unknowns) {
-      const auto& field = unknown.field;
-      d.outputs.push_back({field.name, field.unit, field.entity, field.n_components});
+    d.scales = description_.scales;
+    for (std::size_t k = 0; k < d.unknowns.size(); ++k) {
+      const auto& field = d.unknowns[k].field;
+      d.outputs.push_back({{field.name, field.unit, field.entity, field.n_components},
+                           [this, k](const State& state) { return values(state, static_cast<int>(k)); }});
     }
     return d;
   }
@@ -62,18 +65,20 @@ class KernelModule final : public Module {
     for (int block : own_) Kokkos::deep_copy(weights[block], description_.merit_weight);
   }
 
-  void output(const State& state, std::vector<OutputField>& fields) const override {
-    for (std::size_t k = 0; k < own_.size(); ++k) {
-      const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[own_[k]]);
-      const bool on_nodes = fields[k].entity == fields::Entity::node;
-      const LocalIndex n = on_nodes ? mesh_->n_nodes() : fields::n_entities(*mesh_, fields[k].entity, false);
-      for (LocalIndex e = 0; e < n; ++e)
-        for (int i = 0; i < fields[k].n_components; ++i)
-          fields[k].values.push_back(x((on_nodes ? mesh_->free_node(e) : e) * fields[k].n_components + i));
-    }
+ private:
+  /// Of own unknown k.
+  std::vector<Real> values(const State& state, int k) const {
+    const auto& field = description_.unknowns[k].field;
+    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[own_[k]]);
+    const bool on_nodes = field.entity == fields::Entity::node;
+    const LocalIndex n = on_nodes ? mesh_->n_nodes() : fields::n_entities(*mesh_, field.entity, false);
+    std::vector<Real> values;
+    for (LocalIndex e = 0; e < n; ++e)
+      for (int i = 0; i < field.n_components; ++i)
+        values.push_back(x((on_nodes ? mesh_->free_node(e) : e) * field.n_components + i));
+    return values;
   }
 
- private:
   Description description_;
   Op op_;
   RCP<const mesh::Mesh> mesh_;

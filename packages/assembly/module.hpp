@@ -9,35 +9,63 @@
 #include "fields/layout.hpp"
 #include "mesh/mesh.hpp"
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sprekk::assembly {
 
-/// What a number measures; from it follow its scale under the present loads and thereby scaling and convergence.
-enum class Quantity {
-  length,    ///< displacement scale, m
-  stress,    ///< traction scale, Pa
-  force,     ///< traction scale times the area of a typical face, N
-  volume,    ///< displacement scale times that area, m^3
-  pressure,  ///< of a fluid, Pa
-  flow       ///< pressure scale times mobility over length, times that area, m^3/s
+/// Typical sizes that solvers and tests of convergence are relative to, by their names. They grow with the loads met so
+/// far and never shrink.
+using Scales = std::map<std::string, Real>;
+
+/// scale(larger) >= factor scale(than).
+struct ScaleRelation {
+  std::string larger;
+  Real factor;
+  std::string than;
 };
+
+/// factor times a scale; `per_step`: over the length of the time step.
+struct SizeTerm {
+  std::string scale;
+  Real factor = 1;
+  bool per_step = false;
+};
+
+/// The typical size of a row, a sum.
+using Size = std::vector<SizeTerm>;
 
 /// Functions that a block's matrix takes to almost nothing, which multigrid is told of; none: it has no use for
 /// multigrid.
 enum class NearNullSpace { none, rigid_motions, constants };
 
+/// How results.json calls the sums of a field's residuals over what a condition holds, by boundaries; empty: not there.
+struct Reactions {
+  std::string name = "";
+  std::string moments = "";  ///< of forces: sum x cross f
+  std::string regions = "";  ///< those of conditions in regions, by regions
+};
+
 /// A field that a module adds to the problem. It becomes a block of the same name.
 struct Unknown {
   fields::Field field;
-  Quantity value, row;  ///< what the unknown and its equation are measured in
+  std::string scale;  ///< the typical size of its values; prescribed values count as loads of it
+  Size row;           ///< that of its rows, to which other modules may add, see Declaration::sizes
   NearNullSpace near_null_space = NearNullSpace::none;
   std::string local_group = "";     ///< fields with one group name are eliminated together, entity by entity; "" stays
   std::string enriches = "";        ///< the field that a field on enriched nodes adds to: zero where that is prescribed
   std::string condensed_into = "";  ///< of a field whose unknowns hardly couple among themselves: the one that they
                                     ///< couple to, from which preconditioners eliminate it
+  /// Its rows are balances of rates: of what flows, and State::rate times what is stored. They may differ by orders of
+  /// magnitude, so each is measured by its diagonal, anew in each step.
+  bool balance = false;
+  /// Of tractions of contact: the scale of the jumps that their rows have in them, times Grip::augmentation.
+  std::string augmented_by = "";
+  Reactions reactions = {};
 };
 
 /// Rows that the module adds to in a loop, and the fields that those rows then depend on.
@@ -54,13 +82,33 @@ struct History {
   int n_components;
 };
 
+/// What results.json tells of an output on fracture faces, of each fracture: its mean over the area, "mean_NAME", of
+/// vectors in it by the name of the frame; the largest value, "max_NAME"; or of a state the shares of the area in which
+/// it is 0, 1, ..., "fraction_CLASS".
+struct Summary {
+  enum Kind { none, mean, mean_and_max, fractions };
+  Kind kind = none;
+  std::string name = "";                  ///< spaces become underscores
+  std::string frame = "";                 ///< of vectors
+  std::vector<std::string> classes = {};  ///< of fractions
+};
+
 /// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
 /// coordinates unless the name says "local".
 struct OutputField {
   std::string name, unit;
   fields::Entity entity;
   int n_components;
+  Summary summary = {};
   std::vector<Real> values = {};
+};
+
+struct State;
+
+/// An output, without values, and how these follow from a committed state. Local.
+struct Output {
+  OutputField field;
+  std::function<std::vector<Real>(const State&)> values;
 };
 
 /// A number that describes a state, the sum of what ranks say; its names lead to it in results.json, where totals of
@@ -75,11 +123,13 @@ struct Declaration {
   std::vector<Unknown> unknowns;
   std::vector<Coupling> couplings;
   std::vector<History> history;
-  std::vector<OutputField> outputs;  ///< without values
-  std::vector<std::string> schur;    ///< the fields that add_schur() adds to
-  bool stores = false;               ///< its rows of flow contain State::rate times what it stores
-  bool linear =
-      false;  ///< the Jacobian is constant and symmetric: it is assembled once, and the residual is K x + r(0, t)
+  std::vector<Output> outputs;
+  Scales scales;  ///< what they are without loads, above zero; several modules may declare the same ones
+  std::vector<ScaleRelation> relations;
+  std::vector<std::pair<std::string, SizeTerm>> sizes;  ///< (field, what is added to the size of its rows)
+  std::vector<std::string> schur;                       ///< the fields that add_schur() adds to
+  bool stores = false;  ///< its balances of rates contain State::rate times what it stores
+  bool linear = false;  ///< its Jacobian is constant and symmetric: it is assembled once; the residual is K x + r(0, t)
 };
 
 /// What modules are bound to once: the mesh, and the stencil of every field they named. Unknown names throw.
@@ -118,18 +168,14 @@ struct State {
 /// Owned rows, [field](row).
 using Rows = std::vector<View<Real*>>;
 
-/// Sizes that solvers and tests of convergence are relative to: they grow with the loads met so far and never shrink.
-struct Scales {
-  Real stress = 0, length = 0, pressure = 0;  ///< Pa, m, Pa
-};
-
 class Module {
  public:
   virtual ~Module() = default;
   virtual std::string name() const = 0;
   /// What of it, besides the scene, must be the same where a checkpoint is restored: its parameters, on every rank.
   virtual std::string fingerprint() const { return {}; }
-  virtual Declaration declare() const = 0;
+  /// Called once. Collective.
+  virtual Declaration declare(const mesh::Mesh& mesh) const = 0;
   /// Builds the module's tables and constant operators. Called once. Collective; what can throw on one rank comes last.
   virtual void bind(const Context& context) = 0;
 
@@ -140,11 +186,8 @@ class Module {
 
   /// Its forces may hold bodies that boundary conditions leave free to move, which is an error without it.
   virtual bool holds_bodies() const { return false; }
-  /// The largest prescribed stress at time t, Pa, on this rank: boundary traction, weight of the domain.
-  virtual Real load(Real t) const { return 0; }
-  /// The largest pressure of a fluid that it starts with, or that its sources and gravity make at time t, Pa, on this
-  /// rank.
-  virtual Real fluid_load(Real t) const { return 0; }
+  /// The sizes of what it prescribes at time t, or starts with, by the scales that they count for, on this rank.
+  virtual Scales loads(Real t) const { return {}; }
   /// The residual at x = 0 is the same at all times.
   virtual bool constant_load() const { return true; }
   /// Sets unknowns [field](owned unknown) of the initial state that are known to differ from zero.
@@ -177,8 +220,6 @@ class Module {
   virtual bool symmetric(const State& state) const { return true; }
   /// Appends this rank's parts of totals, the same ones on all ranks in the same order. Local.
   virtual void totals(const State& state, std::vector<Total>& totals) const {}
-  /// Fills the values of the declared outputs, in their order, from a committed state. Local.
-  virtual void output(const State& state, std::vector<OutputField>& fields) const {}
 };
 
 }  // namespace sprekk::assembly

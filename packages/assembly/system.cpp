@@ -41,15 +41,14 @@ int Context::field(const std::string& name) const {
 }
 
 System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
-               const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers,
-               Rates::Scheme scheme)
+               const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers, Rates::Scheme scheme)
     : mesh_(mesh),
       geometry_(*mesh),
       modules_(std::move(modules)),
       stencils_(std::make_shared<Stencils>(mesh, layouts_)),
-      reference_(reference),
       timers_(timers),
-      scheme_(scheme) {
+      scheme_(scheme),
+      extent_(mesh::largest_extent(*mesh)) {
   const auto scope = timers_->scope("set-up");
   declare_fields();
   declare_groups();
@@ -140,19 +139,11 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
   return modes;
 }
 
-/// Area of the face of a typical cell: the domain's bounding box shared out among the cells.
-Real typical_face_area(const mesh::Mesh& mesh) {
-  const auto size = mesh::domain_extents(mesh);
-  const int dim = mesh.dim();
-  const Real volume = size[0] * size[1] * (dim == 3 ? size[2] : 1);
-  return std::pow(volume / static_cast<Real>(mesh.n_global_cells), (dim - 1.0) / dim);
-}
-
 }  // namespace
 
 void System::declare_fields() {
   for (const auto& module : modules_) {
-    declarations_.push_back(module->declare());
+    declarations_.push_back(module->declare(*mesh_));
     for (const auto& unknown : declarations_.back().unknowns) unknowns_.push_back(unknown);
   }
   std::vector<std::string> fields, histories;
@@ -179,11 +170,39 @@ void System::declare_fields() {
     for (const auto& name : declaration.schur)
       if (auto& schur = schur_[context().field(name)]; schur.is_null())
         schur = rcp(new Vector(layouts_[context().field(name)].owned()));
-  const auto has = [&](Quantity value) {
-    return std::any_of(unknowns_.begin(), unknowns_.end(), [&](const auto& u) { return u.value == value; });
+  coupled_ = couples_balances();
+  for (std::size_t b = 0; b < unknowns_.size(); ++b)
+    if (!unknowns_[b].augmented_by.empty()) contact_ = static_cast<int>(b);
+  declare_scales();
+}
+
+void System::declare_scales() {
+  for (const auto& declaration : declarations_) {
+    for (const auto& [name, least] : declaration.scales) scales_[name] = std::max(scales_[name], least);
+    relations_.insert(relations_.end(), declaration.relations.begin(), declaration.relations.end());
+    for (const auto& [field, term] : declaration.sizes) unknowns_[context().field(field)].row.push_back(term);
+  }
+  const auto check = [&](const std::string& name) {
+    SPREKK_CHECK(scales_.count(name), "no module declares the scale \"{}\"", name);
   };
-  coupled_ = has(Quantity::length) && has(Quantity::pressure);
-  face_area_ = typical_face_area(*mesh_);
+  for (const auto& relation : relations_) {
+    check(relation.larger);
+    check(relation.than);
+  }
+  for (const auto& unknown : unknowns_) {
+    check(unknown.scale);
+    if (!unknown.augmented_by.empty()) check(unknown.augmented_by);
+    for (const auto& term : unknown.row) check(term.scale);
+  }
+}
+
+bool System::couples_balances() const {
+  const auto is_balance = [&](const std::string& name) { return unknowns_[context().field(name)].balance; };
+  for (const auto& declaration : declarations_)
+    for (const auto& coupling : declaration.couplings)
+      for (const auto& column : coupling.columns)
+        if (is_balance(coupling.row) != is_balance(column)) return true;
+  return false;
 }
 
 void System::set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const {
@@ -261,11 +280,11 @@ void System::bind_modules() {
   }
 }
 
-/// Of rows whose quantity is stored: flows, of which rates are. Rows of other quantities have none.
+/// Of balances of rates, in whose rows something is stored.
 void System::declare_gains() {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& field = layouts_[b].field();
-    const bool stored = keeps_gains() && unknowns_[b].row == Quantity::flow;
+    const bool stored = keeps_gains() && unknowns_[b].balance;
     gains_.emplace_back("gain", stored ? fields::n_entities(*mesh_, field.entity, false) : 0, field.n_components);
   }
 }
@@ -306,14 +325,14 @@ void System::start_matrix() {
     }
 }
 
-/// Blocks of flow are written over by what depends on the step, or measured anew in each.
+/// Blocks of balances are written over by what depends on the step, or measured anew in each.
 std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const fields::Matrix>& J) {
   if (auto kept = linear_.kept(block)) {
     kept->restore(*J);
     return kept;
   }
   const auto& A = linear_(block, block);
-  const bool constant = !A.is_null() && matrix_(block, block) == A && unknowns_[block].row != Quantity::flow;
+  const bool constant = !A.is_null() && matrix_(block, block) == A && !unknowns_[block].balance;
   if (!constant) return nullptr;
   const auto kept = std::make_shared<fields::KeptRows>(J);
   linear_.share(block, kept);
@@ -321,17 +340,17 @@ std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const field
   return kept;
 }
 
-/// Rows of flow at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
+/// Balances of rates at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
 /// where no module of them is linear.
-void System::assemble_flow() {
+void System::assemble_balances() {
   const auto context = this->context();
   start_matrix();
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     const auto& couplings = declarations_[m].couplings;
-    const bool flows = std::any_of(couplings.begin(), couplings.end(), [&](const auto& coupling) {
-      return unknowns_[context.field(coupling.row)].row == Quantity::flow;
+    const bool balances = std::any_of(couplings.begin(), couplings.end(), [&](const auto& coupling) {
+      return unknowns_[context.field(coupling.row)].balance;
     });
-    if (declarations_[m].linear || !flows) continue;
+    if (declarations_[m].linear || !balances) continue;
     auto at_rest = state(static_cast<int>(m));
     at_rest.rate = 0;
     modules_[m]->jacobian(at_rest, matrix_);
@@ -341,13 +360,13 @@ void System::assemble_flow() {
 void System::set_merit_weights() {
   const auto views = rows(weights_);
   for (const auto& module : modules_) module->merit_weights(views);
-  assemble_flow();
+  assemble_balances();
   for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
-    const auto& A = unknowns_[b].row == Quantity::flow ? matrix_(b, b) : linear_(b, b);
+    const auto& A = unknowns_[b].balance ? matrix_(b, b) : linear_(b, b);
     if (A.is_null()) continue;
     A->getLocalDiagCopy(*diagonals_[b]);
     if (weights_[b]->normInf() > 0) continue;
-    if (unknowns_[b].row != Quantity::flow) {
+    if (!unknowns_[b].balance) {
       weights_[b] = Teuchos::null;
       continue;
     }
@@ -414,11 +433,18 @@ std::string System::history_name(std::size_t module, const History& history) con
 }
 
 void System::resume(const BlockVector& x, const Memory& memory) {
-  scales_ = memory.scales;
+  const auto take_scales = [&] {
+    for (auto& [name, scale] : scales_) {
+      const auto kept = memory.scales.find(name);
+      SPREKK_CHECK(kept != memory.scales.end(), "the scale \"{}\" is not in what a system is to go on from", name);
+      scale = kept->second;
+    }
+  };
+  take_scales();
   committed_t_ = memory.t;
   committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
-  scales_ = memory.scales;  // without loads of a step that is taken back
+  take_scales();  // without loads of a step that is taken back
   remember(x);
   calibration_ = memory.calibration;
   augmentation_ = {};

@@ -14,27 +14,20 @@
 
 namespace sprekk::assembly {
 
-/// What the loads are related to when typical sizes are estimated: u = sigma L / E, and back.
-struct Reference {
-  Real modulus;       ///< E, Pa
-  Real length;        ///< L, m
-  Real mobility = 0;  ///< of a fluid, k/mu, m^2/(Pa s): q = k/mu p/L
-};
-
-/// What the supports of a boundary condition do to the body. Of a pressure, what flows in: m^3/s (2D: m^2/s), without
-/// moment.
+/// The sum of a field's residuals over what a condition holds: of a displacement, what the supports do to the body.
 struct Reaction {
   std::string condition, field;
-  std::vector<Real> force;       ///< [component] N; N/m in 2D
+  std::vector<Real> force;       ///< [component], in the unit of the rows: N; N/m in 2D
   std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D the last alone, N
   int region = -1;               ///< that a condition holds in; -1: on a boundary
+  Reactions called = {};
 };
 
 class System : public fields::BlockProblem {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
-         const std::vector<DirichletCondition>& conditions, const Reference& reference, RCP<base::Timers> timers,
+         const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
   System(const System&) = delete;  // modules and stencils know where its parts are
   System& operator=(const System&) = delete;
@@ -106,6 +99,8 @@ class System : public fields::BlockProblem {
  private:
   Context context() const { return {mesh_, geometry_, layouts_, stencils_}; }
   void declare_fields();
+  void declare_scales();
+  bool couples_balances() const;
   std::vector<DirichletCondition> conditions_on(std::size_t block,
                                                 const std::vector<DirichletCondition>& conditions) const;
   void set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const;
@@ -114,7 +109,7 @@ class System : public fields::BlockProblem {
   void create_matrices();
   void assemble_linear();
   void start_matrix();
-  void assemble_flow();
+  void assemble_balances();
   void set_merit_weights();
   void find_exchanges();
   void watch_pieces();
@@ -125,7 +120,7 @@ class System : public fields::BlockProblem {
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
-  Real rounding(const fields::BlockVector& x, Quantity value) const;
+  Real rounding(const fields::BlockVector& x, const std::string& scale) const;
   void update_scales(Real t);
   bool watches_pieces() const { return loose_ && loose_->possible(); }
   void remember(const fields::BlockVector& x);
@@ -159,7 +154,7 @@ class System : public fields::BlockProblem {
   std::vector<char> needs_ghosts_;   // [block]
   fields::BlockVector ghosted_;      // [block] unknowns with ghosts
   fields::BlockVector weights_;      // [block] of merit(); null: 1/|diagonal|
-  fields::BlockVector diagonals_;    // [block] of linear_; where rock and fluid couple, of flow: of matrix_
+  fields::BlockVector diagonals_;    // [block] of linear_; of balances that couple to other rows: of matrix_
   fields::BlockVector present_;      // [block] the same of the last jacobian()
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
@@ -170,10 +165,11 @@ class System : public fields::BlockProblem {
   RCP<fields::Vector> committed_;       // displacement; null: not needed
   RCP<fields::Vector> deformation_;     // ghosted displacement without rigid motions; null: not needed
   LoosePieces::Motion driven_;          // where forces out of balance move what is loose, if they do
-  int displacement_ = -1;               // its block
+  int displacement_ = -1;               // its block, where pieces are watched
+  int contact_ = -1;                    // the block of tractions of contact; none
   fields::BlockMatrix linear_;          // what the linear modules write
   fields::BlockMatrix matrix_;          // df/dx; shares the blocks that only linear modules write
-  Reference reference_;
+  std::vector<ScaleRelation> relations_;
   Scales scales_;
   ConstView<Real*> damping_;  // [owned fracture face], empty: none
   ConstView<Real**> anchor_;  // [owned fracture face, 2 dim] of tether()
@@ -185,12 +181,13 @@ class System : public fields::BlockProblem {
   } lagged_;
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;
+  Real extent_;  // largest of the domain, m
   Rates rates_;
   Real committed_t_ = 0, committed_dt_ = 0;  // of the last committed step; 0 before the first
-  Real t_ = 0, dt_ = 0, damped_everywhere_ = 0, face_area_ = 1;
+  Real t_ = 0, dt_ = 0, damped_everywhere_ = 0;
   bool symmetric_ = true, loaded_ = false;
-  bool coupled_ = false;  // fluid and rock move each other
-  bool sized_ = false;    // diagonals_ of flow are those of this step's first Jacobian, with schur_
+  bool coupled_ = false;  // balances of rates and other rows depend on each other's fields
+  bool sized_ = false;    // diagonals_ of balances are those of this step's first Jacobian, with schur_
 };
 
 }  // namespace sprekk::assembly

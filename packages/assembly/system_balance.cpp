@@ -74,13 +74,13 @@ std::string System::balance_along(const LoosePieces::Motion& motion, const Block
   std::vector<Real> s(n, 0), sign(n, 1);
   const auto start = at(s);
   std::vector<ZeroSearch> searches;
-  const Real reach = 4 * reference_.length + 1e3 * scales_.length;
+  const Real length = blocks_[displacement_].kinematic_scale, force = blocks_[displacement_].residual_scale;
+  const Real reach = 4 * extent_ + 1e3 * length;
   for (int g = 0; g < n; ++g) {
     const Real largest = motion.largest[g];
     if (mode && start[g] > 0) sign[g] = -1;
-    const bool round_off = mode ? !(std::abs(start[g]) > 1e-10 * scales_.stress * face_area_ * largest)
-                                : !(largest > 1e-8 * scales_.length);
-    searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * scales_.length / largest, reach / largest);
+    const bool round_off = mode ? !(std::abs(start[g]) > 1e-10 * force * largest) : !(largest > 1e-8 * length);
+    searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * length / largest, reach / largest);
   }
   const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };
   if (!mode) driven_ = loose_->selected(motion, [&](int g) { return !searches[g].done(); });
@@ -90,7 +90,7 @@ std::string System::balance_along(const LoosePieces::Motion& motion, const Block
     for (int g = 0; g < n; ++g) searches[g].next(sign[g] * value[g]);
   }
   for (int g = 0; g < n; ++g)
-    s[g] = !searches[g].lost() ? sign[g] * searches[g].s : mode ? 0 : scales_.length / motion.largest[g];
+    s[g] = !searches[g].lost() ? sign[g] * searches[g].s : mode ? 0 : length / motion.largest[g];
   loose_->add(s, motion, du);
   const auto lost = loose_->selected(motion, [&](int g) { return searches[g].lost(); });
   return lost.q.empty() ? "" : loose_->describe(lost);

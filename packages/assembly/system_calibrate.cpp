@@ -25,9 +25,10 @@ bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>
 
 }  // namespace
 
-/// Faces whose rock is of like stiffness, by decades.
+/// Faces whose rock is of like stiffness, by decades around what its scales say of the stiffest: u = sigma L / E.
 int System::calibration_class(const Grip& grip) const {
-  const Real decade = std::round(std::log10(grip.modulus / reference_.modulus));
+  const Real stress = blocks_[contact_].kinematic_scale, length = scales_.at(unknowns_[contact_].augmented_by);
+  const Real decade = std::round(std::log10(grip.modulus * length / (stress * extent_)));
   return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
 }
 
@@ -36,7 +37,7 @@ int System::calibration_class(const Grip& grip) const {
 /// over faces of one class that stay closed, weighted by how far each deformation has moved. Measured once: stiffness
 /// does not change, but between later iterates pieces that part move far, which says nothing of it.
 bool System::calibrate(const BlockVector& x, bool first) {
-  if (mesh_->n_global_fracture_faces == 0) return false;
+  if (contact_ < 0) return false;
   calibration_.resize(n_classes, 0);
   if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;
   refresh_ghosts(x, false);
@@ -59,7 +60,8 @@ bool System::calibrate(const BlockVector& x, bool first) {
     }
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, n_classes * n_sums, here[0].data(), all[0].data());
-  const Real noticeable = 1e-4 * scales_.length;  // without friction no work is done on closed faces
+  const Real noticeable =
+      1e-4 * scales_.at(unknowns_[contact_].augmented_by);  // without friction no work is done on closed faces
   bool corrected = false;
   for (int k = 0; k < n_classes; ++k) {
     const auto& sums = all[k];

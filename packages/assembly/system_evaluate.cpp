@@ -68,8 +68,7 @@ void System::damp(Real everywhere, const std::vector<Real>& here) {
 
 bool System::tether(Real stiffness, const BlockVector& x) {
   tether_ = 0;
-  const bool contact = std::any_of(unknowns_.begin(), unknowns_.end(),
-                                   [](const auto& unknown) { return unknown.value == Quantity::stress; });
+  const bool contact = contact_ >= 0;
   if (stiffness == 0 || !contact) return contact;
   refresh_ghosts(x, false);
   const auto held = grips();
@@ -87,49 +86,34 @@ bool System::tether(Real stiffness, const BlockVector& x) {
   return true;
 }
 
-/// Evaluates the loads at time t and lets the scales grow with them.
+/// Evaluates the loads at time t and lets the scales grow with them, then with each other: a chain of relations is no
+/// longer than there are scales. Relations that lead back to a scale give it the same size but for rounding, with which
+/// it is not to grow.
 void System::update_scales(Real t) {
-  Real here[3] = {0, 0, 0}, all[3];
+  constexpr Real rounding = 1e-14;
+  Scales loads = scales_;
   base::collectively(*comm(), [&] {
     for (std::size_t b = 0; b < constraints_.size(); ++b) {
       constraints_[b].evaluate(t);
-      Real& largest = here[unknowns_[b].value == Quantity::pressure ? 2 : 0];
+      Real& largest = loads.at(unknowns_[b].scale);
       largest = std::max(largest, constraints_[b].largest());
     }
-    for (const auto& module : modules_) {
-      here[1] = std::max(here[1], module->load(t));
-      here[2] = std::max(here[2], module->fluid_load(t));
-    }
+    for (const auto& module : modules_)
+      for (const auto& [name, size] : module->loads(t)) {
+        SPREKK_CHECK(loads.count(name), "{}: no module declares the scale \"{}\"", module->name(), name);
+        loads.at(name) = std::max(loads.at(name), size);
+      }
   });
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 3, here, all);
-  const Real E = reference_.modulus, L = reference_.length;
-  scales_.stress = std::max({scales_.stress, all[1], E * all[0] / L, 1e-12 * E});
-  scales_.length = std::max({scales_.length, all[0], scales_.stress * L / E});
-  scales_.pressure = std::max({scales_.pressure, all[2], 1e-12 * E});
-  if (coupled_) {
-    scales_.pressure = scales_.stress = std::max(scales_.pressure, scales_.stress);
-    scales_.length = std::max(scales_.length, scales_.stress * L / E);
-  }
-  const auto scale = [&](Quantity q) {
-    switch (q) {
-      case Quantity::length:
-        return scales_.length;
-      case Quantity::stress:
-        return scales_.stress;
-      case Quantity::force:
-        return scales_.stress * face_area_;
-      case Quantity::volume:
-        return scales_.length * face_area_;
-      case Quantity::pressure:
-        return scales_.pressure;
-      default:
-        return (reference_.mobility * scales_.pressure / L + (coupled_ && dt_ > 0 ? scales_.length / dt_ : 0)) *
-               face_area_;
-    }
-  };
+  for (auto& [name, scale] : scales_) Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &loads.at(name), &scale);
+  for (std::size_t pass = 0; pass < scales_.size(); ++pass)
+    for (const auto& [larger, factor, than] : relations_)
+      if (const Real least = factor * scales_.at(than); least > (1 + rounding) * scales_.at(larger))
+        scales_.at(larger) = least;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    blocks_[b].kinematic_scale = scale(unknowns_[b].value);
-    blocks_[b].residual_scale = scale(unknowns_[b].row);
+    blocks_[b].kinematic_scale = scales_.at(unknowns_[b].scale);
+    Real& size = blocks_[b].residual_scale = 0;
+    for (const auto& term : unknowns_[b].row)
+      if (!term.per_step || dt_ > 0) size += term.factor * scales_.at(term.scale) / (term.per_step ? dt_ : 1);
   }
 }
 
@@ -265,7 +249,7 @@ void System::find_schur() {
     if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
   if (present_.empty()) present_ = diagonals_;
   for (std::size_t b = 0; b < blocks_.size() && coupled_; ++b)  // rates are no part of the linear one
-    if (unknowns_[b].row == Quantity::flow) {
+    if (unknowns_[b].balance) {
       if (present_[b] == diagonals_[b]) present_[b] = rcp(new fields::Vector(blocks_[b].map));
       matrix_(b, b)->getLocalDiagCopy(*present_[b]);
       if (!schur_[b].is_null()) present_[b]->update(1, *schur_[b], 1);
@@ -292,14 +276,11 @@ void System::commit(const BlockVector& x) {
   }
 }
 
-/// What rounding leaves of a row is this times its diagonal, of a traction's times the constant of the face law; 0 of
-/// quantities for which it is not known.
-Real System::rounding(const BlockVector& x, Quantity value) const {
-  if (value == Quantity::stress) return rounding(x, Quantity::length);
-  if (value != Quantity::length && value != Quantity::pressure) return 0;
+/// Of unknowns with that scale: what rounding leaves of a row is this times its diagonal.
+Real System::rounding(const BlockVector& x, const std::string& scale) const {
   Real farthest = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (unknowns_[b].value == value) farthest = std::max<Real>(farthest, x[b]->normInf());
+    if (unknowns_[b].scale == scale) farthest = std::max<Real>(farthest, x[b]->normInf());
   return 64 * std::numeric_limits<Real>::epsilon() * farthest;
 }
 
@@ -311,7 +292,8 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (unknowns_[b].value == Quantity::stress) {
+    const auto& unknown = unknowns_[b];
+    if (static_cast<int>(b) == contact_) {
       const auto constant = diagonals_[b]->getLocalViewHost(Tpetra::Access::OverwriteAll);
       const auto faces = grips();
       for (std::size_t i = 0; i < constant.extent(0); ++i)
@@ -321,17 +303,19 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto row = const_view(*r[b]);
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
-    const Real rounding_of_block = rounding(x, unknowns_[b].value);
-    const bool of_flow = unknowns_[b].row == Quantity::flow;  // some rows let much less through than others
-    const Real moved = of_flow && coupled_ ? rounding(x, Quantity::length) * face_area_ / dt_ : 0;
+    const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
+    const bool balance = unknown.balance;  // some rows let much less through than others
+    Real stored = 0;                       // rounding of what the step stores
+    for (const auto& term : unknown.row)
+      if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real noise = mask(i) ? 0 : rounding_of_block * now(i) + moved,
+          const Real noise = mask(i) ? 0 : rounding_of_block * now(i) + stored,
                      size_of_row = row(i) < 0 ? -row(i) : row(i);
-          const Real weak = of_flow ? diagonal(i) * held_scale : free_scale;
+          const Real weak = balance ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
@@ -359,13 +343,13 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const bool weighted = !weights_[b].is_null();
     const auto weight = const_view(weighted ? *weights_[b] : *diagonals_[b]);
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
-    const bool flows = unknowns_[b].row == Quantity::flow, powers = flows && coupled_;
-    const Real of_flow = flows ? rounding(x, unknowns_[b].value) : 0;
+    const bool balance = unknowns_[b].balance, powers = balance && coupled_;
+    const Real rounding_of_block = balance ? rounding(x, unknowns_[b].scale) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
-          const Real size = (row(i) < 0 ? -row(i) : row(i)) - of_flow * now(i);
+          const Real size = (row(i) < 0 ? -row(i) : row(i)) - rounding_of_block * now(i);
           if (mask(i) || size <= 0) return;
           const Real of_diagonal = diagonal(i) < 0 ? -diagonal(i) : diagonal(i);
           const Real w = powers ? 1 / diagonal(i) : weighted ? weight(i) : of_diagonal > 0 ? 1 / of_diagonal : 0;
@@ -439,9 +423,13 @@ std::vector<OutputField> System::outputs(const BlockVector& x) {
   refresh_ghosts(x, true);
   std::vector<OutputField> outputs;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
-    auto fields = declarations_[m].outputs;
-    base::collectively(*comm(), [&] { modules_[m]->output(state(static_cast<int>(m)), fields); });
-    for (auto& field : fields) outputs.push_back(std::move(field));
+    const auto at = state(static_cast<int>(m));
+    base::collectively(*comm(), [&] {
+      for (const auto& [field, values] : declarations_[m].outputs) {
+        outputs.push_back(field);
+        outputs.back().values = values(at);
+      }
+    });
   }
   return outputs;
 }
@@ -485,6 +473,7 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
     for (std::size_t c = 0; c < conditions.size(); ++c) {
       const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
       result.push_back({conditions[c].name, conditions[c].field, {sums, sums + n_components}});
+      result.back().called = unknowns_[b].reactions;
       if (conditions[c].boundary < 0) result.back().region = conditions[c].region;
       std::copy_n(sums + n_components, 3, result.back().moment.begin());
     }

@@ -65,14 +65,14 @@ std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
                                                       const std::vector<LoosePieces::Slide>& slides,
                                                       const std::vector<Real>& least) {
   constexpr int most_passes = 30;
-  const Real slack = 0.1 * margin * scales_.length;
+  const Real length = blocks_[displacement_].kinematic_scale, slack = 0.1 * margin * length;
   auto there = fields::create_like(x);
   auto away = fields::Vector(*x[displacement_], Teuchos::Copy);
   away.update(-1, *committed_, 1);
   const auto places = loose_->places(away, slides);
   std::vector<LoosePieces::Obstacle> obstacles;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const auto motion = loose_->nearest(places, obstacles, scales_.length);
+    const auto motion = loose_->nearest(places, obstacles, length);
     if (!motion) return {};
     fields::copy(x, there);
     loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *there[displacement_]);
@@ -101,15 +101,17 @@ std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
 bool System::settle(BlockVector& x) {
   if (!watches_pieces()) return false;
   refresh_ghosts(x, false);
+  const Real length = blocks_[displacement_].kinematic_scale;
+  const Real least = loaded * (contact_ < 0 ? 0 : blocks_[contact_].kinematic_scale);
   auto released = grips();
   std::vector<Real> apart, touching;
   for (const auto& grip : released) {
-    const bool is_free = !(mesh::norm(grip.traction) > loaded * scales_.stress);
-    apart.push_back(is_free ? margin * scales_.length : -std::numeric_limits<Real>::infinity());
+    const bool is_free = !(mesh::norm(grip.traction) > least);
+    apart.push_back(is_free ? margin * length : -std::numeric_limits<Real>::infinity());
     touching.push_back(std::min({apart.back(), grip.gap, Real(0)}));
   }
   std::vector<LoosePieces::Slide> slides;
-  release(*mesh_, loaded * scales_.stress, released, slides);
+  release(*mesh_, least, released, slides);
   loose_->find(released);
   if (!loose_->any()) return false;
   auto motion = way_back(x, slides, apart);
@@ -118,7 +120,7 @@ bool System::settle(BlockVector& x) {
   auto moved = fields::Vector(*x[displacement_], Teuchos::Copy);
   loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *x[displacement_]);
   moved.update(-1, *x[displacement_], 1);
-  return moved.normInf() > settled * scales_.length;
+  return moved.normInf() > settled * length;
 }
 
 }  // namespace sprekk::assembly

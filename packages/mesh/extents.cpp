@@ -1,6 +1,7 @@
 #include "mesh/extents.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Teuchos_CommHelpers.hpp>
 #include <limits>
@@ -46,6 +47,13 @@ Vector domain_extents(const Mesh& mesh) {
 Real largest_extent(const Mesh& mesh) {
   const Vector extents = domain_extents(mesh);
   return *std::max_element(extents.begin(), extents.end());
+}
+
+Real typical_face_area(const Mesh& mesh) {
+  const Vector size = domain_extents(mesh);
+  const int dim = mesh.dim();
+  const Real volume = size[0] * size[1] * (dim == 3 ? size[2] : 1);
+  return std::pow(volume / static_cast<Real>(mesh.n_global_cells), (dim - 1.0) / dim);
 }
 
 std::vector<Vector> fracture_extents(const Mesh& mesh) {

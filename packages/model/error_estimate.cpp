@@ -69,10 +69,11 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
     if (blocks_[k] >= 0) displacement[k] = model_.state()[blocks_[k]];
   auto error = (*recovery_)(displacement);
   const auto& scales = model_.system().scales();
+  const Real energy = scales.at("stress") * scales.at("displacement");
   ErrorEstimate estimate;
   estimate.stress = error.error;
-  estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * scales.stress * scales.length));
-  estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, std::move(error.density)});
+  estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * energy));
+  estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, {}, std::move(error.density)});
   if (!model_.mesh().fracture_names.empty()) estimate_jump(error, outputs, estimate);
   return estimate;
 }
@@ -115,7 +116,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   estimate.failure = report.reason;
   if (!report.converged) return;
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
-  OutputField error{"jump error", "m", fields::Entity::fracture_face, dim, values_of(system.outputs(x), "jump")};
+  OutputField error{"jump error", "m", fields::Entity::fracture_face, dim, {}, values_of(system.outputs(x), "jump")};
   const auto& jump = values_of(outputs, "jump");
   Real here[2] = {}, all[2];
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
@@ -126,7 +127,8 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
     }
   Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 2, here, all);
   estimate.jump = std::sqrt(all[0]);
-  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * system.scales().length);
+  const Real length = system.scales().at("displacement");
+  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);
   estimate.fields.push_back(std::move(error));
 }
 

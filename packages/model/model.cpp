@@ -4,7 +4,6 @@
 #include "base/any_rank.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
-#include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
@@ -20,11 +19,6 @@
 namespace sprekk::model {
 
 namespace {
-
-assembly::Reference reference(const Scene& scene, const mesh::Mesh& mesh) {
-  return {physics::Mechanics::is_in(scene) ? physics::largest_modulus(scene, mesh) : 1, mesh::largest_extent(mesh),
-          scene.flow ? physics::largest_mobility(scene, mesh) : 0};
-}
 
 /// The element of that name, or an Error that lists those there are.
 template <class T, class Name>
@@ -110,7 +104,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   const auto conditions =
       physics::dirichlet_conditions(scene_.boundary_conditions, scene_.regions, physics::names_of(*mesh));
   system_ = std::make_unique<assembly::System>(
-      mesh, std::move(modules), conditions, reference(scene_, *mesh), timers_,
+      mesh, std::move(modules), conditions, timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
   x_ = system_->initial();
   start_solver();
@@ -207,13 +201,11 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {
-      {"time", time_},
-      {"dt", memory.dt},
-      {"scales",
-       {{"stress", memory.scales.stress}, {"length", memory.scales.length}, {"pressure", memory.scales.pressure}}},
-      {"calibration", memory.calibration},
-      {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {{"time", time_},
+                        {"dt", memory.dt},
+                        {"scales", memory.scales},
+                        {"calibration", memory.calibration},
+                        {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
 }
@@ -230,11 +222,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     Kokkos::deep_copy(values, entries(vector, field.n_components));
   }
   time_ = content.at("time");
-  const auto& scales = content.at("scales");
-  system_->resume(x_, {time_,
-                       content.at("dt"),
-                       {scales.at("stress"), scales.at("length"), scales.value("pressure", Real(0))},
-                       content.value("calibration", std::vector<Real>())});
+  system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration")});
   start_solver();
 }
 

@@ -11,6 +11,7 @@
 namespace sprekk::model {
 
 using assembly::OutputField;
+using assembly::Summary;
 using nlohmann::json;
 
 namespace {
@@ -20,12 +21,6 @@ std::vector<T> reduce(const Comm& comm, Teuchos::EReductionType how, const std::
   std::vector<T> all(here.size());
   if (!here.empty()) Teuchos::reduceAll(comm, how, static_cast<int>(here.size()), here.data(), all.data());
   return all;
-}
-
-const OutputField* find(const std::vector<OutputField>& outputs, const std::string& name) {
-  for (const auto& output : outputs)
-    if (output.name == name) return &output;
-  return nullptr;
 }
 
 constexpr const char* unsettled_name = "unsettled";  ///< of the VTU files
@@ -85,11 +80,12 @@ Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
   return s;
 }
 
-/// Faces that are open, stick, slip.
-std::array<long long, 3> contact_counts(const Comm& comm, const std::vector<OutputField>& outputs) {
+/// Faces of the three classes of a state.
+std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<OutputField>& outputs) {
   std::vector<long long> counts(3, 0);
-  if (const auto* state = find(outputs, "state"))
-    for (Real value : state->values) ++counts[static_cast<int>(value)];
+  for (const auto& output : outputs)
+    if (output.summary.classes.size() == counts.size())
+      for (Real value : output.values) ++counts[static_cast<int>(value)];
   counts = reduce(comm, Teuchos::REDUCE_SUM, counts);
   return {counts[0], counts[1], counts[2]};
 }
@@ -114,41 +110,31 @@ json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& ou
   json summary = json::object();
   const std::size_t n = mesh.fracture_names.size();
   if (n == 0) return summary;
-  const OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1,
-                         std::vector<Real>(mesh.n_owned_fracture_faces, 1)};
+  OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1};
+  ones.values.assign(mesh.n_owned_fracture_faces, 1);
   const auto area = statistics(mesh, ones).sum;
   const auto each = [&](const auto& set) {
     for (std::size_t k = 0; k < n; ++k) set(k, summary[mesh.fracture_names[k]]);
   };
   each([&](std::size_t k, json& j) { j["area"] = area[k]; });
-  const char* states[] = {"open", "stick", "slip"};
-  for (int state = 0; state < 3; ++state) {
-    const auto* found = find(outputs, "state");
-    if (!found) break;
-    OutputField is = ones;
-    for (std::size_t f = 0; f < is.values.size(); ++f) is.values[f] = found->values[f] == state ? 1 : 0;
-    const auto sums = statistics(mesh, is).sum;
-    each([&](std::size_t k, json& j) { j[std::string("fraction_") + states[state]] = sums[k] / area[k]; });
-  }
-  for (const char* name : {"opening", "slip", "fracture pressure"}) {
-    const auto* output = find(outputs, name);
-    if (!output) continue;
-    const auto s = statistics(mesh, *output);
+  for (const auto& output : outputs) {
+    const auto& told = output.summary;
+    for (std::size_t c = 0; c < told.classes.size(); ++c) {
+      OutputField is = ones;
+      for (std::size_t f = 0; f < is.values.size(); ++f) is.values[f] = output.values[f] == static_cast<Real>(c);
+      const auto sums = statistics(mesh, is).sum;
+      each([&](std::size_t k, json& j) { j["fraction_" + told.classes[c]] = sums[k] / area[k]; });
+    }
+    if (told.kind != Summary::mean && told.kind != Summary::mean_and_max) continue;
+    const auto s = statistics(mesh, output);
+    const auto name = with_underscores(told.name);
     each([&](std::size_t k, json& j) {
-      j["mean_" + with_underscores(name)] = s.sum[k] / area[k];
-      j["max_" + with_underscores(name)] = s.maximum[k];
+      if (told.frame.empty()) j["mean_" + name] = s.sum[k] / area[k];
+      for (int c = 0; c < output.n_components && !told.frame.empty(); ++c)
+        j["mean_" + name][told.frame].push_back(s.sum[k * output.n_components + c] / area[k]);
+      if (told.kind == Summary::mean_and_max) j["max_" + name] = s.maximum[k];
     });
   }
-  for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction", "fluid flux"})
-    for (const std::string frame : {"global", "local"}) {
-      const auto* output = find(outputs, frame == "local" ? name + " local" : name);
-      if (!output) continue;
-      const auto s = statistics(mesh, *output);
-      each([&](std::size_t k, json& j) {
-        for (int c = 0; c < output->n_components; ++c)
-          j["mean_" + with_underscores(name)][frame].push_back(s.sum[k * output->n_components + c] / area[k]);
-      });
-    }
   return summary;
 }
 
@@ -297,33 +283,32 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   if (reduce<int>(*model_.mesh().comm, Teuchos::REDUCE_MAX,
                   {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
     write_json();
-  return contact_counts(*model_.mesh().comm, outputs);
+  return counts_of_classes(*model_.mesh().comm, outputs);
 }
 
-/// Forces and moments of the supports and what flows in, by boundary, and what modules have to tell.
+/// Those of conditions, by boundaries or regions, and what modules have to tell.
 json Results::reactions() const {
-  json forces = json::object(), moments = json::object(), flows = json::object(), into_regions = json::object();
-  const auto add = [](json& sum, const auto& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) sum[i] = values[i] + (sum.size() > i ? sum[i].get<Real>() : 0);
+  json all = {{"reactions", json::object()}, {"reaction_moments", json::object()}};  // in any case
+  const auto add = [](json& sum, Real value) { sum = value + (sum.is_null() ? 0 : sum.get<Real>()); };
+  const auto add_all = [&](json& sums, const std::vector<Real>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) add(sums[i], values[i]);
   };
+  const auto& mesh = model_.mesh();
   for (const auto& reaction : model_.system().reactions(model_.state())) {
-    if (reaction.region >= 0) {
-      const auto& name = model_.mesh().region_names[reaction.region];
-      into_regions[name] = into_regions.value(name, Real(0)) + reaction.force.at(0);
+    const bool in_region = reaction.region >= 0;
+    const auto& [name, moments, regions] = reaction.called;
+    const auto& place = in_region ? mesh.region_names[reaction.region]
+                                  : model_.scene().boundary_conditions.at(reaction.condition).boundary;
+    if (const auto& called = in_region ? regions : name; called.empty())
       continue;
-    }
-    const auto& boundary = model_.scene().boundary_conditions.at(reaction.condition).boundary;
+    else if (reaction.force.size() == 1)
+      add(all[called][place], reaction.force[0]);
+    else
+      add_all(all[called][place], reaction.force);
     const auto& m = reaction.moment;
-    if (reaction.field != "displacement") {
-      flows[boundary] = flows.value(boundary, Real(0)) + reaction.force.at(0);
-      continue;
-    }
-    add(forces[boundary], reaction.force);
-    add(moments[boundary], model_.mesh().dim() == 2 ? std::vector<Real>{m[2]} : std::vector<Real>(m.begin(), m.end()));
+    if (!moments.empty())
+      add_all(all[moments][place], mesh.dim() == 2 ? std::vector<Real>{m[2]} : std::vector<Real>(m.begin(), m.end()));
   }
-  json all = {{"reactions", forces}, {"reaction_moments", moments}};
-  if (!flows.empty()) all["inflows"] = flows;
-  if (!into_regions.empty()) all["region_inflows"] = into_regions;
   for (const auto& total : model_.system().totals(model_.state())) {
     json* place = &all;
     for (const auto& name : total.names) place = &(*place)[name];

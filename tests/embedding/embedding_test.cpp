@@ -245,7 +245,7 @@ class Counter : public assembly::Module {
  public:
   explicit Counter(const std::string& of = "steps") : of_(of) {}
   std::string name() const override { return "counter"; }
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.history = {{of_, fields::Entity::node, 1}};
     return d;
@@ -329,7 +329,7 @@ TEST(OwnModules, MayBeNonlinearAndShowUnknownsOfNodes) {
   };
   const auto cubic = [&](const mesh::Mesh& mesh) {
     assembly::Description d{"cubic", ""};
-    d.unknowns = {{{"T", fields::Entity::node, 1, "m"}, assembly::Quantity::length, assembly::Quantity::length}};
+    d.unknowns = {{{"T", fields::Entity::node, 1, "m"}, "displacement", {{"displacement"}}}};
     d.merit_weight = E;  // times m: the stiffness of the rock
     const View<Real**> S("S", mesh.n_cells(), 4);
     for (LocalIndex c = 0; c < mesh.n_cells(); ++c)

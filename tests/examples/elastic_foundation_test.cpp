@@ -45,8 +45,7 @@ std::unique_ptr<assembly::System> bar(const std::tuple<std::string, int>& cell_a
     rollers[0].values.push_back(std::nullopt);
     rollers.push_back({"bottom", "displacement", bottom, {std::nullopt, std::nullopt, 0.0}});
   }
-  return std::make_unique<assembly::System>(mesh, std::move(modules), rollers, assembly::Reference{E, length},
-                                            rcp(new base::Timers));
+  return std::make_unique<assembly::System>(mesh, std::move(modules), rollers, rcp(new base::Timers));
 }
 
 class ElasticFoundationTest : public testing::TestWithParam<std::tuple<std::string, int>> {};

@@ -59,7 +59,7 @@ model::Scene make_scene(const std::string& cell, int order, const Law& law) {
 template <class Wanted>
 fields::BlockVector visit(assembly::System& system, const Wanted& wanted, int seed) {
   auto x = system.initial();
-  const Real length = system.scales().length, stress = system.scales().stress;
+  const Real length = system.scales().at("displacement"), stress = system.scales().at("stress");
   const int dim = system.mesh().dim();
   test::randomize(x, length, seed);
   for (LocalIndex f = 0; f < system.mesh().n_owned_fracture_faces; ++f) {

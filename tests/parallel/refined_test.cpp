@@ -60,7 +60,7 @@ void expect_same(const assembly::Scales& scales, const ByPlace& a, const ByPlace
     const auto& others = b.fields.at(name);
     ASSERT_EQ(values.size(), others.size()) << name;
     const bool stress = name == "stress" || name.find("traction") != name.npos;
-    const Real tolerance = name == "state" ? 0 : stress ? 1e-8 * scales.stress : 1e-9 * scales.length;
+    const Real tolerance = name == "state" ? 0 : stress ? 1e-8 * scales.at("stress") : 1e-9 * scales.at("displacement");
     for (const auto& [place, value] : values) {
       const auto other = others.find(place);
       ASSERT_TRUE(other != others.end()) << name << " at " << fmt::format("{}", fmt::join(place, ", "));

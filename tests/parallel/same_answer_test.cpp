@@ -46,7 +46,7 @@ void expect_same(const assembly::Scales& scales, const std::vector<GlobalField>&
     const bool length =
         name != "stress" && name.find("traction") == name.npos && name != "state" && name != "slip tendency";
     if (name == "slip tendency") continue;
-    const Real scale = name == "state" ? 0 : length ? scales.length : scales.stress;
+    const Real scale = name == "state" ? 0 : length ? scales.at("displacement") : scales.at("stress");
     for (std::size_t i = 0; i < a[k].values.size(); ++i)
       EXPECT_NEAR(a[k].values[i], b[k].values[i], 1e-10 * scale) << name << " " << i;
   }

@@ -28,18 +28,23 @@ class DarcyFlow final : public assembly::Module {
            (parameters_.reason.empty() ? "" : " (" + parameters_.reason + ")");
   }
 
-  assembly::Declaration declare() const override {
-    using assembly::Quantity;
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
-    assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, Quantity::pressure, Quantity::flow};
+    const Real conductance = largest_mobility(mesh) / mesh::largest_extent(mesh) * mesh::typical_face_area(mesh);
+    assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, "pressure", {{"pressure", conductance}}};
+    cells.balance = true;
+    cells.reactions = {"inflows", "", "region_inflows"};
+    auto facets = cells;
+    facets.field = {"face pressure", fields::Entity::facet, 1, "Pa"};
+    facets.near_null_space = assembly::NearNullSpace::constants;
     (parameters_.deforms ? cells.condensed_into : cells.local_group) =
         parameters_.deforms ? "face pressure" : "fluid in cells";
-    assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, Quantity::pressure, Quantity::flow};
-    facets.near_null_space = assembly::NearNullSpace::constants;
     d.unknowns = {cells, facets};
+    d.scales = {{"pressure", 1e-12}};
     for (const char* row : {"pressure", "face pressure"})
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
-    d.outputs = {{"pressure", "Pa", fields::Entity::cell, 1}, {"Darcy velocity", "m/s", fields::Entity::cell, 3}};
+    d.outputs = {{{"pressure", "Pa", fields::Entity::cell, 1}, [this](const auto& s) { return pressures(s); }},
+                 {{"Darcy velocity", "m/s", fields::Entity::cell, 3}, [this](const auto& s) { return velocities(s); }}};
     d.linear = is_linear();
     return d;
   }
@@ -111,7 +116,7 @@ class DarcyFlow final : public assembly::Module {
   }
 
   /// What prescribed flow and gravity make of pressure over the size of the domain.
-  Real fluid_load(Real t) const override {
+  assembly::Scales loads(Real t) const override {
     Real flux = 0, beyond = 0, weight = 0, mobility = 0;
     for_each_condition([&](const FluidCondition& condition, LocalIndex, Real, const auto& x) {
       Real& largest = condition.conductance ? beyond : flux;
@@ -123,7 +128,7 @@ class DarcyFlow final : public assembly::Module {
       });
     for (Real component : parameters_.weight) weight += component * component;
     for (const auto& each : parameters_.mobility) mobility = std::max(mobility, each.template trace<dim>() / dim);
-    return std::max(beyond, size_ * (std::sqrt(weight) + flux / mobility));
+    return {{"pressure", std::max(beyond, size_ * (std::sqrt(weight) + flux / mobility))}};
   }
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
@@ -136,9 +141,18 @@ class DarcyFlow final : public assembly::Module {
     });
   }
 
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+ private:
+  using Assembler = assembly::Assembler<Op>;
+
+  std::vector<Real> pressures(const assembly::State& state) const {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
+    return {p.data(), p.data() + mesh_->n_owned_cells};
+  }
+
+  std::vector<Real> velocities(const assembly::State& state) const {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
     const auto trace = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    std::vector<Real> values;
     Real X[mesh::n_nodes(shape)][dim], x[1 + n_faces], q[n_faces];
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
       assembly::gather_host<shape>(*mesh_, c, X);
@@ -147,17 +161,23 @@ class DarcyFlow final : public assembly::Module {
       for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
       op_->at(c, faces).flow(x, q);
       const Real scale = 1 / (parameters_.fluid.density(x[0]) * faces.volume);
-      fields[0].values.push_back(p(c));
       for (int i = 0; i < 3; ++i) {
         Real v = 0;
         for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] * scale;
-        fields[1].values.push_back(v);
+        values.push_back(v);
       }
     }
+    return values;
   }
 
- private:
-  using Assembler = assembly::Assembler<Op>;
+  /// The largest component on the diagonal, m^2/(Pa s). Collective.
+  Real largest_mobility(const mesh::Mesh& mesh) const {
+    Real here = 0, largest = 0;
+    for (const auto& one : parameters_.mobility)
+      for (int i = 0; i < dim; ++i) here = std::max(here, one.value[i][i]);
+    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
+    return largest;
+  }
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0; }
 

@@ -85,7 +85,7 @@ class FluidStorage final : public assembly::Module {
 
   std::string name() const override { return name_; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{loop_, field_, {field_}}};
     if (n == 2) d.couplings[0].columns.push_back("widening");
@@ -121,7 +121,7 @@ class FluidStorage final : public assembly::Module {
     assembler_->add_jacobian(at(state), state, J);
   }
 
-  Real fluid_load(Real) const override { return largest_; }
+  assembly::Scales loads(Real) const override { return {{"pressure", largest_}}; }
 
   void commit(assembly::State& state) const override {
     const auto initial = op_.initial;

@@ -92,12 +92,16 @@ class FractureFlow final : public assembly::Module {
 
   std::string name() const override { return "fracture flow"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
     if (parameters_.widens) d.couplings[0].columns.push_back("widening");
-    d.outputs = {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1},
-                 {"fluid flux", "m^2/s", fields::Entity::fracture_face, 3}};
+    using assembly::Summary;
+    d.outputs = {
+        {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "fracture pressure"}},
+         [this](const auto& state) { return pressures(state); }},
+        {{"fluid flux", "m^2/s", fields::Entity::fracture_face, 3, {Summary::mean, "fluid flux", "global"}},
+         [this](const auto& state) { return fluxes(state); }}};
     d.linear = is_linear();
     return d;
   }
@@ -161,7 +165,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   void set_time(Real t, const assembly::Scales& scales) override {
-    open_ = of_displacement * scales.length;
+    if (parameters_.widens) open_ = of_displacement * scales.at("displacement");
     if (loaded_ && constant_load()) return;
     const auto facets = Kokkos::create_mirror_view(load_);
     Kokkos::deep_copy(facets, 0.0);
@@ -180,7 +184,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   /// What sources and prescribed flow make of pressure over the size of the domain.
-  Real fluid_load(Real t) const override {
+  assembly::Scales loads(Real t) const override {
     Real largest = 0;
     const auto let = [&](Real flow, const laws::Conduit& conduit) {
       if (flow != 0) largest = std::max(largest, pressure_for(size_ * std::abs(flow), conduit));
@@ -197,7 +201,7 @@ class FractureFlow final : public assembly::Module {
           else
             let(face.along.hydraulic_aperture() * value, face.along);
         }
-    return largest;
+    return {{"pressure", largest}};
   }
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
@@ -210,10 +214,23 @@ class FractureFlow final : public assembly::Module {
     });
   }
 
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
+ private:
+  static constexpr Real of_displacement = 1e-2;
+  using Assembler = assembly::Assembler<Op>;
+  using WideningAssembler = assembly::Assembler<WideningFace<n>>;
+
+  std::vector<Real> pressures(const assembly::State& state) const {
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+    std::vector<Real> values;
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) values.push_back(p(mesh_->facets->fracture_face[f]));
+    return values;
+  }
+
+  std::vector<Real> fluxes(const assembly::State& state) const {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
     const auto widening =
         parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
+    std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const Plane plane = this->plane(f);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
@@ -221,19 +238,14 @@ class FractureFlow final : public assembly::Module {
       op_.at(f).flow(x, q);
       const Real wider = parameters_.widens ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
       const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
-      fields[0].values.push_back(x[0]);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
         for (int k = 0; k < n; ++k) flux += q[k] * plane.d[k][i] * scale;
-        fields[1].values.push_back(flux);
+        values.push_back(flux);
       }
     }
+    return values;
   }
-
- private:
-  static constexpr Real of_displacement = 1e-2;
-  using Assembler = assembly::Assembler<Op>;
-  using WideningAssembler = assembly::Assembler<WideningFace<n>>;
 
   /// p with p T = flow, T that of the conduit which p has opened, by bisection: without that a tight fracture would
   /// make the pressure seem far higher than it can be.

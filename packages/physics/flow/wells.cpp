@@ -45,7 +45,7 @@ class Wells final : public assembly::Module {
 
   std::string name() const override { return "wells"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{assembly::Loop::cells, "pressure", {"pressure"}},
                    {assembly::Loop::cells, "face pressure", {"face pressure"}}};
@@ -134,14 +134,14 @@ class Wells final : public assembly::Module {
   }
 
   /// The pressure in wells, or what draws a rate.
-  Real fluid_load(Real t) const override {
+  assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for (std::size_t w = 0; w < parameters_.wells.size(); ++w) {
       const auto& one = parameters_.wells[w];
       const Real value = std::abs(control(one)(one.points[0], t));
       largest = std::max(largest, one.pressure ? value : pressure_for(w, value));
     }
-    return largest;
+    return {{"pressure", largest}};
   }
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {

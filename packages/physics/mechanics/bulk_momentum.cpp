@@ -5,6 +5,8 @@
 #include "mesh/extents.hpp"
 #include "physics/mechanics/elastic_cell.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,14 +27,19 @@ class BulkMomentum final : public assembly::Module {
 
   std::string name() const override { return "bulk momentum"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
+    const Real E = largest_modulus(mesh), L = mesh::largest_extent(mesh);
     assembly::Declaration d;
     assembly::Unknown u{
-        {"displacement", fields::Entity::node, dim, "m"}, assembly::Quantity::length, assembly::Quantity::force};
+        {"displacement", fields::Entity::node, dim, "m"}, "displacement", {{"stress", mesh::typical_face_area(mesh)}}};
     u.near_null_space = assembly::NearNullSpace::rigid_motions;
+    u.reactions = {"reactions", "reaction_moments"};
     d.unknowns = {u};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
-    d.outputs = {{"displacement", "m", fields::Entity::node, dim}, {"stress", "Pa", fields::Entity::cell, 6}};
+    d.scales = {{"stress", 1e-12 * E}, {"displacement", 1e-12 * L}};
+    d.relations = {{"stress", E / L, "displacement"}, {"displacement", L / E, "stress"}};
+    d.outputs = {{{"displacement", "m", fields::Entity::node, dim}, [this](const auto& s) { return displacements(s); }},
+                 {{"stress", "Pa", fields::Entity::cell, 6}, [this](const auto& s) { return stresses(s); }}};
     d.linear = true;
     return d;
   }
@@ -83,7 +90,7 @@ class BulkMomentum final : public assembly::Module {
   }
 
   /// Largest traction, and largest body force at nodes times the size of the whole domain.
-  Real load(Real t) const override {
+  assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
@@ -93,7 +100,7 @@ class BulkMomentum final : public assembly::Module {
                                                  for (const auto& e : traction.value)
                                                    largest = std::max(largest, std::abs(e(x, t)));
                                                });
-    if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return largest;
+    if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return {{"stress", largest}};
     Real force = 0;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
       std::array<Real, 3> x{};
@@ -103,20 +110,27 @@ class BulkMomentum final : public assembly::Module {
       for (const auto& component : parameters_.initial_stress.of_cell(*mesh_, c))
         largest = std::max(largest, std::abs(component(mesh::cell_centre(*mesh_, c), 0)));
     }
-    return std::max(largest, force * size_);
-  }
-
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
-      for (int i = 0; i < dim; ++i) fields[0].values.push_back(u(mesh_->free_node(node) * dim + i));
-    const auto q = tip_displacement_ < 0
-                       ? u
-                       : Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[tip_displacement_]);
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, q, fields[1].values);
+    return {{"stress", std::max(largest, force * size_)}};
   }
 
  private:
+  std::vector<Real> displacements(const assembly::State& state) const {
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
+    std::vector<Real> values;
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
+      for (int i = 0; i < dim; ++i) values.push_back(u(mesh_->free_node(node) * dim + i));
+    return values;
+  }
+  std::vector<Real> stresses(const assembly::State& state) const {
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
+    const auto q = tip_displacement_ < 0
+                       ? u
+                       : Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[tip_displacement_]);
+    std::vector<Real> values;
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, q, values);
+    return values;
+  }
+
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }
@@ -124,8 +138,16 @@ class BulkMomentum final : public assembly::Module {
     return face.boundary == traction.boundary &&
            (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
   }
-  int law_of(LocalIndex cell) const {
-    return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
+  const laws::Elasticity& law_of(const mesh::Mesh& mesh, LocalIndex cell) const {
+    const auto& of_cell = parameters_.elasticity_of_cell;
+    return parameters_.elasticity[of_cell.empty() ? mesh.cell_region[cell] : of_cell[cell]];
+  }
+  /// Young's, Pa. Collective.
+  Real largest_modulus(const mesh::Mesh& mesh) const {
+    Real here = 0, largest = 0;
+    for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) here = std::max(here, law_of(mesh, c).youngs_modulus());
+    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
+    return largest;
   }
 
   template <class Host>
@@ -207,7 +229,7 @@ class BulkMomentum final : public assembly::Module {
             for (int i = 0; i < dim; ++i)
               for (int j = 0; j < dim; ++j) H[i][j] += q(number * dim + i) * v.grad_psi[a][j];
       }
-    const auto& law = parameters_.elasticity[law_of(c)];
+    const auto& law = law_of(*mesh_, c);
     law.stress(H, sigma);
     for (int i = 0; i < dim; ++i) trace += H[i][i];
     if constexpr (dim == 2)

@@ -51,21 +51,17 @@ class ElasticPlasticJump final : public assembly::Module {
 
   std::string name() const override { return "elastic-plastic jump"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
-    assembly::Unknown traction{
-        {"traction", fields::Entity::fracture_face, dim, "Pa"}, assembly::Quantity::stress, assembly::Quantity::stress};
+    assembly::Unknown traction{{"traction", fields::Entity::fracture_face, dim, "Pa"}, "stress", {{"stress"}}};
+    traction.augmented_by = "displacement";
     traction.local_group = "fracture face";
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
     if (tips) d.couplings[0].columns.push_back("tip displacement");
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
-    for (const std::string name : {"jump", "elastic jump", "plastic jump", "traction"})
-      for (const char* frame : {" local", ""})
-        d.outputs.push_back({name + frame, name == "traction" ? "Pa" : "m", face, dim});
-    for (const char* name : {"opening", "slip", "aperture"}) d.outputs.push_back({name, "m", face, 1});
-    for (const char* name : {"state", "slip tendency"}) d.outputs.push_back({name, "-", face, 1});
+    add_outputs(d);
     if (parameters_.holds_fluid) d.schur = {"face pressure"};
     return d;
   }
@@ -93,7 +89,6 @@ class ElasticPlasticJump final : public assembly::Module {
   void grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const override;
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override;
 
  private:
   /// The operator with the history of `state`.
@@ -136,7 +131,9 @@ class ElasticPlasticJump final : public assembly::Module {
   int elasticity_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
   }
+  struct Shown;
   ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
+  void add_outputs(assembly::Declaration& d) const;
 
   ElasticPlasticJumpParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
@@ -271,7 +268,7 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
     const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential) - point.rounding;
     if (!(size <= largest)) largest = size;
   });
-  measures.push_back({"split of the jump", largest / scales.length});
+  measures.push_back({"split of the jump", largest / scales.at("displacement")});
 }
 
 /// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
@@ -346,38 +343,68 @@ bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) co
   return !slips;
 }
 
+/// What is shown of a face. One that slid in the step lies on the limit of friction for the plastic jump that it has
+/// now.
 template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::output(const assembly::State& state,
-                                             std::vector<assembly::OutputField>& fields) const {
-  // a face that slid lies on the friction limit of the plastic jump that it has now: its state is that of the step
-  const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
-  for_each_face(state, [&](LocalIndex f, const Point& point) {
-    const auto& geometry = mesh_->fracture_faces[f];
-    const auto& joint = parameters_.joints[joint_of(f)];
-    Real elastic[dim], plastic[dim], tangential[dim - 1], shear[dim - 1];
+struct ElasticPlasticJump<shape, tips>::Shown {
+  const Point& point;
+  ContactState state;
+  Real elastic[dim], plastic[dim], slip, aperture, slip_tendency = 0;
+
+  Shown(const Point& point, const JointParameters& joint, bool slid)
+      : point(point), state(slid ? ContactState::slip : ContactState::stick) {
+    const bool open = point.state == ContactState::open;
+    if (open) state = ContactState::open;
     laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, elastic, plastic);
-    const Real* vectors[] = {point.w, elastic, plastic, point.traction};
-    for (int k = 0; k < 4; ++k)
-      for (int i = 0; i < dim; ++i) {
-        fields[2 * k].values.push_back(vectors[k][i]);
-        Real global = 0;
-        for (int l = 0; l < dim; ++l) global += geometry.frame[l][i] * vectors[k][l];
-        fields[2 * k + 1].values.push_back(global);
-      }
+    Real tangential[dim - 1], shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) {
       tangential[i] = plastic[i + 1];
       shear[i] = point.traction[i + 1];
     }
+    slip = laws::norm(tangential);
+    aperture = joint.initial_aperture + point.w[0];
     const Real bound = joint.law.friction.bound(point.traction[0]), size = laws::norm(shear);
-    fields[8].values.push_back(point.w[0]);
-    fields[9].values.push_back(laws::norm(tangential));
-    fields[10].values.push_back(joint.initial_aperture + point.w[0]);
-    const bool open = point.state == ContactState::open;
-    fields[11].values.push_back(static_cast<Real>(open         ? point.state
-                                                  : slid(f, 0) ? ContactState::slip
-                                                               : ContactState::stick));
-    fields[12].values.push_back(open || size == 0 ? 0 : size / std::max(bound, size * 1e-16));
-  });
+    if (!open && size > 0) slip_tendency = size / std::max(bound, size * 1e-16);
+  }
+};
+
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) const {
+  using assembly::Summary;
+  const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary, const auto& append) {
+    const auto values = [this, append](const assembly::State& state) {
+      const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
+      std::vector<Real> all;
+      for_each_face(state, [&](LocalIndex f, const Point& point) {
+        append(f, Shown(point, parameters_.joints[joint_of(f)], slid(f, 0) != 0), all);
+      });
+      return all;
+    };
+    d.outputs.push_back({{name, unit, fields::Entity::fracture_face, n, summary}, values});
+  };
+  const auto number = [&](const char* name, const char* unit, const Summary& summary, const auto& of) {
+    add(name, unit, 1, summary, [of](LocalIndex, const Shown& face, auto& all) { all.push_back(of(face)); });
+  };
+  const auto vector = [&](const std::string& name, const char* unit, const auto& of) {
+    add(name + " local", unit, dim, {Summary::mean, name, "local"},
+        [of](LocalIndex, const Shown& face, auto& all) { all.insert(all.end(), of(face), of(face) + dim); });
+    add(name, unit, dim, {Summary::mean, name, "global"}, [this, of](LocalIndex f, const Shown& face, auto& all) {
+      for (int i = 0; i < dim; ++i) {
+        all.push_back(0);
+        for (int l = 0; l < dim; ++l) all.back() += mesh_->fracture_faces[f].frame[l][i] * of(face)[l];
+      }
+    });
+  };
+  vector("jump", "m", [](const Shown& face) { return face.point.w; });
+  vector("elastic jump", "m", [](const Shown& face) { return face.elastic; });
+  vector("plastic jump", "m", [](const Shown& face) { return face.plastic; });
+  vector("traction", "Pa", [](const Shown& face) { return face.point.traction; });
+  number("opening", "m", {Summary::mean_and_max, "opening"}, [](const Shown& face) { return face.point.w[0]; });
+  number("slip", "m", {Summary::mean_and_max, "slip"}, [](const Shown& face) { return face.slip; });
+  number("aperture", "m", {}, [](const Shown& face) { return face.aperture; });
+  number("state", "-", {Summary::fractions, "", "", {"open", "stick", "slip"}},
+         [](const Shown& face) { return static_cast<Real>(face.state); });
+  number("slip tendency", "-", {}, [](const Shown& face) { return face.slip_tendency; });
 }
 
 }  // namespace

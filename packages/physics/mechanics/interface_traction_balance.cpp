@@ -1,6 +1,7 @@
 #include "physics/mechanics/interface_traction_balance.hpp"
 
 #include "assembly/assembler.hpp"
+#include "mesh/extents.hpp"
 #include "physics/mechanics/bubble_stiffness.hpp"
 
 #include <algorithm>
@@ -89,17 +90,22 @@ class InterfaceTractionBalance final : public assembly::Module {
 
   std::string name() const override { return "interface traction balance"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     assembly::Unknown bubble{{"side bubble", fields::Entity::fracture_face, 2 * dim, "m"},
-                             assembly::Quantity::length,
-                             assembly::Quantity::force};
+                             "displacement",
+                             {{"stress", mesh::typical_face_area(mesh)}}};
     bubble.local_group = "fracture face";
     d.unknowns = {bubble};
     d.couplings = {{Loop::fracture_sides, "displacement", {"side bubble", "traction"}},
                    {Loop::fracture_sides, "side bubble", {"displacement", "side bubble", "traction"}}};
     d.linear = true;
-    if (!parameters_.fluid_pressure.empty()) d.outputs = {{"fluid pressure", "Pa", fields::Entity::fracture_face, 1}};
+    if (!parameters_.fluid_pressure.empty())
+      d.outputs = {{{"fluid pressure", "Pa", fields::Entity::fracture_face, 1}, [this](const assembly::State& state) {
+                      std::vector<Real> values;
+                      for_each_pressure(state.t, [&](Real p) { values.push_back(p); });
+                      return values;
+                    }}};
     return d;
   }
 
@@ -125,14 +131,10 @@ class InterfaceTractionBalance final : public assembly::Module {
   }
 
   /// The fluid's largest pressure.
-  Real load(Real t) const override {
+  assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for_each_pressure(t, [&](Real p) { largest = std::max(largest, std::abs(p)); });
-    return largest;
-  }
-
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
-    for_each_pressure(state.t, [&](Real p) { fields[0].values.push_back(p); });
+    return {{"stress", largest}};
   }
 
   void set_time(Real t, const assembly::Scales&) override {

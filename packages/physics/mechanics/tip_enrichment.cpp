@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
+#include "mesh/extents.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,11 +104,11 @@ class TipEnrichment final : public assembly::Module {
 
   std::string name() const override { return "tip enrichment"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     assembly::Unknown q{{"tip displacement", fields::Entity::enriched_node, dim, "m"},
-                        assembly::Quantity::length,
-                        assembly::Quantity::force};
+                        "displacement",
+                        {{"stress", mesh::typical_face_area(mesh)}}};
     q.enriches = "displacement";
     d.unknowns = {q};
     d.couplings = {{Loop::tip_cells, "displacement", {"tip displacement"}},
@@ -115,7 +116,7 @@ class TipEnrichment final : public assembly::Module {
                    {Loop::tip_sides, "tip displacement", {"side bubble", "traction"}},
                    {Loop::tip_sides, "side bubble", {"tip displacement"}}};
     d.linear = true;
-    d.outputs = {{"tip displacement", "m", fields::Entity::node, dim}};
+    d.outputs = {{{"tip displacement", "m", fields::Entity::node, dim}, [this](const auto& s) { return shown(s); }}};
     return d;
   }
 
@@ -148,13 +149,6 @@ class TipEnrichment final : public assembly::Module {
     sides_->add_jacobian(side_, state, J);
   }
 
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
-    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[q_]);
-    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
-      for (int i = 0; i < dim; ++i)
-        fields[0].values.push_back(mesh_->enriched[node] < 0 ? 0 : q(mesh_->enriched[node] * dim + i));
-  }
-
   bool constant_load() const override {
     bool all = parameters_.body_force.constant_in_time() && fluid_.constant_in_time();
     for (const auto& traction : parameters_.tractions)
@@ -184,6 +178,16 @@ class TipEnrichment final : public assembly::Module {
  private:
   using Cells = assembly::Assembler<EnrichedCell<shape>>;
   using Sides = assembly::Assembler<EnrichedSide<shape>>;
+
+  /// The unknowns at all nodes, zero where there are none.
+  std::vector<Real> shown(const assembly::State& state) const {
+    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[q_]);
+    std::vector<Real> values;
+    for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
+      for (int i = 0; i < dim; ++i)
+        values.push_back(mesh_->enriched[node] < 0 ? 0 : q(mesh_->enriched[node] * dim + i));
+    return values;
+  }
 
   const laws::Elasticity& law(LocalIndex cell) const {
     return parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]

@@ -45,13 +45,20 @@ class Given final : public GivenPressure {
 
   std::string name() const override { return "given pressure"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     if (parameters_.fractures) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
     if (parameters_.tips) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
-    d.outputs = {{"gained pore volume", dim == 2 ? "m^2" : "m^3", fields::Entity::cell, 1}};
-    if (parameters_.fractures) d.outputs.push_back({"widening", "m", fields::Entity::fracture_face, 1});
+    d.outputs = {{{"gained pore volume", dim == 2 ? "m^2" : "m^3", fields::Entity::cell, 1},
+                  [this](const auto& state) { return volumes(state, true); }}};
+    if (parameters_.fractures)
+      d.outputs.push_back({{"widening", "m", fields::Entity::fracture_face, 1}, [this](const auto& state) {
+                             auto widening = volumes(state, false);
+                             for (std::size_t f = 0; f < widening.size(); ++f)
+                               widening[f] /= mesh_->fracture_faces[f].area;
+                             return widening;
+                           }});
     d.linear = true;
     return d;
   }
@@ -97,19 +104,19 @@ class Given final : public GivenPressure {
   }
   void jacobian(const assembly::State&, fields::BlockMatrix&) const override {}
   bool constant_load() const override { return false; }
-  Real load(Real) const override { return largest_; }
-
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
-    const View<Real*> volumes("volumes", mesh_->n_cells()), openings("openings", mesh_->n_fracture_faces());
-    for_each(*this, [&](const auto& part, bool of_rock) { part.add_volumes(state, of_rock ? volumes : openings); });
-    const auto V = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), volumes);
-    const auto W = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), openings);
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) fields[0].values.push_back(V(c));
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces && parameters_.fractures; ++f)
-      fields[1].values.push_back(W(f) / mesh_->fracture_faces[f].area);
-  }
+  assembly::Scales loads(Real) const override { return {{"stress", largest_}}; }
 
  private:
+  /// V_K of owned cells, or W_f of owned fracture faces.
+  std::vector<Real> volumes(const assembly::State& state, bool of_rock) const {
+    const View<Real*> sums("volumes", of_rock ? mesh_->n_cells() : mesh_->n_fracture_faces());
+    for_each(*this, [&](const auto& part, bool is_of_rock) {
+      if (is_of_rock == of_rock) part.add_volumes(state, sums);
+    });
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), sums);
+    return {host.data(), host.data() + (of_rock ? mesh_->n_owned_cells : mesh_->n_owned_fracture_faces)};
+  }
+
   using Nodes = Slot<n, dim>;
   using Bubble = Slot<1, dim>;
   template <class Op>

@@ -1,6 +1,7 @@
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 
 #include "assembly/assembler.hpp"
+#include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "physics/poroelasticity/coupling_volumes.hpp"
 
@@ -129,8 +130,9 @@ class PoroelasticCoupling final : public assembly::Module {
 
   std::string name() const override { return "poroelastic coupling"; }
 
-  assembly::Declaration declare() const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
+    const Real area = mesh::typical_face_area(mesh);
     const auto work = [&](Loop loop, const char* displacement) {
       d.couplings.push_back({loop, displacement, {"pressure"}});
       d.couplings.push_back({loop, "pressure", {displacement}});
@@ -142,7 +144,7 @@ class PoroelasticCoupling final : public assembly::Module {
     work(Loop::cells, "displacement");
     if (parameters_.fractures) {
       assembly::Unknown widening{
-          {"widening", fields::Entity::fracture_face, 1, "m"}, assembly::Quantity::length, assembly::Quantity::volume};
+          {"widening", fields::Entity::fracture_face, 1, "m"}, "displacement", {{"displacement", area}}};
       widening.local_group = "fracture face";
       d.unknowns = {widening};
       work(Loop::fracture_sides, "side bubble");
@@ -153,8 +155,11 @@ class PoroelasticCoupling final : public assembly::Module {
       work(Loop::tip_cells, "tip displacement");
       open(Loop::tip_sides, "tip displacement");
     }
-    for (const char* row : {"pressure", "face pressure"})
+    for (const char* row : {"pressure", "face pressure"}) {
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
+      d.sizes.push_back({row, {"displacement", area, true}});
+    }
+    d.relations = {{"stress", 1, "pressure"}, {"pressure", 1, "stress"}};
     d.schur = {"pressure"};
     d.stores = true;
     d.history = {{"volume", fields::Entity::cell, 1}, {"exchange", fields::Entity::facet, 1}};

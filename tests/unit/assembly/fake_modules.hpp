@@ -7,6 +7,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/system.hpp"
 #include "mesh/distribute.hpp"
+#include "mesh/extents.hpp"
 #include "unit/assembly/dense.hpp"
 #include "unit/mesh/meshes.hpp"
 
@@ -14,7 +15,6 @@ namespace sprekk::test {
 
 using assembly::Declaration;
 using assembly::Loop;
-using assembly::Quantity;
 using mesh::Shape;
 
 /// r_a = k sum_b (u_a - u_b) over the nodes b of the cell.
@@ -38,7 +38,8 @@ struct SpringCell {
   }
 };
 
-/// Linear; declares "displacement". Every node is pulled by the force `force` * t^power in direction x.
+/// Linear; declares "displacement", with the scales of E = 100 Pa and L = 2 m. Every node is pulled by the force
+/// `force` * t^power in direction x.
 template <Shape shape>
 class Springs final : public assembly::Module {
  public:
@@ -46,14 +47,18 @@ class Springs final : public assembly::Module {
   Real force = 0, power = 0;
 
   std::string name() const override { return "springs"; }
-  Declaration declare() const override {
+  Declaration declare(const mesh::Mesh& mesh) const override {
     Declaration d;
     d.unknowns = {{{"displacement", fields::Entity::node, dim, "m"},
-                   Quantity::length,
-                   Quantity::force,
+                   "displacement",
+                   {{"stress", mesh::typical_face_area(mesh)}},
                    assembly::NearNullSpace::rigid_motions}};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
-    d.outputs = {{"displacement", "m", fields::Entity::node, dim}};
+    d.scales = {{"stress", 1e-10}, {"displacement", 2e-12}};
+    d.relations = {{"stress", 50, "displacement"}, {"displacement", 0.02, "stress"}};
+    d.outputs = {{{"displacement", "m", fields::Entity::node, dim}, [this](const assembly::State& state) {
+                    return std::vector<Real>(state.x[u_].data(), state.x[u_].data() + state.x[u_].extent(0));
+                  }}};
     d.linear = true;
     return d;
   }
@@ -74,11 +79,8 @@ class Springs final : public assembly::Module {
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     cells_->add_jacobian({}, state, J);
   }
-  Real load(Real t) const override { return std::abs(force * std::pow(t, power)); }
+  assembly::Scales loads(Real t) const override { return {{"stress", std::abs(force * std::pow(t, power))}}; }
   bool constant_load() const override { return power == 0; }
-  void output(const assembly::State& state, std::vector<assembly::OutputField>& fields) const override {
-    fields[0].values.assign(state.x[u_].data(), state.x[u_].data() + state.x[u_].extent(0));
-  }
 
  private:
   int u_ = -1;
@@ -127,9 +129,9 @@ class Glue final : public assembly::Module {
   bool reads_undeclared = false;  ///< the residual reads the displacement once more than the declaration says
 
   std::string name() const override { return "glue"; }
-  Declaration declare() const override {
+  Declaration declare(const mesh::Mesh&) const override {
     Declaration d;
-    assembly::Unknown q{{"glue", fields::Entity::fracture_face, dim, "Pa"}, Quantity::stress, Quantity::stress};
+    assembly::Unknown q{{"glue", fields::Entity::fracture_face, dim, "Pa"}, "stress", {{"stress"}}};
     q.local_group = "face";
     d.unknowns = {q};
     d.couplings = {{Loop::fracture_faces, "glue", {"displacement", "glue"}}};
@@ -158,7 +160,7 @@ class Glue final : public assembly::Module {
                std::vector<fields::Measure>& out) const override {
     Real largest = 0;
     for (std::size_t i = 0; i < state.x[q_].extent(0); ++i) largest = std::max(largest, std::abs(state.x[q_](i)));
-    out.push_back({"largest glue", largest / scales.stress});
+    out.push_back({"largest glue", largest / scales.at("stress")});
   }
   bool symmetric(const assembly::State&) const override { return false; }
 
@@ -187,7 +189,7 @@ template <Shape shape>
 class Hardening final : public assembly::Module {
  public:
   std::string name() const override { return "hardening"; }
-  Declaration declare() const override {
+  Declaration declare(const mesh::Mesh&) const override {
     Declaration d;
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     return d;
@@ -221,9 +223,8 @@ inline assembly::DirichletCondition hold(const mesh::Mesh& mesh, const std::stri
 using Modules = std::vector<std::unique_ptr<assembly::Module>>;
 
 inline std::unique_ptr<assembly::System> make_system(RCP<const mesh::Mesh> mesh, Modules modules,
-                                                     const std::vector<assembly::DirichletCondition>& conditions = {},
-                                                     const assembly::Reference& reference = {100, 2}) {
-  return std::make_unique<assembly::System>(mesh, std::move(modules), conditions, reference, rcp(new base::Timers));
+                                                     const std::vector<assembly::DirichletCondition>& conditions = {}) {
+  return std::make_unique<assembly::System>(mesh, std::move(modules), conditions, rcp(new base::Timers));
 }
 
 }  // namespace sprekk::test

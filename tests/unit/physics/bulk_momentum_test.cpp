@@ -191,7 +191,7 @@ TEST(BulkMomentum, TractionsAddUpToTheirIntegral) {
       }
     }
     EXPECT_FALSE(rock.system->modules()[0]->constant_load());
-    EXPECT_NEAR(rock.system->scales().stress, 2 * 2 * 4, 2);  // the largest traction, at quadrature points
+    EXPECT_NEAR(rock.system->scales().at("stress"), 2 * 2 * 4, 2);  // the largest traction, at quadrature points
   }
 }
 

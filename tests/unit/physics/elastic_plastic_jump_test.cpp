@@ -125,7 +125,7 @@ TEST(ElasticPlasticJump, MeasureSeesTheSplitInLengths) {
     s.rock.system->raw_residual(s.x, r);
     const auto measures = s.rock.system->measures(s.x, r);
     EXPECT_EQ(measures.back().name, "split of the jump");
-    return measures.back().value * s.rock.system->scales().length;
+    return measures.back().value * s.rock.system->scales().at("displacement");
   };
   const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
   s.set({closed, 0, 0}, {-50, 0, 0});

@@ -74,7 +74,7 @@ inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}
   const MechanicsParameters mechanics{{rock.elasticity, BodyForce{loads.body_force}, loads.tractions},
                                       std::vector<JointParameters>(global.fracture_names.size(), joint)};
   rock.system = std::make_unique<assembly::System>(rock.mesh, make_mechanics(*rock.mesh, mechanics), conditions,
-                                                   assembly::Reference{2.5, 1}, rcp(new base::Timers));
+                                                   rcp(new base::Timers));
   rock.system->set_time(1, 1);
   return rock;
 }

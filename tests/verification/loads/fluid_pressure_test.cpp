@@ -103,7 +103,7 @@ std::array<Real, 2> moments(const std::string& cell, const std::string& tips, in
   const auto report = model.step_to(1);
   EXPECT_TRUE(report.converged) << report.reason;
   const Real on_last_face = p * (1.5 - 0.5 / n);  // the largest
-  EXPECT_NEAR(model.system().scales().stress, on_last_face, 1e-12 * p);
+  EXPECT_NEAR(model.system().scales().at("stress"), on_last_face, 1e-12 * p);
   const Outputs out(model);
   std::array<Real, 2> here{}, all;
   for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
@@ -118,8 +118,8 @@ std::array<Real, 2> moments(const std::string& cell, const std::string& tips, in
 
 /// In infinite rock, nu = 0, the crack opens by w = 4 p/E (1 + x/4) sqrt(1 - x^2) (Sneddon 1946). Plain tips make
 /// errors of first order, a box holds it back with the inverse square of its size: extrapolation takes out both. What
-/// is left is of second order in the cells, (1/8)^2; with enriched tips 1/40 is met without the first extrapolation, which plain ones miss
-/// by far.
+/// is left is of second order in the cells, (1/8)^2; with enriched tips 1/40 is met without the first extrapolation,
+/// which plain ones miss by far.
 TEST(FluidPressure, OpensACrack) {
   const Real E = 1e10, p = 1e6, exact[] = {2 * M_PI * p / E, M_PI / 8 * p / E};
   for (const auto& cell : cells_of(2)) {

@@ -178,7 +178,7 @@ void expect_as_box(const std::string& file, int n, Real height, const std::array
     ++n_state.at(static_cast<int>(values[0]));
     for (int k = 1; k < 7; ++k)
       EXPECT_NEAR(a.at(place)[k], values[k],
-                  1e-10 * (k < 4 ? box.system().scales().length : box.system().scales().stress));
+                  1e-10 * (k < 4 ? box.system().scales().at("displacement") : box.system().scales().at("stress")));
   }
   EXPECT_GT(n_state[0], 0);
   EXPECT_GT(n_state[1] + n_state[2], 0);
