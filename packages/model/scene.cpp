@@ -17,8 +17,6 @@ namespace sprekk::model {
 
 namespace {
 
-constexpr Real degree = 3.14159265358979323846 / 180;
-
 void check_constant_in_time(base::Section& s, const std::string& entry, const base::Expression& value) {
   if (!value.constant_in_time())
     s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
@@ -48,14 +46,6 @@ void Material::for_each(const Visit& visit) const {
     optional("bulk modulus", K, 0, false, infinite);
     optional("density", density, 0, true, infinite);
   } else {
-    visit("tangential stiffness", tangential_stiffness, 0, false, infinite);
-    optional("friction coefficient", friction_coefficient, 0, true, infinite);
-    optional("friction angle", friction_angle, 0, true, 90);
-    visit("dilation angle", dilation_angle, 0, true, 90);
-    visit("initial gap", initial_gap, none, false, infinite);
-    optional("maximum closure", maximum_closure, 0, true, infinite);
-    visit("initial aperture", initial_aperture, 0, true, infinite);
-    optional("normal stiffness", normal_stiffness, 0, false, infinite);
     visit("residual aperture", residual_aperture, 0, true, infinite);
     optional("tangential permeability", tangential_permeability, 0, false, infinite);
     visit("normal permeability", normal_permeability, 0, false, infinite);
@@ -100,19 +90,7 @@ void Material::describe(base::Section& s) {
       s.fail("give either \"compressibility of pores\" or \"Biot modulus\"");
   }
   if (type != "elastic") {
-    s.entry(tangential_stiffness, "tangential stiffness", "Pa/m", base::positive_or_infinite(),
-            "K_t of the elastic part of the tangential jump (12); infinite: all tangential jump is plastic");
-    s.entry(friction_coefficient, "friction coefficient", "-", base::at_least(0),
-            "mu of the bound (13); or give the angle");
-    s.entry(friction_angle, "friction angle", "degree", base::at_least(0).below(90), "atan(mu) (3)");
-    s.entry(dilation_angle, "dilation angle", "degree", base::at_least(0).below(90),
-            "theta: the gap grows by tan(theta)|u_t^p| (14)");
-    s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
-    s.entry(maximum_closure, "maximum closure", "m", base::at_least(0).or_infinite(),
-            "Du of the normal closure in (14); 0: none; infinite, or absent: closure is linear, the traction over K_n");
-    s.entry(normal_stiffness, "normal stiffness", "Pa/m", base::positive(),
-            "K_n at zero traction; absent: the joint does not close");
-    s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
+    JointMaterial::describe(s, type.empty());
     s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
             "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
     s.entry(
@@ -121,41 +99,20 @@ void Material::describe(base::Section& s) {
     s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
             "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
             "beside it");
-    s.hint({"kn", "jkn"}, "Did you mean \"normal stiffness\"?");
-    s.hint({"ks", "kt", "jks", "shear stiffness"}, "Did you mean \"tangential stiffness\"?");
-    s.hint({"phi", "friction"}, "Did you mean \"friction angle\"?");
-    s.hint({"mu"}, "Did you mean \"friction coefficient\"?");
-    s.hint({"psi", "dilatancy", "dilatancy angle"}, "Did you mean \"dilation angle\"?");
-    s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
-    s.hint({"JRC", "JCS"},
-           "Friction has a \"friction angle\" or \"friction coefficient\", independent of the traction");
-    if (type == "joint" && s.complete()) {
-      if (friction_coefficient && friction_angle) s.fail("give either \"friction coefficient\" or \"friction angle\"");
-      const bool closes = maximum_closure && (!maximum_closure->is_constant() || (*maximum_closure)({}, 0) > 0);
-      if (closes && !normal_stiffness)
-        s.fail("normal stiffness", "missing; it is required with a \"maximum closure\" above 0");
-    }
+    if (type == "joint" && s.complete()) compare_entries(s);
   }
   for_each([&](const char* name, const Value& value, Real, bool, Real) { check_constant_in_time(s, name, value); });
   for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
 }
 
 bool Material::is_uniform() const {
-  bool uniform = true;
+  bool uniform = type == "elastic" || JointMaterial::is_uniform();
   for_each([&](const char*, const Value& value, Real, bool, Real) { uniform = uniform && value.is_constant(); });
   return uniform;
 }
 
-Real Material::friction(const Point& x) const {
-  return friction_coefficient ? (*friction_coefficient)(x, 0) : std::tan((*friction_angle)(x, 0) * degree);
-}
-
-std::optional<Real> Material::uniform_friction() const {
-  const auto& value = friction_coefficient ? friction_coefficient : friction_angle;
-  return value && value->is_constant() ? std::make_optional(friction({})) : std::nullopt;
-}
-
 void Material::check(const Point& x) const {
+  if (type != "elastic") JointMaterial::check(x);
   for_each([&](const char* name, const Value& value, Real least, bool itself, Real limit) {
     if (value.is_constant()) return;  // checked when it was read
     const Real v = value(x, 0);
@@ -210,21 +167,6 @@ physics::FractureFlowParameters::Face Material::hydraulics(Real viscosity, const
   const Real k = tangential_permeability ? (*tangential_permeability)(x, 0) : 0;
   return {{initial_aperture(x, 0), residual_aperture(x, 0), k, viscosity},
           2 * normal_permeability(x, 0) / (a * viscosity)};
-}
-
-physics::JointParameters Material::joint(const Point& x) const {
-  check(x);
-  physics::JointParameters joint;
-  joint.law.elastic.compliance = 1 / tangential_stiffness(x, 0);
-  SPREKK_CHECK(friction_coefficient || friction_angle, "give either \"friction coefficient\" or \"friction angle\"");
-  joint.law.friction.coefficient = friction(x);
-  joint.law.gap.initial = initial_gap(x, 0);
-  joint.law.gap.dilation.tangent = std::tan(dilation_angle(x, 0) * degree);
-  if (normal_stiffness)
-    joint.law.gap.closure = {maximum_closure ? (*maximum_closure)(x, 0) : std::numeric_limits<Real>::infinity(),
-                             (*normal_stiffness)(x, 0)};
-  joint.initial_aperture = initial_aperture(x, 0);
-  return joint;
 }
 
 void Bulk::describe(base::Section& s) {

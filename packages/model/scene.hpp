@@ -9,7 +9,7 @@
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
 #include "model/network.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/joint_material.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
@@ -24,10 +24,7 @@
 namespace sprekk::model {
 
 /// Rock, or the surface of a fracture. Every number may be an expression of x, y, z.
-struct Material {
-  using Value = base::Expression;
-  using Point = std::array<Real, 3>;
-
+struct Material : physics::JointMaterial {
   std::string type;                   ///< "elastic" or "joint"
   std::optional<std::string> source;  ///< where the values come from
 
@@ -38,21 +35,14 @@ struct Material {
   /// Of the pores; Biot's modulus. At most one.
   std::optional<Real> compressibility, biot_modulus;
 
-  Value tangential_stiffness = std::numeric_limits<Real>::infinity();
-  std::optional<Value> friction_coefficient, friction_angle;  ///< exactly one for a joint of rock that deforms
-  Value dilation_angle = 0, initial_gap = 0, initial_aperture = 0;
-  std::optional<Value> normal_stiffness;  ///< needed where there is closure; absent: none
-  std::optional<Value> maximum_closure;   ///< absent: infinite, closure is linear
   Value residual_aperture = 0;
   std::optional<Value> tangential_permeability;  ///< absent: the cubic law
   Value normal_permeability = std::numeric_limits<Real>::infinity();
 
   void describe(base::Section& section);
-  bool is_uniform() const;                       ///< no value depends on the place
-  std::optional<Real> uniform_friction() const;  ///< mu of a joint, if it does not depend on the place
-  /// The laws at a point. Throw an Error that names the entry, the value and the point where a value is out of range.
+  bool is_uniform() const;  ///< no value depends on the place
+  /// The law at a point. Throws an Error that names the entry, the value and the point where a value is out of range.
   laws::Elasticity elasticity(const Point& x) const;
-  physics::JointParameters joint(const Point& x) const;
   bool flows_uniformly() const;  ///< the permeability of rock does not depend on the place
   /// k/mu of the flow through rock. Throws an Error where k is no positive definite tensor of that dimension.
   laws::Mobility mobility(int dim, Real viscosity, const Point& x) const;
@@ -66,7 +56,6 @@ struct Material {
   template <class Visit>
   void for_each(const Visit& visit) const;
   void check(const Point& x) const;
-  Real friction(const Point& x) const;
 };
 
 /// Initial stress of rock at rest under gravity along the last coordinate.

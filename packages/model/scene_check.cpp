@@ -158,8 +158,9 @@ class Comparison {
     if (found == scene_.materials.end() || found->second.type != "joint" || !sound) return;
     const auto& joint = found->second;
     const std::string place = "Materials > " + fracture.material;
-    if (scene_.deforms() && !joint.friction_coefficient && !joint.friction_angle)
-      fail(place, "give either \"friction coefficient\" or \"friction angle\"");
+    if (scene_.deforms())
+      for (const auto& [entry, what] : joint.missing())
+        fail(entry.empty() ? place : fmt::format("{} > \"{}\"", place, entry), what);
     const auto zero = [](const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; };
     if ((scene_.flow || scene_.host_fluid) && !zero(fracture.fluid_pressure))
       fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
