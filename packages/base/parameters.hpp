@@ -104,6 +104,12 @@ class Section {
   /// compiled.
   void expressions_call(const Tables& tables, Expression::Named& named);
 
+  /// Whether nothing that this section has described so far is wrong.
+  bool is_sound() const { return mode_ != Mode::read || report_->errors.size() == n_errors_before_; }
+
+  /// Whether all that the section could have is asked for, not what it has.
+  bool documents() const { return mode_ == Mode::document; }
+
   /// Whether this section was read without an error and has no name that is not yet described: so that describe() can
   /// compare entries after the last of them. A misspelt entry is not also told as a missing one.
   bool complete() const;

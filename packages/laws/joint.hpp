@@ -5,6 +5,8 @@
 #pragma once
 
 #include "base/types.hpp"
+#include "laws/contact.hpp"
+#include "laws/joint_kinds.hpp"
 
 #include <cmath>
 #include <type_traits>
@@ -32,66 +34,89 @@ KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
   }
 }
 
-/// Elastic part of the tangential jump (12): u_t^e = lambda_t / K_t.
-struct TangentialElasticity {
-  Real compliance = 0;  ///< 1/K_t, m/Pa; 0 is a rigid joint
-};
-
-/// Coulomb's bound on |lambda_t| (13): b = -mu lambda_n.
-struct CoulombFriction {
-  Real coefficient = 0;  ///< mu
-
+/// One of the kinds of each role.
+struct Shear : ShearKinds {
+  using ShearKinds::ShearKinds;
   template <class T>
-  KOKKOS_INLINE_FUNCTION T bound(const T& lambda_n) const {
-    return -coefficient * lambda_n;
+  KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return T(law.compliance(at)); });
+  }
+  KOKKOS_INLINE_FUNCTION Real initial_compliance() const {
+    return visit([](const auto& law) { return law.initial_compliance(); });
+  }
+};
+struct Friction : FrictionKinds {
+  using FrictionKinds::FrictionKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return T(law.bound(at)); });
+  }
+};
+struct Dilation : DilationKinds {
+  using DilationKinds::DilationKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return T(law.opening(at)); });
+  }
+};
+struct Closure : ClosureKinds {
+  using ClosureKinds::ClosureKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return T(law.opening(at)); });
+  }
+  KOKKOS_INLINE_FUNCTION Real initial_compliance() const {
+    return visit([](const auto& law) { return law.initial_compliance(); });
   }
 };
 
-/// Normal closure under compression, the last term of (14) (Barton and Bandis): B = lambda_n/(K_n - lambda_n/Du),
-/// continued as lambda_n/K_n, once continuously differentiable, for the tensile tractions that iterates visit. An
-/// infinite Du makes it lambda_n/K_n throughout.
-struct BartonBandisClosure {
-  Real maximum = 0;    ///< Du, m; 0 is a joint that does not close, infinite one that closes linearly
-  Real stiffness = 1;  ///< K_n at zero traction, Pa/m
-
-  template <class T>
-  KOKKOS_INLINE_FUNCTION T operator()(const T& lambda_n) const {
-    if (maximum == 0) return T(0);
-    if (lambda_n > 0) return lambda_n / stiffness;
-    return lambda_n / (stiffness - lambda_n / maximum);
-  }
-  KOKKOS_INLINE_FUNCTION Real initial_compliance() const { return maximum == 0 ? 0 : 1 / stiffness; }
-};
-
-/// Shear dilation, the middle term of (14): tan(theta) |u_t^p|.
-struct Dilation {
-  Real tangent = 0;  ///< tan(theta)
-
-  template <class T>
-  KOKKOS_INLINE_FUNCTION T operator()(const T& plastic_slip) const {
-    return tangent * plastic_slip;
-  }
-};
-
-/// The gap (14) below which the faces touch: g = g0 + tan(theta)|u_t^p| + B(lambda_n), m.
+/// The gap (14) below which the faces touch, m: g = g0 + dilation + closure, the latter negative under compression.
+template <class Dilation = laws::Dilation, class Closure = laws::Closure>
 struct NormalGap {
   Real initial = 0;  ///< g0, m
-  Dilation dilation;
-  BartonBandisClosure closure;
+  Dilation dilation = {};
+  Closure closure = {};
 
   template <class T>
-  KOKKOS_INLINE_FUNCTION T operator()(const T& plastic_slip, const T& lambda_n) const {
-    return initial + dilation(plastic_slip) + closure(lambda_n);
+  KOKKOS_INLINE_FUNCTION T operator()(const Contact<T>& at) const {
+    return initial + dilation.opening(at) + closure.opening(at.after(n_history(dilation)));
   }
 };
 
-/// A joint: how it deforms elastically, what bounds its friction, where its faces touch. Another law of one of the
-/// three kinds replaces the template argument; nothing else changes.
-template <class Elastic = TangentialElasticity, class Friction = CoulombFriction, class Gap = NormalGap>
+/// A joint: how it deforms elastically, what bounds its friction, where its faces touch. Each part is a law of its role
+/// or one of several. The numbers that they keep of a face follow each other: dilation, closure, friction, elasticity.
+template <class Elastic = Shear, class Friction = laws::Friction, class Gap = NormalGap<>>
 struct JointLaw {
-  Elastic elastic;
-  Friction friction;
-  Gap gap;
+  Elastic elastic = {};
+  Friction friction = {};
+  Gap gap = {};
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    return friction.bound(at.after(of_gap()));
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
+    return elastic.compliance(at.after(of_gap() + laws::n_history(friction)));
+  }
+  KOKKOS_INLINE_FUNCTION int n_history() const {
+    return of_gap() + laws::n_history(friction) + laws::n_history(elastic);
+  }
+  /// Moves the numbers of a face to the end of a step; `at` is its end, with the numbers of its beginning.
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    int offset = 0;
+    const auto move = [&](const auto& law) {
+      laws::commit(law, at.after(offset), kept.from(offset));
+      offset += laws::n_history(law);
+    };
+    move(gap.dilation);
+    move(gap.closure);
+    move(friction);
+    move(elastic);
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION int of_gap() const { return laws::n_history(gap.dilation) + laws::n_history(gap.closure); }
 };
 
 using Joint = JointLaw<>;
@@ -104,11 +129,26 @@ struct Augmentation {
 
 template <class Law>
 KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
-  return {1 / (1 / c + law.gap.closure.initial_compliance()), 1 / (1 / c + law.elastic.compliance)};
+  return {1 / (1 / c + law.gap.closure.initial_compliance()), 1 / (1 / c + law.elastic.initial_compliance())};
+}
+
+/// The contact of normal traction lambda_n after the plastic tangential jump p, of size |p| or what stands for it.
+template <int dim, class T>
+KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, const T (&p)[dim - 1],
+                                          const Real (&p_old)[dim - 1], const History& history) {
+  Contact<T> at;
+  at.lambda_n = lambda_n;
+  at.plastic_slip = size;
+  at.history = history;
+  for (int i = 0; i < dim - 1; ++i) {
+    at.plastic_jump[i] = p[i];
+    at.last_plastic_jump[i] = p_old[i];
+  }
+  return at;
 }
 
 /// Contact and elastic-plastic split (9)-(14) as one residual R(w, lambda) = 0 of projections, Pa:
-///   p = w_t - lambda_t/K_t                                   plastic tangential jump
+///   p = w_t - u_t^e(lambda), e.g. w_t - lambda_t/K_t         plastic tangential jump
 ///   y = lambda_n + c_n (w_n - g),  q = min(y, 0)             R_n = lambda_n - q
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t           open,  y > 0
 ///                                                            R_t = lambda_t - z       stick, |z| <= b
@@ -121,13 +161,18 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
 /// it is where p is along z.
+///
+/// `history` holds what the laws have kept of the face. A bound b(0) > 0 holds as long as the faces touch: an open face
+/// bears no traction. A tensile strength would need q = min(y, strength) while a number of the history says that the
+/// face is whole, here and in split_jump().
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
-                                                     const T (&lambda)[dim], const Real (&p_old)[dim - 1],
-                                                     T (&R)[dim]) {
-  T p[dim - 1], step[dim - 1], z[dim - 1];
+                                                     const T (&lambda)[dim], const Real (&p_old)[dim - 1], T (&R)[dim],
+                                                     const History& history = {}) {
+  T p[dim - 1] = {}, step[dim - 1], z[dim - 1];
+  const T compliance = law.compliance(contact<dim>(lambda[0], T(0), p, p_old, history));
   for (int i = 0; i < dim - 1; ++i) {
-    p[i] = w[i + 1] - law.elastic.compliance * lambda[i + 1];
+    p[i] = w[i + 1] - compliance * lambda[i + 1];
     step[i] = c.tangential * (p[i] - p_old[i]);
     z[i] = lambda[i + 1] + step[i];
   }
@@ -137,14 +182,14 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     distance = 0;
     for (int i = 0; i < dim - 1; ++i) distance += p[i] * z[i] / size;
   }
-  T penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
+  T penetration = c.normal * (w[0] - law.gap(contact<dim>(lambda[0], distance, p, p_old, history)));
   T y = lambda[0] + penetration;
   if (y > 0) {
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
   R[0] = -penetration;
-  T b = law.friction.bound(y);
+  T b = law.bound(contact<dim>(y, distance, p, p_old, history));
   if (size <= b || (size <= (1 + 1e-10) * b && norm(step) <= 1e-10 * b)) {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -step[i];
     return ContactState::stick;
@@ -157,9 +202,9 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
   }
   if (along < 0 && old_along >= 0) {
     distance = along + (value_of(distance) - value_of(along));
-    penetration = c.normal * (w[0] - law.gap(distance, lambda[0]));
+    penetration = c.normal * (w[0] - law.gap(contact<dim>(lambda[0], distance, p, p_old, history)));
     y = lambda[0] + penetration;
-    b = law.friction.bound(y);
+    b = law.bound(contact<dim>(y, distance, p, p_old, history));
     R[0] = -penetration;
   }
   for (int i = 0; i < dim - 1; ++i) R[i + 1] = lambda[i + 1] - b * z[i] / size;
@@ -170,11 +215,18 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
 /// they are open; u^p = w - u^e.
 template <int dim, class Law>
 KOKKOS_INLINE_FUNCTION void split_jump(const Law& law, ContactState state, const Real (&w)[dim],
-                                       const Real (&lambda)[dim], Real (&elastic)[dim], Real (&plastic)[dim]) {
+                                       const Real (&lambda)[dim], const Real (&p_old)[dim - 1], Real (&elastic)[dim],
+                                       Real (&plastic)[dim], const History& history = {}) {
   const bool open = state == ContactState::open;
-  elastic[0] = open ? 0 : law.gap.closure(lambda[0]);
-  for (int i = 1; i < dim; ++i) elastic[i] = open ? 0 : law.elastic.compliance * lambda[i];
-  for (int i = 0; i < dim; ++i) plastic[i] = w[i] - elastic[i];
+  Real p[dim - 1] = {};
+  const Real compliance = open ? 0 : law.compliance(contact<dim>(lambda[0], Real(0), p, p_old, history));
+  for (int i = 1; i < dim; ++i) {
+    elastic[i] = open ? 0 : compliance * lambda[i];
+    plastic[i] = p[i - 1] = w[i] - elastic[i];
+  }
+  const auto at = contact<dim>(lambda[0], norm(p), p, p_old, history);
+  elastic[0] = open ? 0 : law.gap.closure.opening(at.after(n_history(law.gap.dilation)));
+  plastic[0] = w[0] - elastic[0];
 }
 
 }  // namespace sprekk::laws

@@ -68,8 +68,8 @@ class PointDriver {
       Real& size = control(i) == "traction" ? stress : length;
       size = std::max(size, std::abs(d_[i]));
     }
-    if (k == 0 && law_.elastic.compliance > 0) k = 1 / law_.elastic.compliance;
-    if (k == 0 && law_.gap.closure.maximum > 0) k = law_.gap.closure.stiffness;
+    for (const Real compliance : {law_.elastic.initial_compliance(), law_.gap.closure.initial_compliance()})
+      if (k == 0 && compliance > 0) k = 1 / compliance;
     if (k == 0 && length > 0) k = stress / length;
     return k == 0 ? 1 : k;
   }
@@ -136,9 +136,9 @@ class PointDriver {
     if (state == laws::ContactState::open) return "an open joint bears no traction, its jump has no bound";
     if (state == laws::ContactState::slip && pulled)
       return "the shear traction exceeds the friction bound, the joint slides without bound";
-    if (control(0) == "jump" && law_.gap.closure.maximum == 0)
+    if (control(0) == "jump" && law_.gap.closure.initial_compliance() == 0)
       return "the faces touch and do not close, the normal jump does not determine the normal traction";
-    if (state == laws::ContactState::stick && law_.elastic.compliance == 0)
+    if (state == laws::ContactState::stick && law_.elastic.initial_compliance() == 0)
       return "a rigid joint sticks, the jump does not determine the shear traction";
     return "the prescribed values do not determine jump and traction";
   }
@@ -151,7 +151,7 @@ class PointDriver {
       w[i] = Fad(2 * dim, i, x_[i]);
       lambda[i] = Fad(2 * dim, dim + i, x_[dim + i]);
     }
-    const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R);
+    const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R, {kept_.data()});
     for (int i = 0; i < dim; ++i) {
       const Fad controlled = control(i) == "jump"       ? Fad(w[i] - d_[i])
                              : control(i) == "traction" ? Fad(lambda[i] - d_[i])
@@ -172,17 +172,21 @@ class PointDriver {
     Real w[dim], lambda[dim], elastic[dim], plastic[dim];
     std::copy_n(x_, dim, w);
     std::copy_n(x_ + dim, dim, lambda);
-    laws::split_jump<dim>(law_, state, w, lambda, elastic, plastic);
+    laws::split_jump<dim>(law_, state, w, lambda, p_old_, elastic, plastic, {kept_.data()});
     if (state == laws::ContactState::stick) {
       for (int i = 1; i < dim; ++i) plastic[i] = p_old_[i - 1];
     }
-    for (int i = 1; i < dim; ++i) p_old_[i - 1] = plastic[i];
+    Real now[dim - 1];
+    std::copy_n(plastic + 1, dim - 1, now);
+    law_.commit(laws::contact<dim>(lambda[0], laws::norm(now), now, p_old_, {kept_.data()}), {kept_.data()});
+    std::copy_n(now, dim - 1, p_old_);
     return {t, state, {w, w + dim}, {elastic, elastic + dim}, {plastic, plastic + dim}, {lambda, lambda + dim}};
   }
 
   const PointPath& point_;
   laws::Joint law_;
   laws::Augmentation c_;
+  std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // what the laws keep of the point
   Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
 };
 

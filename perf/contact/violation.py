@@ -79,6 +79,9 @@ class Input:
     def _joint(self, name):
         def number(entry, default):
             return self.number("Materials", name, entry, default=default)
+        for role, kind in (("friction", "Coulomb"), ("closure", "Barton-Bandis")):
+            if self.text("Materials", name, role) not in (None, kind):
+                raise ValueError(f"joint {name}: only {role} {kind} is known here")
         angle = number("friction angle", None)
         friction = number("friction coefficient", None) if angle is None else math.tan(math.radians(angle))
         return Joint(number("tangential stiffness", math.inf), friction, math.tan(math.radians(number("dilation angle", 0))),

@@ -10,6 +10,9 @@
                                            are lines of what it prints. Blocks after <!-- not run: REASON --> are left
                                            out, as are the commands that build
     check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
+    check_docs.py change ROOT PAGE TARGETS...
+                                           the page's ```diff block applies to a copy of the sources, the targets build
+                                           there, and the ```console blocks that are "not run" elsewhere come true
     check_docs.py doxygen ROOT FOLDER      docs/Doxyfile makes FOLDER/doxygen of the public headers without warnings
 
 Prints what is wrong; exit status 1 if anything is, 77 if a command could not be run since a program is missing.
@@ -118,12 +121,12 @@ def missing_program(command):
     return None if "/" in words[0] or shutil.which(words[0]) else words[0]
 
 
-def run(command, folder):
+def run(command, folder, time_limit=600):
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                    "OMP_NUM_THREADS": "1", "SPREKK_TERMINAL": "1"}
     return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=environment,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          timeout=600)
+                          timeout=time_limit)
 
 
 def check_commands(root, binary, mpiexec, page):
@@ -132,17 +135,46 @@ def check_commands(root, binary, mpiexec, page):
         for block in BLOCK.finditer((root / page).read_text()):
             if block["kind"] not in ("sh", "console") or block["reason"]:
                 continue
-            for command, expected in commands(block):
-                if missing := missing_program(command):
-                    yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
-                    continue
-                done = run(command, folder)
-                status = re.search(r"# exit (\d)", command)
-                if done.returncode != (int(status[1]) if status else 0):
-                    yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout}"
-                for line in expected:
-                    if line not in done.stdout.splitlines():
-                        yield f"{page}: {command}: does not print\n  {line}\nbut\n{done.stdout}"
+            yield from check_block(page, block, folder)
+
+
+def check_change(root, page, *targets):
+    """ccache, where it is, knows what the change does not touch: paths are taken from the folder of the copy."""
+    if missing := [program for program in ("cmake", "ninja", "patch") if not shutil.which(program)]:
+        yield Skipped(f"not run, this machine lacks {missing[0]}")
+        return
+    text = (root / page).read_text()
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder).resolve() / "copy"
+        shutil.copytree(root, copy, ignore=lambda where, names: [name for name in names if name in (".git", "output") or (
+            Path(where) == root and name.startswith("build"))])
+        os.environ.update(CCACHE_BASEDIR=str(copy), CCACHE_NOHASHDIR="1")
+        for block in BLOCK.finditer(text):
+            if block["kind"] == "diff":
+                (copy / "page.diff").write_text(block["content"])
+                for command in ("patch -p1 --fuzz=0 < page.diff", "cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release",
+                                "ninja -C build " + " ".join(targets)):
+                    done = run(command, copy, time_limit=1400)
+                    if done.returncode:
+                        yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout[-5000:]}"
+                        return
+            elif block["kind"] == "console" and block["reason"]:
+                yield from check_block(page, block, copy)
+
+
+def check_block(page, block, folder):
+    """Runs the commands of a block in the folder and compares what they print."""
+    for command, expected in commands(block):
+        if missing := missing_program(command):
+            yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
+            continue
+        done = run(command, folder)
+        status = re.search(r"# exit (\d)", command)
+        if done.returncode != (int(status[1]) if status else 0):
+            yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout}"
+        for line in expected:
+            if line not in done.stdout.splitlines():
+                yield f"{page}: {command}: does not print\n  {line}\nbut\n{done.stdout}"
 
 
 def check_reference(root, binary):
@@ -167,7 +199,7 @@ def check_doxygen(root, folder):
 def main():
     what, root, *rest = sys.argv[1:]
     check = {"quotes": check_quotes, "commands": check_commands, "reference": check_reference,
-             "doxygen": check_doxygen}[what]
+             "doxygen": check_doxygen, "change": check_change}[what]
     found = list(check(Path(root).resolve(), *rest))
     print("\n".join(found))
     wrong = any(not isinstance(message, Skipped) for message in found)

@@ -292,8 +292,37 @@ class Scenes(BadInput):
     def test_names_of_other_programs_are_known(self):
         for name, told in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
                            ("K_s", 'Did you mean "tangential stiffness"?'), ("Cohesion", "A joint has neither cohesion nor tensile strength"),
-                           ("JRC", "friction coefficient")):
+                           ("JRC", 'Did you mean "joint roughness coefficient"? It belongs to friction "Barton-Choubey"'),
+                           ("JCS", 'Did you mean "joint wall strength"?'), ("mu", 'Did you mean "friction coefficient"?\n'),
+                           ("phi", 'Did you mean "friction angle"?\n'), ("psi", 'Did you mean "dilation angle"?\n')):
             self.refuse_set([f'joint > "{name}": unknown. ', told], f"Materials.joint.{name}=1")
+
+    def test_laws_of_joints(self):
+        joint = "Materials.rough joint."
+
+        def refuse(expected, *sets):
+            err = self.refuse(expected, "check", self.scene("verification/joint_kinds_2d.xml"),
+                              *(word for entry in sets for word in ("--set", entry)))
+            self.assertEqual(err.count("\n"), 1, err)
+        refuse(['rough joint > "friction": is "Barton", must be one of "Coulomb", "Barton-Choubey"'], joint + "friction=Barton")
+        refuse(['rough joint > "closure": is "Linear", must be one of', 'Did you mean "linear"?'], joint + "closure=Linear")
+        refuse(['rough joint > "friction angle": unknown. It belongs to friction "Coulomb"; here it is "Barton-Choubey"'],
+               joint + "friction angle=30")
+        refuse(['planar joint > "joint wall strength": unknown. It belongs to friction "Barton-Choubey"; here it is "Coulomb"'],
+               "Materials.planar joint.joint wall strength=1e8")
+        refuse(['rough joint > "maximum closure": unknown. It belongs to closure "Barton-Bandis"; here it is "linear"'],
+               joint + "maximum closure=1e-3")
+        refuse(['rough joint: "largest friction angle" must not be below "residual friction angle"'], joint + "largest friction angle=20")
+        refuse(['rough joint > "joint wall strength": is 0, must be positive'], joint + "joint wall strength=0")
+        refuse(['joint > "normal stiffness": missing; it is required with closure "linear"'], "Materials.joint.type=joint",
+               "Materials.joint.friction angle=30", "Materials.joint.closure=linear", "Fractures.planar.material=joint")
+        text = self.scene("verification/joint_kinds_2d.xml").read_text()
+        line = '      <Parameter name="joint roughness coefficient" type="double" value="8"/>\n'
+        (self.folder / "a.xml").write_text(text.replace(line, ""))
+        self.refuse(['rough joint > "joint roughness coefficient": missing; it is required with friction "Barton-Choubey"'], "check",
+                    "a.xml")
+        self.refuse(["Sprekk > Materials > rough joint: ", '"joint roughness coefficient" = x-0.7 is -0.', "must be at least 0"], "run",
+                    self.scene("verification/joint_kinds_2d.xml"), "--set", joint + "joint roughness coefficient=x-0.7", any_point=True)
 
     def test_types_and_lengths(self):
         moved = "Boundary conditions.moved.displacement"

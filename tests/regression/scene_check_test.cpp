@@ -73,5 +73,19 @@ TEST(SceneCheck, EntriesOfTheOtherTypeOfMaterialAreRefused) {
   EXPECT_TRUE(has(error, "Materials > joint > \"density\": unknown")) << error;
 }
 
+TEST(SceneCheck, EntriesOfAnotherLawOfAJointAreRefused) {
+  auto scene = read_scene("seed/push_2d.xml");
+  auto& joint = scene.materials.at("joint");
+  joint.friction = "Barton-Choubey";
+  joint.entry("joint roughness coefficient") = 10;
+  joint.entry("joint wall strength") = 1e8;
+  joint.entry("residual friction angle") = 30;
+  const auto error = error_of(scene);
+  EXPECT_EQ(n_lines(error), 1) << error;
+  EXPECT_TRUE(has(error, "Materials > joint > \"friction coefficient\": unknown. It belongs to friction")) << error;
+  joint.friction_coefficient.reset();
+  EXPECT_EQ(error_of(scene), "");
+}
+
 }  // namespace
 }  // namespace sprekk::tests

@@ -46,8 +46,10 @@ void compare_fractures(Comparison& c) {
     if (!Mechanics::is_in(c.scene())) {
       if (!fracture.plastic_jump.empty())
         c.fail(jump, "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
-    } else if (joint && c.is_sound("Flow") && !joint->friction_coefficient && !joint->friction_angle) {
-      c.fail("Materials > " + fracture.material, "give either \"friction coefficient\" or \"friction angle\"");
+    } else if (joint && c.is_sound("Flow")) {
+      const std::string place = "Materials > " + fracture.material;
+      for (const auto& [entry, what] : joint->missing())
+        c.fail(entry.empty() ? place : fmt::format("{} > \"{}\"", place, entry), what);
     }
   }
 }

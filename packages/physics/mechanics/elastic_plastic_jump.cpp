@@ -4,6 +4,7 @@
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/joint_face.hpp"
+#include "physics/mechanics/joint_material.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,7 @@ class ElasticPlasticJump final : public assembly::Module {
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     add_outputs(d);
+    if (parameters_.n_kept > 0) d.history.push_back({"kept by laws", face, parameters_.n_kept});
     if (parameters_.holds_fluid) d.schur = {"face pressure"};
     return d;
   }
@@ -95,6 +97,7 @@ class ElasticPlasticJump final : public assembly::Module {
   Op at(const assembly::State& state) const {
     Op op = *op_;
     op.p_old = state.history[0];
+    if (parameters_.n_kept > 0) op.kept = state.history[2];
     op.factor = state.augmentation;
     op.tether = state.tether;
     op.anchor = state.anchor;
@@ -110,6 +113,16 @@ class ElasticPlasticJump final : public assembly::Module {
         op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
+  }
+
+  /// What laws keep of a face, on the host.
+  auto kept_on_host(const assembly::State& state) const {
+    typename View<Real**>::HostMirror numbers;
+    if (parameters_.n_kept > 0) numbers = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[2]);
+    return [numbers](LocalIndex f) {
+      if (numbers.extent(1) == 0) return laws::History();
+      return laws::History{&numbers(f, 0), static_cast<long>(numbers.stride(1))};
+    };
   }
 
   /// Means over the face of psi of the nodes of a side, in the order of face.nodes. A fracture that ends on this one
@@ -236,7 +249,8 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
-  op_ = std::make_unique<Op>(Op{frame, share, tip_share, bubble_mean, law, number, initial_jump(), augmentation, {}});
+  op_ =
+      std::make_unique<Op>(Op{frame, share, tip_share, bubble_mean, law, number, initial_jump(), augmentation, {}, {}});
 }
 
 template <Shape shape, bool tips>
@@ -247,10 +261,18 @@ void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
       op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
         const Point point = op.point(f, x);
         slid(f, 0) = point.state == ContactState::slip;
-        if (point.state == ContactState::stick) return;
-        Real elastic[dim], plastic[dim];
-        laws::split_jump<dim>(op.law(op.number(f)), point.state, point.w, point.traction, elastic, plastic);
-        for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
+        const auto& law = op.law(op.number(f));
+        if (point.state != ContactState::stick) {
+          Real elastic[dim], plastic[dim];
+          laws::split_jump<dim>(law, point.state, point.w, point.traction, point.p_old, elastic, plastic,
+                                op.history(f));
+          for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
+        }
+        if (op.kept.extent(1) == 0) return;
+        Real now[dim - 1];
+        for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
+        law.commit(laws::contact<dim>(point.traction[0], laws::norm(now), now, point.p_old, op.history(f)),
+                   op.kept_of(f));
       });
 }
 
@@ -274,24 +296,30 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 /// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
+  const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     const auto& law = parameters_.joints[joint_of(f)].law;
-    Real p[dim - 1], shear[dim - 1], widening[dim] = {1};  // derivative of w_n - g in w
+    Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // derivative of w_n - g in w
+    const auto contact = [&](Real normal, Real size) {
+      return laws::contact<dim>(normal, size, p, point.p_old, kept(f));
+    };
+    const Real compliance = law.compliance(contact(point.traction[0], 0));
     for (int k = 1; k < dim; ++k) {
       shear[k - 1] = point.traction[k];
-      p[k - 1] = point.w[k] - law.elastic.compliance * shear[k - 1];
+      p[k - 1] = point.w[k] - compliance * shear[k - 1];
     }
     const Real slipped = laws::norm(p), sheared = laws::norm(shear);
     const bool moved = laws::augmentation(law, point.constant).tangential * slipped > 1e-13 * sheared;
+    const Real dilates = dilation_slope(law, contact(point.traction[0], slipped));
     for (int k = 1; k < dim; ++k) {
       const Real along = moved ? p[k - 1] / slipped : sheared > 0 ? shear[k - 1] / sheared : 0;
-      widening[k] = -law.gap.dilation(along);
+      widening[k] = -dilates * along;
     }
     grips[f].augmentation += point.constant;
     grips[f].modulus = modulus_[f];
-    grips[f].gap += point.w[0] - law.gap(slipped, Real(0));
-    grips[f].limit += std::max(law.friction.bound(point.traction[0]), Real(0));
+    grips[f].gap += point.w[0] - law.gap(contact(0, slipped));
+    grips[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {
         grips[f].traction[i] += point.traction[k] * frame[k][i];
@@ -351,11 +379,11 @@ struct ElasticPlasticJump<shape, tips>::Shown {
   ContactState state;
   Real elastic[dim], plastic[dim], slip, aperture, slip_tendency = 0;
 
-  Shown(const Point& point, const JointParameters& joint, bool slid)
+  Shown(const Point& point, const JointParameters& joint, bool slid, const laws::History& kept)
       : point(point), state(slid ? ContactState::slip : ContactState::stick) {
     const bool open = point.state == ContactState::open;
     if (open) state = ContactState::open;
-    laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, elastic, plastic);
+    laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, point.p_old, elastic, plastic, kept);
     Real tangential[dim - 1], shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) {
       tangential[i] = plastic[i + 1];
@@ -363,7 +391,8 @@ struct ElasticPlasticJump<shape, tips>::Shown {
     }
     slip = laws::norm(tangential);
     aperture = joint.initial_aperture + point.w[0];
-    const Real bound = joint.law.friction.bound(point.traction[0]), size = laws::norm(shear);
+    const auto contact = laws::contact<dim>(point.traction[0], slip, tangential, point.p_old, kept);
+    const Real bound = joint.law.bound(contact), size = laws::norm(shear);
     if (!open && size > 0) slip_tendency = size / std::max(bound, size * 1e-16);
   }
 };
@@ -374,9 +403,10 @@ void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) cons
   const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary, const auto& append) {
     const auto values = [this, append](const assembly::State& state) {
       const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
+      const auto kept = kept_on_host(state);
       std::vector<Real> all;
       for_each_face(state, [&](LocalIndex f, const Point& point) {
-        append(f, Shown(point, parameters_.joints[joint_of(f)], slid(f, 0) != 0), all);
+        append(f, Shown(point, parameters_.joints[joint_of(f)], slid(f, 0) != 0, kept(f)), all);
       });
       return all;
     };
@@ -415,8 +445,13 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
     const auto& [law, aperture, plastic] = parameters.joints[joint_of(parameters, mesh, f)];
     const Real pressed = jumps[f][0];
-    jumps[f][0] = law.gap(std::hypot(plastic[0], plastic[1]), std::min(pressed, Real(0)));
-    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] = plastic[k - 1] + law.elastic.compliance * jumps[f][k];
+    const Real zero = 0;  // all that laws have kept of faces
+    laws::Contact<Real> at{std::min(pressed, Real(0)), 0, {}, {}, {&zero, 0}};
+    const Real compliance = law.compliance(at);
+    at.plastic_slip = std::hypot(plastic[0], plastic[1]);
+    for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = plastic[k];
+    jumps[f][0] = law.gap(at);
+    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] = plastic[k - 1] + compliance * jumps[f][k];
   }
   return jumps;
 }

@@ -31,6 +31,7 @@ struct ElasticPlasticJumpParameters {
   Real start = 0;            ///< time of the initial state, s
   bool tips = false;         ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
   bool holds_fluid = false;  ///< of unknown pressure, "face pressure": given is what it is at the start
+  int n_kept = 0;            ///< how many numbers the joints of any rank keep of a face, at most
 };
 
 /// w_0 of make_elastic_plastic_jump in the frames of owned fracture faces, m.
@@ -43,7 +44,8 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// (g0 + tan(theta) |p_0| + B(lambda_n), p_0 + lambda_t/K_t) with lambda =
 /// mean(sigma_0 n) + p n, of both sides in the mean, p the fluid's pressure at the start, so that the initial state is
 /// one of rest where sigma_0 is in equilibrium; zero without initial stress. History: the plastic tangential jump p_old
-/// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips.
+/// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips;
+/// "kept by laws" [face, n_kept], if there are any, which the laws themselves commit.
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
 /// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(mesh::Shape shape, ElasticPlasticJumpParameters parameters);

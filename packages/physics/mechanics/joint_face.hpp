@@ -26,6 +26,7 @@ namespace sprekk::physics {
 /// | augmentation | [face]                                                   | Pa/m | c, but for the factor        |
 /// | factor       | [face]; empty: 1                                         | -    | of c                         |
 /// | p_old        | [face, dim - 1]                                          | m    | plastic jump of the last step |
+/// | kept         | [face, number]; empty: none                              |      | what laws keep of a face     |
 /// | damping      | [face]; empty: zero                                      | -    | see damp()                   |
 /// | tether       |                                                          | -    | share of c, see contact()    |
 /// | anchor       | [face, 2 dim]                                            | m, Pa | jump, traction it pulls to |
@@ -49,6 +50,7 @@ struct JointFace {
   ConstView<Real**> rest;
   ConstView<Real*> augmentation;
   View<Real**> p_old;
+  View<Real**> kept = {};
   ConstView<Real*> damping = {};
   ConstView<Real*> factor = {};
   Real tether = 0;
@@ -60,6 +62,15 @@ struct JointFace {
   }
   KOKKOS_INLINE_FUNCTION laws::Augmentation constants(int f) const {
     return laws::augmentation(law(number(f)), constant(f));
+  }
+
+  KOKKOS_INLINE_FUNCTION laws::Numbers<Real> kept_of(int f) const {
+    if (kept.extent(1) == 0) return {};
+    return {&kept(f, 0), static_cast<long>(kept.stride(1))};
+  }
+  KOKKOS_INLINE_FUNCTION laws::History history(int f) const {
+    const auto numbers = kept_of(f);
+    return {numbers.first, numbers.stride};
   }
 
   /// w = mean of R (u+ - u-) over the face.
@@ -95,7 +106,7 @@ struct JointFace {
 
   /// The part of the traction that contact and friction bear, and the jump that goes with it: a tether bears
   /// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
-  /// stretches the joint as a whole: p = w_t - lambda_t/K_t.
+  /// stretches the joint as a whole: p = w_t - lambda_t/K_t, K_t being that at first loading.
   template <class T>
   KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
                                       T (&borne)[dim]) const {
@@ -103,7 +114,7 @@ struct JointFace {
       jump[k] = w[k];
       borne[k] = traction[k];
       if (tether == 0) continue;
-      const Real compliance = k == 0 ? 0 : law(number(f)).elastic.compliance;
+      const Real compliance = k == 0 ? 0 : law(number(f)).elastic.initial_compliance();
       Real there = 0;
       for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
       const T pull = tether * constant(f) * (w[k] - compliance * traction[k] - there);
@@ -119,7 +130,7 @@ struct JointFace {
     for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
     T jump[dim], borne[dim];
     contact(f, w, traction, jump, borne);
-    return laws::contact_residual<dim>(law(number(f)), constants(f), jump, borne, old, R);
+    return laws::contact_residual<dim>(law(number(f)), constants(f), jump, borne, old, R, history(f));
   }
 
   /// Jump, traction, residual, last plastic jump, state and constant of a face; what rounding may leave of the jump, m.
@@ -153,7 +164,7 @@ struct JointFace {
       R[k].fastAccessDx(k) -= stiffness;
       R[k].fastAccessDx(dim + k) += stiffness * compliance;
     };
-    for (int k = 1; k < dim; ++k) add(k, share * constants(f).tangential, joint.elastic.compliance);
+    for (int k = 1; k < dim; ++k) add(k, share * constants(f).tangential, joint.elastic.initial_compliance());
     if (state == laws::ContactState::open) add(0, share * constants(f).normal, joint.gap.closure.initial_compliance());
   }
 

@@ -3,11 +3,10 @@
 
 #include "base/expression.hpp"
 #include "laws/elasticity.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/joint_material.hpp"
 #include "physics/physics.hpp"
 #include "physics/properties.hpp"
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,18 +33,9 @@ struct Mechanics : Physics<Mechanics> {
     laws::Elasticity elasticity(const std::array<Real, 3>& x) const;
   };
 
-  struct Joint : Physics::Joint {
-    base::Expression tangential_stiffness = std::numeric_limits<Real>::infinity();
-    std::optional<base::Expression> friction_coefficient, friction_angle;  ///< exactly one where the rock deforms
-    base::Expression dilation_angle = 0, initial_gap = 0, initial_aperture = 0;
-    std::optional<base::Expression> normal_stiffness;  ///< needed where there is closure; absent: none
-    std::optional<base::Expression> maximum_closure;   ///< absent: infinite, closure is linear
+  struct Joint : Physics::Joint, JointMaterial {
     void describe(base::Section& section);
-    void check(base::Section& section) const;
-    bool is_uniform() const;                       ///< no value depends on the place
-    std::optional<Real> uniform_friction() const;  ///< mu, if it does not depend on the place
-    /// The law at a point; throws as elasticity() does.
-    JointParameters joint(const std::array<Real, 3>& x) const;
+    void check(base::Section& section) const { compare_entries(section); }
   };
 
   struct Bulk : Physics::Bulk {

@@ -3,7 +3,23 @@
 #include "physics/mechanics/interface_traction_balance.hpp"
 #include "physics/mechanics/tip_enrichment.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
+
+#include <algorithm>
+
 namespace sprekk::physics {
+
+namespace {
+
+/// How many numbers joints keep of a face, at most. Collective.
+int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
+  int here = 0, all = 0;
+  for (const auto& joint : joints) here = std::max(here, joint.law.n_history());
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, here, Teuchos::outArg(all));
+  return all;
+}
+
+}  // namespace
 
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
   const auto& bulk = parameters.bulk;
@@ -29,7 +45,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(make_interface_traction_balance(
       mesh.shape, {bulk.elasticity, bulk.body_force, bulk.initial_stress, bulk.elasticity_of_cell, fluid}));
-  modules.push_back(make_elastic_plastic_jump(mesh.shape, jump_parameters(mesh, parameters)));
+  auto jump = jump_parameters(mesh, parameters);
+  jump.n_kept = most_kept(mesh, parameters.joints);
+  modules.push_back(make_elastic_plastic_jump(mesh.shape, jump));
   if (mesh.n_global_enriched > 0) modules.push_back(make_tip_enrichment(mesh.shape, bulk, fluid));
   return modules;
 }

@@ -21,7 +21,7 @@ struct MechanicsParameters {
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
 
 /// What a mesh needs: the momentum of the bulk; with fractures, the traction balance of their sides and the split of
-/// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them.
+/// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them. Collective.
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
                                                               const MechanicsParameters& parameters);
 

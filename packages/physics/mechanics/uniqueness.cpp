@@ -28,6 +28,28 @@ std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   return laws::Elasticity{shear, uniaxial - 2 * shear};
 }
 
+/// The compressions, Pa, at which laws are asked how steep they are: those that strain the rock by 1e-5 to 1e-2, where
+/// it is uniform.
+std::array<Real, 2> compressions(const Scene& scene) {
+  const auto rock = bounding_rock(scene);
+  const Real G = rock ? rock->G : 1e10;
+  return {1e-5 * G, 1e-2 * G};
+}
+
+/// The slopes of bound and dilation at the compression where their product is largest, of a joint that has not slipped.
+std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& compressions) {
+  std::array<Real, 2> slopes{};
+  const Real zero = 0;  // all that laws have kept
+  constexpr int n = 40;
+  for (int k = 0; k <= n; ++k) {
+    const Real compression = compressions[0] * std::pow(compressions[1] / compressions[0], Real(k) / n);
+    const Real mu = physics::bound_slope(law, compression),
+               opens = physics::dilation_slope(law, {-compression, 0, {}, {}, {&zero, 0}});
+    if (mu * opens > slopes[0] * slopes[1]) slopes = {mu, opens};
+  }
+  return slopes;
+}
+
 using PerPiece = std::vector<int>;
 
 PerPiece over_ranks(const mesh::Mesh& mesh, Teuchos::EReductionType how, const PerPiece& here) {
@@ -89,18 +111,24 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
 }  // namespace
 
 std::string friction_doubt(const Scene& scene) {
-  std::string largest;
-  Real mu = 1;
+  const auto [least, most] = compressions(scene);
+  std::string material;
+  physics::JointMaterial::Slope steepest{1, true, 0};
   for (const auto& [name, fracture] : scene.fractures) {
-    const auto here = scene.materials.at(fracture.material).uniform_friction();
-    if (!here || *here <= mu) continue;
-    mu = *here;
-    largest = fracture.material;
+    const auto slope = scene.materials.at(fracture.material).friction_slope(least, most);
+    if (!slope || slope->largest <= steepest.largest) continue;
+    steepest = *slope;
+    material = fracture.material;
   }
-  if (largest.empty()) return "";
-  return fmt::format(
-      "the friction coefficient of \"{}\" is {:.4g}: above about 1 equilibrium need not exist, nor be unique", largest,
-      mu);
+  if (material.empty()) return "";
+  const std::string what =
+      steepest.constant
+          ? fmt::format("the friction coefficient of \"{}\" is {:.4g}", material, steepest.largest)
+          : fmt::format(
+                "the friction bound of \"{}\" rises up to {:.4g} times as fast as the compression, and faster "
+                "than it below {:.2g} Pa",
+                material, steepest.largest, steepest.up_to);
+  return what + ": above about 1 equilibrium need not exist, nor be unique";
 }
 
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
@@ -113,15 +141,16 @@ std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     const auto& material = scene.materials.at(fracture.material);
     if (!resisted[k] || !material.is_uniform()) continue;
     const auto law = material.joint({}).law;
-    const Real shear = law.friction.coefficient * (size / rock->G + law.elastic.compliance),
+    const auto [mu, dilation] = steepest(law, compressions(scene));
+    const Real shear = mu * (size / rock->G + law.elastic.initial_compliance()),
                normal = size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance();
-    if (!(law.gap.dilation.tangent * shear > normal)) continue;
+    if (!(dilation * shear > normal)) continue;
     const auto degrees = [](Real tangent) { return std::atan(tangent) * 180 / M_PI; };
     return fmt::format(
         "on reversal of slip on \"{}\" the solution may not be unique: its dilation angle is {:.4g} degrees, and above "
         "{:.4g} the friction bound falls faster than the shear traction (rock of size {:.4g} m); less dilation or "
         "friction, or a larger tangential stiffness, avoids this",
-        fracture.material, degrees(law.gap.dilation.tangent), degrees(normal / shear), size);
+        fracture.material, degrees(dilation), degrees(normal / shear), size);
   }
   return "";
 }

@@ -7,7 +7,8 @@
 
 namespace sprekk::physics {
 
-/// Names the joint with the largest friction coefficient above 1, and the coefficient; empty without such a joint.
+/// Names the joint whose friction bound rises most with the compression, by more than 1, and how much; empty without
+/// such a joint. Laws are asked at compressions that rock is under, G/1e5 to G/100.
 /// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
 std::string friction_doubt(const Scene& scene);
 
@@ -16,9 +17,10 @@ std::string friction_doubt(const Scene& scene);
 /// the load on a block that is free to move gives the normal traction: the bound does not fall then. In a block of
 /// height L with one fracture, slip that turns back by dp lowers the shear traction by K_s dp and, since dilation
 /// closes the fracture, friction's bound by mu tan(theta) k dp, with 1/K_s = L/G + 1/K_t and 1/k = L/(lambda + 2G) +
-/// B', B' <= 1/K_n the compliance of the closure. Where the bound falls faster, mu tan(theta)/K_s > 1/k, there are
-/// displacements for which sticking, slipping back and opening all satisfy the law. L is the largest extent of the
-/// domain and B' = 1/K_n; of several rocks, the largest G and the smallest lambda + 2G count. Collective.
+/// B', B' <= 1/K_n the compliance of the closure; mu and tan(theta) stand for the slopes of bound and dilation. Where
+/// the bound falls faster, mu tan(theta)/K_s > 1/k, there are displacements for which sticking, slipping back and
+/// opening all satisfy the law. L is the largest extent of the domain and B' = 1/K_n; of several rocks, the largest G
+/// and the smallest lambda + 2G count. Collective.
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -12,6 +12,9 @@
 
 namespace sprekk::laws::testing {
 
+/// The first kinds of each role, whose numbers tests set.
+using SimpleJoint = JointLaw<LinearShear, CoulombFriction, NormalGap<ConstantDilation, BartonBandisClosure>>;
+
 /// Solves A x = b by Gaussian elimination with partial pivoting; b becomes x.
 template <int n>
 void solve(Real (&A)[n][n], Real (&b)[n]) {
@@ -37,7 +40,7 @@ void solve(Real (&A)[n][n], Real (&b)[n]) {
 ///   w + lambda/k - d = 0,  R(w, lambda) = 0.
 template <int dim>
 struct SeriesBlock {
-  Joint law;
+  SimpleJoint law;
   Real k_n = 3, k_s = 1;
   Real c = 1;  ///< constant of the augmentation
   std::array<Real, dim - 1> p_old{};
@@ -65,8 +68,9 @@ struct SeriesBlock {
 
   /// The plastic tangential jump of the present state.
   std::array<Real, dim - 1> plastic() const {
-    Real elastic[dim], part[dim];
-    split_jump<dim>(law, state, w, lambda, elastic, part);
+    Real old[dim - 1], elastic[dim], part[dim];
+    std::copy(p_old.begin(), p_old.end(), old);
+    split_jump<dim>(law, state, w, lambda, old, elastic, part);
     std::array<Real, dim - 1> p;
     std::copy(part + 1, part + dim, p.begin());
     return p;
@@ -103,9 +107,9 @@ struct SeriesBlock {
 
 /// K_t = 2, mu = 0.6, theta = 10 degrees, g0 = 0.01, Du = 0.1, K_n = 5. With k_n = 3 and k_s = 1 the series stiffness
 /// in shear is K_s = 2/3.
-inline Joint reference_joint() {
-  Joint joint;
-  joint.elastic.compliance = 1 / 2.0;
+inline SimpleJoint reference_joint() {
+  SimpleJoint joint;
+  joint.elastic.inverse_stiffness = 1 / 2.0;
   joint.friction.coefficient = 0.6;
   joint.gap.initial = 0.01;
   joint.gap.dilation.tangent = std::tan(10 * 3.14159265358979323846 / 180);
@@ -114,9 +118,9 @@ inline Joint reference_joint() {
 }
 
 /// The same without dilation, closure and gap.
-inline Joint plain_joint() {
-  Joint joint = reference_joint();
-  joint.gap = NormalGap{};
+inline SimpleJoint plain_joint() {
+  SimpleJoint joint = reference_joint();
+  joint.gap = {};
   return joint;
 }
 
@@ -127,10 +131,10 @@ struct ClosedForm {
 };
 
 /// In each regime the normal force N solves the quadratic equation a N + Du N/(Du K_n + N) = b; one step from p_old.
-inline ClosedForm closed_form(const Joint& law, Real k_n, Real k_s, Real d_t, Real d_n, Real p_old) {
+inline ClosedForm closed_form(const SimpleJoint& law, Real k_n, Real k_s, Real d_t, Real d_n, Real p_old) {
   const Real Du = law.gap.closure.maximum, K_n = law.gap.closure.stiffness, g0 = law.gap.initial;
   const Real mu = law.friction.coefficient, tan = law.gap.dilation.tangent,
-             K_s = 1 / (1 / k_s + law.elastic.compliance);
+             K_s = 1 / (1 / k_s + law.elastic.inverse_stiffness);
   const auto normal_force = [&](Real a, Real b) {
     const Real half = (a * Du * K_n + Du - b) / 2;
     return (-half + std::sqrt(half * half + a * b * Du * K_n)) / a;

@@ -14,11 +14,9 @@ using laws::ContactState;
 
 JointParameters full_joint() {
   JointParameters joint;
-  joint.law.elastic.compliance = 0.5;
-  joint.law.friction.coefficient = 0.6;
-  joint.law.gap.initial = 0.01;
-  joint.law.gap.dilation.tangent = 0.2;
-  joint.law.gap.closure = {0.1, 5};
+  joint.law = {laws::LinearShear{0.5},
+               laws::CoulombFriction{0.6},
+               {0.01, laws::ConstantDilation{0.2}, laws::BartonBandisClosure{0.1, 5}}};
   joint.initial_aperture = 0.3;
   return joint;
 }

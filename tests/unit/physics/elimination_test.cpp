@@ -153,9 +153,9 @@ Dense jump_operator(const Rock& rock, const Face& face, const Blocks& blocks) {
 
 JointParameters simple_joint(Real compliance, Real maximum_closure) {
   JointParameters joint;
-  joint.law.elastic.compliance = compliance;
-  joint.law.friction.coefficient = 0.6;
-  joint.law.gap.closure = {maximum_closure, 5};
+  joint.law.elastic = laws::LinearShear{compliance};
+  joint.law.friction = laws::CoulombFriction{0.6};
+  joint.law.gap.closure = laws::BartonBandisClosure{maximum_closure, 5};
   return joint;
 }
 

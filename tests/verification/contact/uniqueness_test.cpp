@@ -11,9 +11,11 @@ namespace {
 /// back in one way only where mu tan(theta)/K_s < 1/k_n, tan(theta) < 5/27.
 constexpr Real k_n = 3, k_s = 1, K_s = 1 / 3.0, mu = 0.6, limit = 5 / 27.0;
 
-laws::Joint joint_with(Real tangent) {
-  laws::Joint law;
-  law.elastic.compliance = 2;
+using Joint = laws::JointLaw<laws::LinearShear, laws::CoulombFriction, laws::NormalGap<laws::ConstantDilation>>;
+
+Joint joint_with(Real tangent) {
+  Joint law;
+  law.elastic.inverse_stiffness = 2;
   law.friction.coefficient = mu;
   law.gap.dilation.tangent = tangent;
   return law;
@@ -21,7 +23,7 @@ laws::Joint joint_with(Real tangent) {
 
 /// The states of the block whose top is displaced by (d_n, d_t) after a slip by p_old >= 0: those of an open, a
 /// sticking and two sliding joints that satisfy the law.
-std::vector<laws::ContactState> states(const laws::Joint& law, Real d_n, Real d_t, Real p_old) {
+std::vector<laws::ContactState> states(const Joint& law, Real d_n, Real d_t, Real p_old) {
   using laws::ContactState;
   const Real T = law.gap.dilation.tangent, old[] = {p_old};
   std::vector<ContactState> found;

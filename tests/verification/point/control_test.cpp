@@ -91,16 +91,17 @@ Overrides random_case(std::mt19937& random) {
 
 /// The joint law in inequalities (section "elastic and plastic jump" of the theory), at every state of a path.
 void expect_lawful(const model::PointScene& scene, const std::vector<PointState>& states) {
-  const auto law = scene.materials.at("joint").joint({0, 0, 0}).law;
-  const Real K = 1 / law.elastic.compliance, mu = law.friction.coefficient, closure = law.gap.closure.maximum;
+  const auto value = [&](const char* entry) { return (*scene.materials.at("joint").entry(entry))({}, 0); };
+  const Real K = value("tangential stiffness"), mu = value("friction coefficient"), closure = value("maximum closure"),
+             K_n = value("normal stiffness"), dilation = std::tan(value("dilation angle") * M_PI / 180),
+             g0 = scene.materials.at("joint").initial_gap({}, 0);
   std::array<Real, 2> old = {0, 0};
   for (const auto& s : states) {
     SCOPED_TRACE(fmt::format("t = {}", s.t));
     const Real N = -s.traction[0], shear = std::hypot(s.traction[1], s.traction[2]);
     const Real p[] = {s.jump[1] - s.traction[1] / K, s.jump[2] - s.traction[2] / K};
     const Real step[] = {p[0] - old[0], p[1] - old[1]}, size = std::hypot(step[0], step[1]);
-    const Real gap = law.gap.initial + law.gap.dilation.tangent * std::hypot(p[0], p[1]) -
-                     closure * N / (closure * law.gap.closure.stiffness + N);
+    const Real gap = g0 + dilation * std::hypot(p[0], p[1]) - closure * N / (closure * K_n + N);
     const Real length = std::max({std::abs(s.jump[0]), std::abs(s.jump[1]), std::abs(s.jump[2]), closure});
     const Real stress = std::max(N, shear) + 1e-12 * K * length;
     ASSERT_GE(N, 0);

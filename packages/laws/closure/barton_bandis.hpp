@@ -1,0 +1,42 @@
+// Hyperbolic closure of a joint.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+#include <limits>
+
+namespace sprekk::laws {
+
+/// Normal closure under compression, the last term of (14), m (Barton and Bandis): B = lambda_n/(K_n - lambda_n/Du),
+/// continued as lambda_n/K_n, once continuously differentiable, for the tensile tractions that iterates visit. An
+/// infinite Du makes it lambda_n/K_n throughout, an infinite K_n none.
+struct BartonBandisClosure {
+  Real maximum = std::numeric_limits<Real>::infinity();    ///< Du, m; 0 is a joint that does not close
+  Real stiffness = std::numeric_limits<Real>::infinity();  ///< K_n at zero traction, Pa/m
+
+  static constexpr const char *name = "Barton-Bandis", *meaning = "hyperbolic (14)";
+  static std::vector<Parameter<BartonBandisClosure>> parameters() {
+    return {{&BartonBandisClosure::maximum, Entry{"maximum closure", "m", base::at_least(0).or_infinite(),
+                                                  "Du of the normal closure in (14); 0: none; infinite, or absent: "
+                                                  "closure is linear, the traction over K_n"}
+                                                .may_be_absent()
+                                                .with("normal stiffness")},
+            {&BartonBandisClosure::stiffness, Entry{"normal stiffness", "Pa/m", base::positive(),
+                                                    "K_n at zero traction; absent: the joint does not close"}
+                                                  .may_be_absent()
+                                                  .also_called({"kn", "jkn"})}};
+  }
+
+  /// Closed by how much: negative under compression.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    if (initial_compliance() == 0) return T(0);
+    if (at.lambda_n > 0) return at.lambda_n / stiffness;
+    return at.lambda_n / (stiffness - at.lambda_n / maximum);
+  }
+  /// Derivative at zero traction, m/Pa.
+  KOKKOS_INLINE_FUNCTION Real initial_compliance() const { return maximum == 0 ? 0 : 1 / stiffness; }
+};
+
+}  // namespace sprekk::laws

@@ -1,0 +1,30 @@
+// Coulomb's friction.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// Coulomb's bound on |lambda_t|, Pa (13): b = -mu lambda_n.
+struct CoulombFriction {
+  Real coefficient = 0;  ///< mu
+
+  static constexpr const char *name = "Coulomb", *meaning = "in proportion to the compression (13)";
+  static std::vector<Parameter<CoulombFriction>> parameters() {
+    return {
+        {&CoulombFriction::coefficient,
+         Entry{"friction coefficient", "-", base::at_least(0), "mu of the bound (13); or give the angle"}.also_called(
+             {"mu"})},
+        {&CoulombFriction::coefficient, Entry{"friction angle", "degree", base::at_least(0).below(90), "atan(mu) (3)"}
+                                            .converted(tangent_of_degrees)
+                                            .also_called({"phi"})}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    return -coefficient * at.lambda_n;
+  }
+};
+
+}  // namespace sprekk::laws

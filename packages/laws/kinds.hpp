@@ -1,0 +1,164 @@
+// Laws of which a material names one: what each of them says about itself, and a value that is one of them.
+#pragma once
+
+#include "base/bounds.hpp"
+#include "base/types.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace sprekk::laws {
+
+/// An entry of materials that gives a number of a law. It must be there unless it has a value otherwise or may be
+/// absent.
+struct Entry {
+  std::string name, unit;
+  base::Bounds bounds;
+  std::string meaning;
+  std::optional<Real> otherwise = {};    ///< the entry's value where it is absent
+  bool optional = false;                 ///< if it is absent, the number stays what it is in the law
+  Real (*number_of)(Real) = nullptr;     ///< the law's number of the entry's value; null: that value
+  std::string needs = {};                ///< the name of an entry that must be there if this one is, above 0
+  std::vector<std::string> others = {};  ///< what the entry is called elsewhere
+
+  Entry& or_else(Real value) { return otherwise = value, *this; }
+  Entry& may_be_absent() { return optional = true, *this; }
+  Entry& converted(Real (*function)(Real)) { return number_of = function, *this; }
+  Entry& with(const std::string& entry) { return needs = entry, *this; }
+  Entry& also_called(const std::vector<std::string>& names) { return others = names, *this; }
+};
+
+/// A number of the law K with its entry. Entries of one number are alternatives: exactly one of them is given.
+template <class K>
+struct Parameter {
+  Real K::*number;
+  Entry entry;
+};
+
+inline Real tangent_of_degrees(Real angle) { return std::tan(angle * 3.14159265358979323846 / 180); }
+inline Real reciprocal(Real value) { return 1 / value; }
+
+/// How many numbers a law keeps of each face from step to step: its static n_history, or none.
+template <class K, class = void>
+constexpr int history_size = 0;
+template <class K>
+constexpr int history_size<K, std::void_t<decltype(K::n_history)>> = K::n_history;
+
+/// Storage for one of several laws, which are copied as bytes.
+template <class K, class... More>
+union OneOf {
+  K first;
+  OneOf<More...> more;
+
+  KOKKOS_INLINE_FUNCTION OneOf() : first() {}
+  template <std::size_t i>
+  KOKKOS_INLINE_FUNCTION auto& get() {
+    if constexpr (i == 0) {
+      return first;
+    } else {
+      return more.template get<i - 1>();
+    }
+  }
+  template <std::size_t i>
+  KOKKOS_INLINE_FUNCTION const auto& get() const {
+    if constexpr (i == 0) {
+      return first;
+    } else {
+      return more.template get<i - 1>();
+    }
+  }
+};
+template <class K>
+union OneOf<K> {
+  K first;
+
+  KOKKOS_INLINE_FUNCTION OneOf() : first() {}
+  template <std::size_t i>
+  KOKKOS_INLINE_FUNCTION K& get() {
+    return first;
+  }
+  template <std::size_t i>
+  KOKKOS_INLINE_FUNCTION const K& get() const {
+    return first;
+  }
+};
+
+/// One of the laws Ks, the first of them unless it is told otherwise. Each is a struct of numbers with a `name` and a
+/// `meaning` (static, text), static parameters() that lists its numbers, and the functions of its role.
+template <class... Ks>
+class Kinds {
+  static_assert((std::is_trivially_copyable_v<Ks> && ...), "laws are copied to the device as bytes");
+
+ public:
+  Kinds() = default;
+  template <class K, class = std::enable_if_t<(std::is_same_v<K, Ks> || ...)>>
+  KOKKOS_INLINE_FUNCTION Kinds(const K& law) {
+    set(law, std::index_sequence_for<Ks...>());
+  }
+
+  /// use(law) of the law that this is: a switch over all kinds.
+  template <class Use>
+  KOKKOS_INLINE_FUNCTION auto visit(const Use& use) const {
+    return visit(use, std::index_sequence_for<Ks...>());
+  }
+
+  KOKKOS_INLINE_FUNCTION int n_history() const {
+    if constexpr ((history_size<Ks> + ... + 0) == 0) {
+      return 0;
+    } else {
+      return visit([](const auto& law) { return history_size<std::decay_t<decltype(law)>>; });
+    }
+  }
+
+ private:
+  template <class K, std::size_t... i>
+  KOKKOS_INLINE_FUNCTION void set(const K& law, std::index_sequence<i...>) {
+    const auto set_one = [&](auto index) {
+      constexpr std::size_t k = decltype(index)::value;
+      if constexpr (std::is_same_v<K, std::decay_t<decltype(law_.template get<k>())>>) {
+        kind_ = static_cast<int>(k);
+        law_.template get<k>() = law;
+      }
+    };
+    (set_one(std::integral_constant<std::size_t, i>()), ...);
+  }
+  template <class Use, std::size_t... i>
+  KOKKOS_INLINE_FUNCTION auto visit(const Use& use, std::index_sequence<i...>) const {
+    std::decay_t<decltype(use(law_.template get<0>()))> result{};
+    (void)((kind_ == static_cast<int>(i) && (result = use(law_.template get<i>()), true)) || ...);
+    return result;
+  }
+
+  int kind_ = 0;
+  OneOf<Ks...> law_;
+};
+
+/// How many numbers a law keeps of a face; of several kinds, the one that it is.
+template <class K>
+KOKKOS_INLINE_FUNCTION int n_history(const K&) {
+  return history_size<K>;
+}
+template <class... Ks>
+KOKKOS_INLINE_FUNCTION int n_history(const Kinds<Ks...>& law) {
+  return law.n_history();
+}
+
+/// Moves the numbers that a law keeps to the end of a step: law.commit(contact, numbers), if it keeps any.
+template <class K, class At, class Kept>
+KOKKOS_INLINE_FUNCTION void commit(const K& law, const At& at, const Kept& kept) {
+  if constexpr (history_size<K> != 0) law.commit(at, kept);
+}
+template <class At, class Kept, class... Ks>
+KOKKOS_INLINE_FUNCTION void commit(const Kinds<Ks...>& law, const At& at, const Kept& kept) {
+  if constexpr ((history_size<Ks> + ... + 0) != 0)
+    law.visit([&](const auto& one) {
+      commit(one, at, kept);
+      return 0;
+    });
+}
+
+}  // namespace sprekk::laws

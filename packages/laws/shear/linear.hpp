@@ -1,0 +1,33 @@
+// The elastic part of the tangential jump.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+#include <limits>
+
+namespace sprekk::laws {
+
+/// Elastic part of the tangential jump (12), m: u_t^e = lambda_t / K_t.
+struct LinearShear {
+  Real inverse_stiffness = 0;  ///< 1/K_t, m/Pa; 0 is a rigid joint
+
+  static constexpr const char *name = "linear", *meaning = "in proportion to the shear traction (12)";
+  static std::vector<Parameter<LinearShear>> parameters() {
+    return {{&LinearShear::inverse_stiffness,
+             Entry{"tangential stiffness", "Pa/m", base::positive_or_infinite(),
+                   "K_t of the elastic part of the tangential jump (12); infinite: all tangential jump is plastic"}
+                 .or_else(std::numeric_limits<Real>::infinity())
+                 .converted(reciprocal)
+                 .also_called({"ks", "kt", "jks", "shear stiffness"})}};
+  }
+
+  /// u_t^e per lambda_t, m/Pa.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>&) const {
+    return inverse_stiffness;
+  }
+  KOKKOS_INLINE_FUNCTION Real initial_compliance() const { return inverse_stiffness; }
+};
+
+}  // namespace sprekk::laws

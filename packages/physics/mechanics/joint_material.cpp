@@ -1,0 +1,364 @@
+#include "physics/mechanics/joint_material.hpp"
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+
+#include <Sacado.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::physics {
+
+namespace {
+
+using Value = JointMaterial::Value;
+using laws::Entry;
+
+/// What a kind says about itself. Entries of the same number are alternatives.
+struct Kind {
+  std::string name, meaning;
+  std::vector<Entry> entries;
+  std::vector<int> number;  // of each entry
+};
+
+template <class K>
+Kind kind() {
+  Kind result{K::name, K::meaning, {}, {}};
+  const auto parameters = K::parameters();
+  for (const auto& parameter : parameters) {
+    const auto same = [&](const auto& other) { return other.number == parameter.number; };
+    result.entries.push_back(parameter.entry);
+    result.number.push_back(
+        static_cast<int>(std::find_if(parameters.begin(), parameters.end(), same) - parameters.begin()));
+  }
+  return result;
+}
+
+template <class... Ks>
+std::vector<Kind> kinds(const laws::Kinds<Ks...>&) {
+  return {kind<Ks>()...};
+}
+
+/// A part of the joint's law, and the kinds that it may be.
+struct Role {
+  std::string name, meaning;
+  std::string JointMaterial::*chosen;
+  std::vector<Kind> kinds;
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& one : kinds) all.push_back(one.name);
+    return all;
+  }
+  const Kind* kind_of(const JointMaterial& material) const {
+    for (const auto& one : kinds)
+      if (one.name == material.*chosen) return &one;
+    return nullptr;
+  }
+  /// Of all kinds, each name once.
+  std::vector<Entry> entries() const {
+    std::vector<Entry> all;
+    for (const auto& one : kinds)
+      for (const auto& entry : one.entries)
+        if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.name == entry.name; }))
+          all.push_back(entry);
+    return all;
+  }
+  std::vector<std::string> kinds_with(const std::string& entry) const {
+    std::vector<std::string> with;
+    for (const auto& one : kinds)
+      for (const auto& other : one.entries)
+        if (other.name == entry) with.push_back(one.name);
+    return with;
+  }
+  /// Those that need this very entry.
+  std::vector<std::string> kinds_that_need(const std::string& entry) const {
+    std::vector<std::string> needed;
+    for (const auto& one : kinds)
+      for (std::size_t k = 0; k < one.entries.size(); ++k)
+        if (one.entries[k].name == entry && std::count(one.number.begin(), one.number.end(), one.number[k]) == 1 &&
+            !one.entries[k].optional && !one.entries[k].otherwise)
+          needed.push_back(one.name);
+    return needed;
+  }
+};
+
+const std::vector<Role>& roles() {
+  static const std::vector<Role> all = {
+      {"tangential elasticity", "law of the elastic part of the tangential jump", &JointMaterial::tangential_elasticity,
+       kinds(laws::ShearKinds())},
+      {"friction", "law of the bound on the shear traction", &JointMaterial::friction, kinds(laws::FrictionKinds())},
+      {"dilation", "law of the opening by slip", &JointMaterial::dilation, kinds(laws::DilationKinds())},
+      {"closure", "law of the closing under compression", &JointMaterial::closure, kinds(laws::ClosureKinds())}};
+  return all;
+}
+
+/// `Coulomb: in proportion to the compression; Barton-Choubey: ...`
+std::string meaning_of(const Role& role) {
+  std::string text = role.meaning;
+  for (const auto& one : role.kinds) text += fmt::format("; {}: {}", one.name, one.meaning);
+  return text;
+}
+
+const Entry* entry_of(const Kind& kind, const std::string& name) {
+  for (const auto& entry : kind.entries)
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+bool is_zero(const Value& value) { return value.is_constant() && value({}, 0) == 0; }
+
+/// Calls visit(entry, value) for the entries that the chosen kinds have and the material gives.
+template <class Visit>
+void for_each_given(const JointMaterial& material, const Visit& visit) {
+  for (const auto& role : roles())
+    if (const auto* chosen = role.kind_of(material))
+      for (const auto& entry : chosen->entries)
+        if (const auto& value = material.entry(entry.name)) visit(entry, *value);
+}
+
+/// Calls visit(names of the alternatives, which of them are given) for each number of the chosen kinds that needs one.
+template <class Visit>
+void for_each_number(const JointMaterial& material, const Role& role, const Visit& visit) {
+  const auto* chosen = role.kind_of(material);
+  for (int number = 0; chosen && number < static_cast<int>(chosen->entries.size()); ++number) {
+    std::vector<std::string> names, given;
+    bool needed = false;
+    for (std::size_t k = 0; k < chosen->entries.size(); ++k) {
+      if (chosen->number[k] != number) continue;
+      const auto& entry = chosen->entries[k];
+      names.push_back(entry.name);
+      needed = needed || !(entry.optional || entry.otherwise);
+      if (material.entry(entry.name)) given.push_back(entry.name);
+    }
+    if (!names.empty()) visit(names, given, needed);
+  }
+}
+
+/// `give either "friction coefficient" or "friction angle"`
+std::string give_one_of(const std::vector<std::string>& names) {
+  std::string text = "give either ";
+  for (std::size_t k = 0; k < names.size(); ++k)
+    text += fmt::format("{}\"{}\"", k == 0 ? "" : k + 1 == names.size() ? " or " : ", ", names[k]);
+  return text;
+}
+
+/// The meaning in the reference tells whose entry it is.
+void describe_entry(base::Section& s, const Role& role, const Entry& entry, std::optional<Value>& value, bool of_all) {
+  const auto with = role.kinds_with(entry.name);
+  if (of_all && !value && entry.otherwise) value = *entry.otherwise;
+  std::string meaning = entry.meaning;
+  if (of_all && with.size() < role.kinds.size())
+    meaning = fmt::format("{} {}: {}", role.name, base::quoted_list(with), meaning);
+  const auto needed = role.kinds_that_need(entry.name);
+  if (of_all && !needed.empty()) meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
+  s.entry(value, entry.name, entry.unit, entry.bounds, meaning);
+  if (value && !value->constant_in_time())
+    s.fail(entry.name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
+}
+
+void describe_role(base::Section& s, JointMaterial& material, const Role& role, bool of_all) {
+  s.choice(material.*role.chosen, role.name, role.names(), meaning_of(role));
+  of_all = of_all || !s.is_sound();
+  const auto* chosen = role.kind_of(material);
+  for (const auto& entry : role.entries()) {
+    const auto* own = chosen ? entry_of(*chosen, entry.name) : nullptr;
+    auto& value = material.entry(entry.name);
+    if (own && !value && own->otherwise) value = *own->otherwise;
+    // those of other kinds that a host has set are written, so that they are refused when they are read
+    const bool is_set = value && !(entry.otherwise && value->text() == Value(*entry.otherwise).text());
+    if (own || of_all || is_set)
+      describe_entry(s, role, own ? *own : entry, value, of_all);
+    else
+      s.hint({entry.name}, fmt::format("It belongs to {} {}; here it is \"{}\"", role.name,
+                                       base::quoted_list(role.kinds_with(entry.name)), material.*role.chosen));
+    const std::string of =
+        own ? "" : fmt::format(" It belongs to {} {}", role.name, base::quoted_list(role.kinds_with(entry.name)));
+    s.hint(entry.others, fmt::format("Did you mean \"{}\"?{}", entry.name, of));
+  }
+}
+
+/// The entries that hosts set by name in the code.
+std::optional<Value> JointMaterial::*member_of(const std::string& entry) {
+  using Material = JointMaterial;
+  const std::pair<const char*, std::optional<Value> Material::*> members[] = {
+      {"tangential stiffness", &Material::tangential_stiffness},
+      {"friction coefficient", &Material::friction_coefficient},
+      {"friction angle", &Material::friction_angle},
+      {"dilation angle", &Material::dilation_angle},
+      {"maximum closure", &Material::maximum_closure},
+      {"normal stiffness", &Material::normal_stiffness}};
+  for (const auto& [name, member] : members)
+    if (entry == name) return member;
+  return nullptr;
+}
+
+template <class K, class = void>
+constexpr bool has_defect = false;
+template <class K>
+constexpr bool has_defect<K, std::void_t<decltype(std::declval<K>().defect())>> = true;
+
+/// The law K with the material's values at x.
+template <class K>
+K law_at(const JointMaterial& material, const JointMaterial::Point& x) {
+  K law;
+  for (const auto& [number, entry] : K::parameters()) {
+    const auto& value = material.entry(entry.name);
+    if (!value && !entry.otherwise) continue;
+    const Real v = value ? (*value)(x, 0) : *entry.otherwise;
+    law.*number = entry.number_of ? entry.number_of(v) : v;
+  }
+  if constexpr (has_defect<K>) {
+    const std::string defect = law.defect();
+    SPREKK_CHECK(defect.empty(), "{}", defect);
+  }
+  return law;
+}
+
+template <class Part, class... Ks>
+void set_part(Part& part, const laws::Kinds<Ks...>&, const std::string& kind, const JointMaterial& material,
+              const JointMaterial::Point& x) {
+  ((kind == Ks::name ? void(part = law_at<Ks>(material, x)) : void()), ...);
+}
+
+}  // namespace
+
+JointMaterial::JointMaterial() {
+  for (const auto& role : roles()) this->*role.chosen = role.kinds.front().name;
+}
+
+std::optional<Value>& JointMaterial::entry(const std::string& name) {
+  const auto member = member_of(name);
+  return member ? this->*member : more[name];
+}
+
+const std::optional<Value>& JointMaterial::entry(const std::string& name) const {
+  static const std::optional<Value> none;
+  if (const auto member = member_of(name)) return this->*member;
+  const auto found = more.find(name);
+  return found == more.end() ? none : found->second;
+}
+
+void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
+  for (const auto& role : roles()) {
+    if (role.name == "closure") s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
+    describe_role(s, *this, role, of_all_kinds);
+  }
+  s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
+  for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
+    if (!value->constant_in_time())
+      s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
+  s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
+}
+
+void JointMaterial::compare_entries(base::Section& s) const {
+  for (const auto& role : roles())
+    for_each_number(*this, role, [&](const auto& names, const auto& given, bool) {
+      if (given.size() > 1) s.fail(give_one_of(names));
+    });
+  for_each_given(*this, [&](const Entry& entry, const Value& value) {
+    if (!entry.needs.empty() && !is_zero(value) && !this->entry(entry.needs))
+      s.fail(entry.needs, fmt::format("missing; it is required with a \"{}\" above 0", entry.name));
+  });
+  if (!s.complete() || !is_uniform() || !missing().empty()) return;
+  try {
+    joint({});
+  } catch (const Error& error) {  // what only the numbers together tell
+    s.fail(error.what());
+  }
+}
+
+bool JointMaterial::is_uniform() const {
+  bool uniform = initial_gap.is_constant() && initial_aperture.is_constant();
+  for_each_given(*this, [&](const Entry&, const Value& value) { uniform = uniform && value.is_constant(); });
+  return uniform;
+}
+
+std::vector<std::array<std::string, 2>> JointMaterial::missing() const {
+  std::vector<std::array<std::string, 2>> all;
+  for (const auto& role : roles())
+    for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
+      if (!needed || !given.empty()) return;
+      if (names.size() > 1)
+        all.push_back({"", give_one_of(names)});
+      else
+        all.push_back({names[0], fmt::format("missing; it is required with {} \"{}\"", role.name, this->*role.chosen)});
+    });
+  return all;
+}
+
+void JointMaterial::check(const Point& x) const {
+  const auto check_value = [&](const std::string& name, const Value& value, const base::Bounds& bounds) {
+    if (value.is_constant()) return;  // checked when it was read
+    const Real v = value(x, 0);
+    SPREKK_CHECK(bounds.contains(v), "\"{}\" = {} is {} at ({}, {}, {}), must be {}", name,
+                 base::shortened(value.text()), v, x[0], x[1], x[2], bounds.text());
+  };
+  for_each_given(*this, [&](const Entry& entry, const Value& value) { check_value(entry.name, value, entry.bounds); });
+  check_value("initial gap", initial_gap, base::any());
+  check_value("initial aperture", initial_aperture, base::at_least(0));
+}
+
+JointParameters JointMaterial::joint(const Point& x) const {
+  check(x);
+  for (const auto& [entry, what] : missing())
+    throw Error(entry.empty() ? what : fmt::format("\"{}\": {}", entry, what));
+  JointParameters joint;
+  set_part(joint.law.elastic, laws::ShearKinds(), tangential_elasticity, *this, x);
+  set_part(joint.law.friction, laws::FrictionKinds(), friction, *this, x);
+  set_part(joint.law.gap.dilation, laws::DilationKinds(), dilation, *this, x);
+  set_part(joint.law.gap.closure, laws::ClosureKinds(), closure, *this, x);
+  joint.law.gap.initial = initial_gap(x, 0);
+  joint.initial_aperture = initial_aperture(x, 0);
+  return joint;
+}
+
+std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Real largest) const {
+  const auto& role =
+      *std::find_if(roles().begin(), roles().end(), [](const auto& one) { return one.name == "friction"; });
+  bool known = true;
+  for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
+    for (const auto& name : given) known = known && entry(name)->is_constant();
+    known = known && !(needed && given.empty());
+  });
+  if (!known) return {};
+  laws::Joint law;
+  set_part(law.friction, laws::FrictionKinds(), friction, *this, {});
+  Slope slope{-std::numeric_limits<Real>::infinity(), true, 0};
+  Real first = 0;
+  constexpr int n = 40;  // compressions, evenly spaced in their logarithm
+  for (int k = 0; k <= n; ++k) {
+    const Real compression = least * std::pow(largest / least, Real(k) / n), here = bound_slope(law, compression);
+    if (k == 0) first = here;
+    slope.constant = slope.constant && std::abs(here - first) <= 1e-12 * std::abs(first);
+    slope.largest = std::max(slope.largest, here);
+    if (here > 1) slope.up_to = compression;
+  }
+  return slope;
+}
+
+Real bound_slope(const laws::Joint& law, Real compression) {
+  using Fad = Sacado::Fad::SFad<Real, 1>;
+  laws::Contact<Fad> at;
+  at.lambda_n = Fad(1, 0, -compression);
+  const Real zero = 0;
+  at.history = {&zero, 0};
+  return -law.bound(at).dx(0);
+}
+
+Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
+  using Fad = Sacado::Fad::SFad<Real, 1>;
+  laws::Contact<Fad> with;
+  with.lambda_n = at.lambda_n;
+  with.plastic_slip = Fad(1, 0, at.plastic_slip);
+  for (int i = 0; i < 2; ++i) {
+    with.plastic_jump[i] = at.plastic_jump[i];
+    with.last_plastic_jump[i] = at.last_plastic_jump[i];
+  }
+  with.history = at.history;
+  return law.gap.dilation.opening(with).dx(0);
+}
+
+}  // namespace sprekk::physics

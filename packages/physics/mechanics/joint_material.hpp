@@ -1,0 +1,61 @@
+// The entries of a material that say how a joint deforms, slides and closes.
+#pragma once
+
+#include "base/expression.hpp"
+#include "base/parameters.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// A joint's laws by their names, with the values of their entries; see laws/joint_kinds.hpp. Every number may be an
+/// expression of x, y, z.
+struct JointMaterial {
+  using Value = base::Expression;
+  using Point = std::array<Real, 3>;
+
+  std::string tangential_elasticity, friction, dilation, closure;  ///< kinds; at first the first ones of their lists
+
+  std::optional<Value> tangential_stiffness, friction_coefficient, friction_angle, dilation_angle, maximum_closure,
+      normal_stiffness;
+  std::map<std::string, std::optional<Value>> more;  ///< of all other entries of kinds, by their names
+  Value initial_gap = 0, initial_aperture = 0;
+
+  JointMaterial();
+  std::optional<Value>& entry(const std::string& name);  ///< of a kind, e.g. "friction angle"
+  const std::optional<Value>& entry(const std::string& name) const;
+
+  /// The entries of the kinds that are named; of all kinds, where it is not known yet which the material has.
+  void describe(base::Section& section, bool of_all_kinds);
+  /// Reports what entries tell together, after the last entry of a section without errors.
+  void compare_entries(base::Section& section) const;
+  /// What is missing for a joint of rock that deforms, as pairs (entry, what is wrong), the entry empty if there are
+  /// several that would do.
+  std::vector<std::array<std::string, 2>> missing() const;
+  bool is_uniform() const;  ///< no value depends on the place
+  /// The laws at a point. Throws an Error that names the entry, the value and the point where a value is out of range.
+  JointParameters joint(const Point& x) const;
+  void check(const Point& x) const;  ///< throws the same
+
+  /// How much faster than the compression the bound on the shear traction rises, by the law's derivative.
+  struct Slope {
+    Real largest;   ///< for compressions between two
+    bool constant;  ///< the same for all of them
+    Real up_to;     ///< the largest of these compressions at which it exceeds 1, Pa; 0: none
+  };
+  /// Nothing if friction is not complete or depends on the place.
+  std::optional<Slope> friction_slope(Real least_compression, Real largest_compression) const;
+};
+
+/// -db/dlambda_n of the bound of a joint that has not slipped.
+Real bound_slope(const laws::Joint& law, Real compression);
+
+/// How much the joint opens per plastic slip, m/m; `at` has the numbers that the joint keeps.
+Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at);
+
+}  // namespace sprekk::physics

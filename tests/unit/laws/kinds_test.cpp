@@ -1,0 +1,218 @@
+// What every law of laws/joint_kinds.hpp must fulfil, and how several laws are one.
+#include "laws/joint.hpp"
+#include "series_block.hpp"
+
+#include <set>
+#include <vector>
+
+namespace sprekk::laws::testing {
+namespace {
+
+/// A value that the entry allows, of the size that its unit suggests.
+Real typical(const Entry& entry) {
+  if (entry.otherwise && std::isfinite(*entry.otherwise) && *entry.otherwise != 0) return *entry.otherwise;
+  const std::pair<const char*, Real> usual[] = {{"Pa", 4e7}, {"degree", 25}, {"m", 2e-4}, {"Pa/m", 3e10}};
+  for (const auto& [unit, value] : usual)
+    if (entry.unit == unit && entry.bounds.contains(value)) return value;
+  for (const Real value : {0.7, 8.0, 0.0, -0.5})
+    if (entry.bounds.contains(value)) return value;
+  ADD_FAILURE() << entry.name << ": add a value that it may have";
+  return 0;
+}
+
+template <class K>
+K typical() {
+  K law;
+  for (const auto& [number, entry] : K::parameters()) {
+    const Real value = typical(entry);
+    law.*number = entry.number_of ? entry.number_of(value) : value;
+  }
+  return law;
+}
+
+template <class Test, class... Ks>
+void for_each_kind(const Kinds<Ks...>&, const Test& test) {
+  const auto test_one = [&](const auto& law) {
+    SCOPED_TRACE(law.name);
+    test(law);
+  };
+  (test_one(typical<Ks>()), ...);
+}
+
+/// The tractions of solutions and those that iterates visit; slips; numbers that laws have kept.
+const Real tractions[] = {-1e12, -1e9, -4e7, -1e6, -2e4, -10, -1e-9, 0, 1e-9, 10, 1e6};
+const Real slips[] = {0, 1e-12, 1e-5, 3e-3};
+const Real kept[] = {0, 1e-4, 1};
+
+template <class T>
+Contact<T> contact_at(const T& lambda_n, const T& slip, const Real* history) {
+  Contact<T> at;
+  at.lambda_n = lambda_n;
+  at.plastic_slip = at.plastic_jump[0] = slip;
+  at.history = {history, 0};  // all numbers are the same
+  return at;
+}
+
+/// f(contact) is finite and its derivatives by Sacado are those of differences, at a kink those of one side.
+template <class F>
+void expect_differentiable(const F& f) {
+  using Fad = Sacado::Fad::SFad<Real, 2>;
+  for (const Real history : kept)
+    for (const Real lambda_n : tractions)
+      for (const Real slip : slips) {
+        SCOPED_TRACE(::testing::Message() << lambda_n << " Pa, " << slip << " m, kept " << history);
+        const Fad value = f(contact_at(Fad(2, 0, lambda_n), Fad(2, 1, slip), &history));
+        const auto at = [&](Real traction, Real slipped) { return f(contact_at(traction, slipped, &history)); };
+        ASSERT_EQ(value.val(), at(lambda_n, slip));
+        ASSERT_TRUE(std::isfinite(value.val()));
+        for (int i = 0; i < 2; ++i) {
+          const Real h = std::max(i == 0 ? 1e-6 * std::abs(lambda_n) : 1e-4 * slip, i == 0 ? 1e-12 : 1e-15);
+          const Real above = i == 0 ? at(lambda_n + h, slip) : at(lambda_n, slip + h),
+                     below = i == 0 ? at(lambda_n - h, slip) : at(lambda_n, std::max(slip - h, Real(0)));
+          const Real size = std::max(std::abs(above), std::abs(below));
+          const Real tolerance = 1e-5 * std::abs(value.dx(i)) + 1e-14 * size / h;
+          const Real nearest = std::min({std::abs(value.dx(i) - (above - below) / (2 * h)),
+                                         std::abs(value.dx(i) - (above - value.val()) / h),
+                                         std::abs(value.dx(i) - (value.val() - below) / h)});
+          ASSERT_TRUE(std::isfinite(value.dx(i)));
+          EXPECT_LE(nearest, tolerance) << "derivative " << i;
+        }
+      }
+}
+
+Contact<Real> unloaded() {
+  static const Real zero = 0;
+  return contact_at(Real(0), Real(0), &zero);
+}
+
+TEST(KindsOfJoints, FrictionHasItsDerivatives) {
+  for_each_kind(FrictionKinds(), [](const auto& law) {
+    expect_differentiable([&](const auto& at) { return law.bound(at); });
+    EXPECT_GE(law.bound(unloaded()), 0);
+  });
+}
+
+TEST(KindsOfJoints, DilationHasItsDerivatives) {
+  for_each_kind(DilationKinds(), [](const auto& law) {
+    expect_differentiable([&](const auto& at) { return law.opening(at); });
+    EXPECT_EQ(law.opening(unloaded()), 0);
+  });
+}
+
+TEST(KindsOfJoints, ClosureHasItsDerivatives) {
+  using Fad = Sacado::Fad::SFad<Real, 1>;
+  for_each_kind(ClosureKinds(), [](const auto& law) {
+    expect_differentiable([&](const auto& at) { return law.opening(at); });
+    EXPECT_EQ(law.opening(unloaded()), 0);
+    const Real zero = 0;
+    EXPECT_DOUBLE_EQ(law.opening(contact_at(Fad(1, 0, 0.0), Fad(0), &zero)).dx(0), law.initial_compliance());
+  });
+}
+
+TEST(KindsOfJoints, ElasticityHasItsDerivatives) {
+  for_each_kind(ShearKinds(), [](const auto& law) {
+    expect_differentiable([&](const auto& at) { return law.compliance(at); });
+    EXPECT_EQ(law.compliance(unloaded()), law.initial_compliance());
+  });
+}
+
+/// No two entries of a law, and no two laws of a role, have a name in common; entries of the same name in several laws
+/// measure the same.
+template <class... Ks>
+void expect_distinct(const Kinds<Ks...>&) {
+  const std::set<std::string> names = {Ks::name...};
+  EXPECT_EQ(names.size(), sizeof...(Ks));
+  std::map<std::string, std::string> units;
+  const auto expect_own = [&](const auto& parameters) {
+    std::set<std::string> own;
+    for (const auto& parameter : parameters) {
+      const auto& entry = parameter.entry;
+      EXPECT_TRUE(own.insert(entry.name).second) << entry.name;
+      EXPECT_EQ(units.emplace(entry.name, entry.unit).first->second, entry.unit) << entry.name;
+      EXPECT_FALSE(entry.meaning.empty());
+    }
+  };
+  (expect_own(Ks::parameters()), ...);
+}
+
+TEST(KindsOfJoints, HaveNamesOfTheirOwn) {
+  expect_distinct(ShearKinds());
+  expect_distinct(FrictionKinds());
+  expect_distinct(DilationKinds());
+  expect_distinct(ClosureKinds());
+}
+
+/// A joint that closes like a spring up to the largest compression that it has known, and half as far beyond it.
+struct Pressed {
+  static constexpr int n_history = 1;
+  Real compliance = 0;
+  static constexpr const char *name = "pressed", *meaning = "";
+
+  template <class T>
+  T opening(const Contact<T>& at) const {
+    const Real known = at.history[0];
+    if (-at.lambda_n <= known) return compliance * at.lambda_n;
+    return compliance * (at.lambda_n - known) / 2;
+  }
+  Real initial_compliance() const { return compliance / 2; }
+  void commit(const Contact<Real>& at, const Numbers<Real>& kept) const { kept[0] = std::max(kept[0], -at.lambda_n); }
+};
+
+/// Coulomb's law whose coefficient falls with the length of the path that the joint has slipped.
+struct Worn {
+  static constexpr int n_history = 2;
+  Real coefficient = 0;
+  static constexpr const char *name = "worn", *meaning = "";
+
+  template <class T>
+  T bound(const Contact<T>& at) const {
+    return -coefficient / (1 + at.history[0]) * at.lambda_n;
+  }
+  void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    kept[0] = at.history[0] + std::abs(at.plastic_jump[0] - at.last_plastic_jump[0]);
+    kept[1] += 1;
+  }
+};
+
+TEST(Kinds, AreTheLawThatTheyAreGiven) {
+  using One = Kinds<CoulombFriction, BartonChoubeyFriction, Worn>;
+  const auto bound = [](const One& law, Real compression) {
+    const Real zero = 0;
+    return law.visit([&](const auto& one) { return one.bound(contact_at(-compression, Real(0), &zero)); });
+  };
+  const BartonChoubeyFriction rough{10, 100e6, 30, 70};
+  EXPECT_EQ(bound(One(), 3), 0);
+  EXPECT_EQ(bound(One(CoulombFriction{0.5}), 4), 2);
+  EXPECT_NEAR(bound(One(rough), 1e6), 1.1917535926e6, 1e-3);
+  One law = rough;
+  EXPECT_EQ(law.n_history(), 0);
+  law = Worn{0.25};
+  EXPECT_EQ(law.n_history(), 2);
+  EXPECT_EQ(bound(law, 4), 1);
+}
+
+/// Each law finds its own numbers among those of the face, in whatever order they are stored.
+TEST(JointLaw, LawsKeepNumbersOfAFace) {
+  const JointLaw<LinearShear, Worn, NormalGap<ConstantDilation, Pressed>> law{{}, {0.5}, {0, {}, {0.1}}};
+  ASSERT_EQ(law.n_history(), 3);
+  for (const long stride : {1, 4}) {
+    std::vector<Real> numbers(3 * stride, 0);
+    const Real w[] = {-0.02, 0.7}, lambda[] = {-0.4, 0}, old[] = {0.2}, p[] = {0.5};
+    const History history{numbers.data(), stride};
+    const auto at = contact<2>(Real(-0.4), Real(0.5), p, old, history);
+    EXPECT_DOUBLE_EQ(law.gap(at), -0.02);
+    EXPECT_DOUBLE_EQ(law.bound(at), 0.2);
+    law.commit(at, {numbers.data(), stride});
+    EXPECT_DOUBLE_EQ(numbers[0], 0.4);           // compression
+    EXPECT_DOUBLE_EQ(numbers[stride], 0.3);      // path
+    EXPECT_DOUBLE_EQ(numbers[2 * stride], 1.0);  // steps
+    EXPECT_DOUBLE_EQ(law.gap(at), -0.04);
+    EXPECT_DOUBLE_EQ(law.bound(at), 0.2 / 1.3);
+    Real R[2];
+    EXPECT_EQ(contact_residual<2>(law, {1, 1}, w, lambda, old, R, history), ContactState::slip);
+    EXPECT_NEAR(R[1], -0.5 / 1.3 * (0.4 - (-0.02 + 0.04)), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::laws::testing

@@ -1,0 +1,46 @@
+// A rough joint after Barton and Choubey at one point, with linear closure: under a constant compression, and pressed
+// by rock that keeps it from opening.
+#include "point_scenes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+using laws::ContactState;
+
+Real tangent(Real degrees) { return std::tan(degrees * M_PI / 180); }
+Real bound(Real N) { return N * tangent(30 + 10 * std::log10(100e6 / N)); }
+
+/// The column of 2 GPa/m is in series with the joint of 2 GPa/m. tau(1 MPa) has ten digits and is not from this
+/// program.
+TEST(RoughJoint, SlidesAtItsStrength) {
+  for (const auto& s : drive("rough_joint.xml")) {
+    SCOPED_TRACE(s.t);
+    const Real tau = 1.1917535926e6, trial = 1e9 * 1e-3 * s.t;
+    EXPECT_EQ(s.contact, trial < tau ? ContactState::stick : ContactState::slip);
+    EXPECT_NEAR(s.traction[1], std::min(trial, tau), 1e-3);
+    const Real slip = std::max(1e-3 * s.t - tau / 1e9, Real(0));
+    EXPECT_NEAR(s.plastic[1], slip, 1e-12);
+    EXPECT_NEAR(s.jump[0], -1e6 / 20e9 + tangent(5) * slip, 1e-12);
+    EXPECT_NEAR(s.elastic[0], -1e6 / 20e9, 1e-15);
+  }
+}
+
+/// Rock of 5 GPa/m that is not moved resists the dilation: N (1/5 GPa/m + 1/20 GPa/m) = d + tan(theta) u_p, with the
+/// displacement d that presses it to 1 MPa at first.
+TEST(RoughJoint, GainsStrengthWhereItCannotOpen) {
+  const Real compliance = 1 / 5e9 + 1 / 20e9, d = 1e6 * compliance;
+  for (const auto& s : drive("rough_joint.xml", {"Point.control={column, column}", "Point.column normal stiffness=5e9",
+                                                 fmt::format("Point.path={{-{:.17g}, 1e-3*t}}", d)})) {
+    SCOPED_TRACE(s.t);
+    Real low = 1e6, high = 1e8;
+    for (int k = 0; k < 200; ++k) {
+      const Real N = (low + high) / 2, slip = std::max(1e-3 * s.t - bound(N) / 1e9, Real(0));
+      (N * compliance < d + tangent(5) * slip ? low : high) = N;
+    }
+    EXPECT_NEAR(s.traction[0], -low, 1e-9 * low);
+    EXPECT_NEAR(s.traction[1], std::min(1e6 * s.t, bound(low)), 1e-9 * low);
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
