@@ -119,7 +119,7 @@ class Exchange {
       ++cost.exchanges;
       const auto mine = pressures();
       const auto of_faces = mine.begin() + model_->mesh().n_owned_cells;
-      model_->set_fluid_pressure({mine.begin(), of_faces}, {of_faces, mine.end()});
+      physics::set_fluid_pressure(model_->system(), {mine.begin(), of_faces}, {of_faces, mine.end()});
       take(*model_, t, cost);
       room_ = everywhere(model_->output("gained pore volume").values, model_->output("widening").values);
       if (!first && change < tolerance) break;

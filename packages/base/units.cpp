@@ -13,9 +13,9 @@ namespace sprekk::base {
 
 namespace {
 
-/// factor 10^ten m^a kg^b s^c rad^d with the powers a, b, c, d.
+/// factor 10^ten m^a kg^b s^c rad^d K^e with the powers a, b, c, d, e.
 struct Unit {
-  std::array<int, 4> powers;
+  std::array<int, 5> powers;
   int ten;
   Real factor;
 };
@@ -27,17 +27,20 @@ struct Symbol {
 };
 
 constexpr Real degree = 3.14159265358979323846 / 180, day = 86400;
-constexpr Unit length{{1, 0, 0, 0}, 0, 1}, mass{{0, 1, 0, 0}, 0, 1}, force{{1, 1, -2, 0}, 0, 1};
-constexpr Unit time_in(Real seconds) { return {{0, 0, 1, 0}, 0, seconds}; }
-constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1}, 0, radians}; }
-constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0}, ten, 1}; }
+constexpr Unit length{{1, 0, 0, 0, 0}, 0, 1}, mass{{0, 1, 0, 0, 0}, 0, 1}, force{{1, 1, -2, 0, 0}, 0, 1};
+constexpr Unit time_in(Real seconds) { return {{0, 0, 1, 0, 0}, 0, seconds}; }
+constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1, 0}, 0, radians}; }
+constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
 
-constexpr std::array<Symbol, 20> symbols{{{"m", true, length},
+constexpr std::array<Symbol, 23> symbols{{{"m", true, length},
                                           {"g", true, {mass.powers, -3, 1}},
                                           {"s", true, time_in(1)},
                                           {"N", true, force},
                                           {"Pa", true, pressure_in(0)},
                                           {"bar", true, pressure_in(5)},
+                                          {"J", true, {{2, 1, -2, 0, 0}, 0, 1}},
+                                          {"W", true, {{2, 1, -3, 0, 0}, 0, 1}},
+                                          {"K", false, {{0, 0, 0, 0, 1}, 0, 1}},
                                           {"rad", true, angle_in(1)},
                                           {"degree", false, angle_in(degree)},
                                           {"degrees", false, angle_in(degree)},
@@ -69,12 +72,15 @@ constexpr std::array<Prefix, 10> prefixes{{{"", 0},
                                            {"n", -9}}};
 
 /// What a user is offered in place of the first symbol of a unit.
-constexpr std::array<std::array<const char*, 5>, 7> offered{{{"Pa", "kPa", "MPa", "GPa", "bar"},
+constexpr std::array<std::array<const char*, 5>, 10> offered{{{"Pa", "kPa", "MPa", "GPa", "bar"},
                                                              {"m", "km", "cm", "mm", "um"},
                                                              {"s", "min", "h", "day", "year"},
                                                              {"min", "s", "h", "day", nullptr},
                                                              {"N", "kN", "MN", nullptr, nullptr},
                                                              {"kg", "g", nullptr, nullptr, nullptr},
+                                                             {"J", "kJ", "MJ", nullptr, nullptr},
+                                                             {"W", "kW", "MW", nullptr, nullptr},
+                                                             {"K", nullptr, nullptr, nullptr, nullptr},
                                                              {"degree", "rad", nullptr, nullptr, nullptr}}};
 
 bool opens_symbol(char c) {
@@ -139,7 +145,7 @@ class UnitParser {
 
   Unit factors() {
     const Unit first = base();
-    Unit unit = product({{0, 0, 0, 0}, 0, 1}, first, exponent());
+    Unit unit = product({{0, 0, 0, 0, 0}, 0, 1}, first, exponent());
     for (;;) {
       const int sign = take('*') ? 1 : take('/') ? -1 : 0;
       if (sign == 0) return unit;

@@ -89,7 +89,6 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
   physics::for_each_physics([&](auto physics) {
     if (physics.has_rates(scene)) result["Time > scheme"] = scene.time.scheme;
   });
-  if (const auto& host = scene.host_fluid) result["host_fluid"] = {host->unknown, host->initial_pressure};
   for (const auto& named_entry : sections) {
     const std::string& name = named_entry.first;
     if (!is_free(name) && sections.isSublist(name)) result[name] = base::to_xml(sections.sublist(name));

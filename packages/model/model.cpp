@@ -8,7 +8,6 @@
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
-#include "physics/poroelasticity/given_pressure.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -49,8 +48,7 @@ void redistribute(const fields::Vector& from, fields::Vector& to) {
 
 physics::Modules make_modules(const Scene& scene, const mesh::Mesh& mesh) {
   physics::Modules modules;
-  physics::for_each_physics(
-      [&](auto physics) { physics.add_modules({scene, mesh, scene.time.start}, modules); });
+  physics::for_each_physics([&](auto physics) { physics.add_modules({scene, mesh, scene.time.start}, modules); });
   return modules;
 }
 
@@ -151,27 +149,6 @@ void Model::take_back() {
   time_ = beginning_->time;
   system_->resume(x_, beginning_->memory);
   beginning_.reset();
-}
-
-void Model::set_fluid_pressure(const std::vector<Real>& rock, const std::vector<Real>& fractures) {
-  physics::GivenPressure* given = nullptr;
-  for (const auto& module : system_->modules())
-    if (auto* found = dynamic_cast<physics::GivenPressure*>(module.get())) given = found;
-  SPREKK_CHECK(given, "{}: the pressure of a fluid is set, but the scene has no host_fluid whose pressure is given",
-               scene_.origin);
-  base::collectively(*mesh().comm, [&] {
-    const std::size_t n_cells = mesh().n_owned_cells, n_faces = mesh().n_owned_fracture_faces;
-    SPREKK_CHECK(rock.size() == n_cells && fractures.size() == n_faces,
-                 "pressures of {} cells and {} fracture faces are given, a rank has {} and {}", rock.size(),
-                 fractures.size(), n_cells, n_faces);
-    for (const auto* values : {&rock, &fractures})
-      for (const Real p : *values) SPREKK_CHECK(std::isfinite(p), "a given pressure is {}", p);
-  });
-  const auto above = [&](std::vector<Real> values, fields::Entity entity) {
-    for (Real& p : values) p -= scene_.host_fluid->initial_pressure;
-    return physics::with_ghosts(mesh(), entity, values);
-  };
-  given->set(above(rock, fields::Entity::cell), above(fractures, fields::Entity::fracture_face));
 }
 
 FieldView Model::field(const std::string& name) {

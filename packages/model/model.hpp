@@ -47,11 +47,6 @@ class Model {
   /// or the last state that was taken back or restored.
   void take_back();
 
-  /// Of a scene whose `host_fluid` is given: the pressures of the fluid in owned cells and fracture faces, Pa, in the
-  /// order of FieldView, from the next step on. The outputs "gained pore volume" and "widening" say what room it makes.
-  /// No part of what save() keeps: to be given again after restore().
-  void set_fluid_pressure(const std::vector<Real>& rock, const std::vector<Real>& fractures);
-
   /// The unknowns of a field, by its name, which are the start of the next step's iteration; or a history, by "MODULE:
   /// HISTORY", which the next step depends on. Valid until the model's next member call. Error: there is no such field.
   /// Stored data.

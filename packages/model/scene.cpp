@@ -20,7 +20,7 @@ void Time::describe(base::Section& s) {
   s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end");
   s.entry(schedule, "schedule", "s", "ends of all steps, increasing; replaces end and steps");
   s.choice(scheme, "scheme", {"implicit Euler", "BDF2"},
-           "of what is stored, e.g. of fluid with \"Flow\": of first or second order in time");
+           "of rates of what is stored: of first or second order in time");
   stepping.describe(s);
   if (!s.complete()) return;
   Real last = start;

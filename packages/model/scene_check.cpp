@@ -47,8 +47,8 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   });
   for (const auto& section : absent) rates = rates || !comparison.is_absent(section);
   if (!rates)
-    comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": needs the section {}", scheme,
-                                                     base::quoted_list(absent)));
+    comparison.fail("Time > \"scheme\"",
+                    fmt::format("is \"{}\": needs the section {}", scheme, base::quoted_list(absent)));
 }
 
 void compare_error_estimate(Comparison& comparison) {

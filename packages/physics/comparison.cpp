@@ -26,10 +26,9 @@ void Comparison::check_length(const std::string& place, std::size_t n, const std
 
 void Comparison::check_material(const std::string& section, const std::string& name, const std::string& type) {
   const auto found = scene_.materials.find(name);
-  const bool unreadable =
-      found == scene_.materials.end()
-          ? !is_sound("Materials > " + name) || (scene_.materials.empty() && !is_absent("Materials"))
-          : found->second.type.empty();
+  const bool unreadable = found == scene_.materials.end() ? !is_sound("Materials > " + name) ||
+                                                                (scene_.materials.empty() && !is_absent("Materials"))
+                                                          : found->second.type.empty();
   if (unreadable || (name.empty() && !is_sound(section))) return;
   const std::string wrong = wrong_material(name, type, scene_.materials);
   if (!wrong.empty()) fail(section + " > \"material\"", wrong);
@@ -113,7 +112,11 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
     }
   };
   for (const auto& [name, one] : conditions)
-    add({name, "", index_of(*names.boundaries, one.boundary), {}, one.region ? index_of(*names.regions, *one.region) : -1,
+    add({name,
+         "",
+         index_of(*names.boundaries, one.boundary),
+         {},
+         one.region ? index_of(*names.regions, *one.region) : -1,
          one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
         one.prescribed());
   for (const auto& [name, one] : regions)

@@ -7,6 +7,8 @@
 #include "laws/fluid.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace sprekk::physics {
 
@@ -288,5 +290,17 @@ struct HybridCell {
     return at(cell, Faces(X));
   }
 };
+
+struct ChosenScheme {
+  FluxScheme scheme;
+  std::string reason;
+};
+
+/// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
+/// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
+/// `section` of the scene for messages.
+ChosenScheme flux_scheme(const std::string& section, const std::string& name, const mesh::Mesh& mesh,
+                         const std::vector<laws::Mobility>& mobility, const std::vector<int>& mobility_of_cell = {});
+std::string name_of(FluxScheme scheme);
 
 }  // namespace sprekk::physics

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "physics/flow/flow.hpp"
+#include "physics/heat/heat.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/poroelasticity/poroelasticity.hpp"
 
 namespace sprekk::physics {
 
 template <template <class...> class Of>
-using OfAll = Of<Mechanics,  //
-                 Flow,       //
-                 Poroelasticity>;
+using OfAll = Of<Mechanics,       //
+                 Flow,            //
+                 Poroelasticity,  //
+                 Heat>;
 
 }  // namespace sprekk::physics

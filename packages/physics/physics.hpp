@@ -47,7 +47,7 @@ struct Physics {
   struct Part {
     void describe(base::Section&) {}
     void check(base::Section&) const {}
-    bool is_given() const { return false; }                 ///< of a region or a boundary condition: it says something
+    bool is_given() const { return false; }  ///< of a region or a boundary condition: it says something
     std::vector<Prescribed> prescribed() const { return {}; }  ///< of these: fields whose unknowns it holds
   };
   using Rock = Part<0>;

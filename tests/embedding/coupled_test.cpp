@@ -78,8 +78,8 @@ TEST(GivenPressure, ChangesTheEffectiveStress) {
       model::Model model(scene, comm);
       const auto& mesh = model.mesh();
       const Real P_0 = 2e6, p = 1e6, above = p - at_start;
-      model.set_fluid_pressure(std::vector<Real>(mesh.n_owned_cells, p),
-                               std::vector<Real>(mesh.n_owned_fracture_faces, p));
+      physics::set_fluid_pressure(model.system(), std::vector<Real>(mesh.n_owned_cells, p),
+                                  std::vector<Real>(mesh.n_owned_fracture_faces, p));
       ASSERT_TRUE(model.step_to(1).converged);
       const Real lambda = hosts::E * hosts::nu / ((1 + hosts::nu) * (1 - 2 * hosts::nu));
       const Real strain = (-P_0 + hosts::alpha * above) / (hosts::E / (1 + hosts::nu) + dim * lambda);
@@ -124,13 +124,14 @@ TEST(TakeBack, MistakesAreErrors) {
   auto scene = hosts::block(2, 4);
   model::Model without(scene, comm);
   EXPECT_THAT(error_of([&] { without.take_back(); }), HasSubstr("there is no step to take back, at t = 0"));
-  EXPECT_THAT(error_of([&] { without.set_fluid_pressure({}, {}); }), HasSubstr("the scene has no host_fluid"));
+  EXPECT_THAT(error_of([&] { physics::set_fluid_pressure(without.system(), {}, {}); }),
+              HasSubstr("the scene has no host_fluid"));
   scene.host_fluid = physics::HostFluid();
   model::Model given(scene, comm);
   scene.fractures.begin()->second.fluid_pressure = 1;
   EXPECT_THAT(error_of([&] { model::Model twice(scene, comm); }), HasSubstr("is not given but found"));
   scene.fractures.begin()->second.fluid_pressure = 0;
-  EXPECT_THAT(error_of([&] { given.set_fluid_pressure({}, {}); }),
+  EXPECT_THAT(error_of([&] { physics::set_fluid_pressure(given.system(), {}, {}); }),
               HasSubstr("pressures of 0 cells and 0 fracture faces are given, a rank has "));
   ASSERT_TRUE(given.step_to(1).converged);
   given.take_back();

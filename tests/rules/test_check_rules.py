@@ -41,9 +41,14 @@ BAD = [  # file, text, rule
     ("packages/base/a.cpp", "thread_local Real buffer[3];", "static-state"),
     ("packages/base/a.cpp", "void f() {\n  static Thing thing(3);\n}", "static-state"),
     ("packages/base/a.cpp", "int Thing::count = 0;", "static-state"),
+    ("packages/model/a.cpp", 'if (field == "face pressure") {}', "generic-room"),
+    ("packages/solve/a.hpp", "// of a fluid", "generic-room"),
+    ("packages/physics/flow/a.cpp", "int f(Real temperature);", "heat-room"),
 ]
 
 GOOD = {
+    "packages/physics/heat/a.cpp": "int f(Real temperature);\n",
+    "packages/assembly/loose_pieces.hpp": "// friction\n",
     "packages/physics/a.cpp": '#include "physics/a.hpp"\n#include "laws/joint.hpp"\n#include <vector>\n',
     "packages/solve/a.cpp": "#include <NOX_Solver_Generic.H>\n#include <MueLu.hpp>\n",
     "packages/assembly/a.hpp": """

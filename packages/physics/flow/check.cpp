@@ -78,13 +78,13 @@ void compare_level(Comparison& c) {
   const bool deforms = Mechanics::is_in(scene);
   const Real fluid = scene.flow->compressibility;
   const bool in_fractures = !fractures->empty() && (fluid > 0 || deforms);
-  const bool stored = in_fractures || std::any_of(regions->begin(), regions->end(), [&](const auto& name) {
-                        const auto* rock = c.rock_of(name);
-                        return !rock || rock->growth_of_pores(fluid) + rock->porosity * fluid > 0 ||
-                               (deforms && rock->biot > 0);
-                      });
-  const bool known = c.is_sound("Boundary conditions") &&
-                     (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
+  const bool stored =
+      in_fractures || std::any_of(regions->begin(), regions->end(), [&](const auto& name) {
+        const auto* rock = c.rock_of(name);
+        return !rock || rock->growth_of_pores(fluid) + rock->porosity * fluid > 0 || (deforms && rock->biot > 0);
+      });
+  const bool known =
+      c.is_sound("Boundary conditions") && (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
   if (!given && !stored && known && c.is_sound("Materials") && c.is_sound("Flow"))
     c.fail("Flow",
            "nothing says how high the pressure is: give a \"pressure\" on a boundary, in a well or in a region, or "

@@ -43,17 +43,6 @@ struct DarcyFlowParameters {
                                     ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };
 
-struct ChosenScheme {
-  FluxScheme scheme;
-  std::string reason;
-};
-
-/// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
-/// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
-ChosenScheme flux_scheme(const std::string& name, const mesh::Mesh& mesh, const std::vector<laws::Mobility>& mobility,
-                         const std::vector<int>& mobility_of_cell = {});
-std::string name_of(FluxScheme scheme);
-
 /// Appends a total of what flows in for each condition, still zero; returns the number of the first.
 std::size_t add_inflows(const std::vector<FluidCondition>& conditions, const mesh::Mesh& mesh,
                         std::vector<assembly::Total>& totals);

@@ -1,8 +1,7 @@
 // What scenes say of flow.
 #include "physics/flow/flow.hpp"
 #include "physics/ranged_entry.hpp"
-
-#include <fmt/ranges.h>
+#include "physics/tensor_entry.hpp"
 
 #include <algorithm>
 
@@ -27,31 +26,17 @@ void Flow::Rock::check(base::Section& s) const {
   if (compressibility && biot_modulus) s.fail("give either \"compressibility of pores\" or \"Biot modulus\"");
 }
 
-bool Flow::Rock::flows_uniformly() const {
-  return std::all_of(permeability.begin(), permeability.end(), [](const auto& k) { return k.is_constant(); });
-}
+bool Flow::Rock::flows_uniformly() const { return is_uniform_tensor(permeability); }
 
 Real Flow::Rock::growth_of_pores(Real of_fluid) const {
   return biot_modulus ? std::max(Real(0), 1 / *biot_modulus - porosity * of_fluid) : compressibility.value_or(0);
 }
 
 laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const {
-  std::vector<Real> k;
-  for (const auto& value : permeability) k.push_back(value(x, 0));
-  const auto n = static_cast<int>(k.size()), n_all = dim * (dim + 1) / 2;
-  SPREKK_CHECK(n == 1 || n == dim || n == n_all, "\"permeability\" has {}, must have 1, {} or {} in {}D",
-               base::counted(k.size(), "value"), dim, n_all, dim);
-  laws::Mobility m;
-  for (int i = 0; i < dim; ++i) m.value[i][i] = k[n == 1 ? 0 : i] / viscosity;
-  for (int i = dim; i < n; ++i) {
-    const int row = i == 4 ? 1 : 0, column = i == 3 || dim == 2 ? 1 : 2;
-    m.value[row][column] = m.value[column][row] = k[i] / viscosity;
-  }
-  std::vector<std::string> texts;
-  for (const auto& value : permeability) texts.push_back(value.text());
-  SPREKK_CHECK(m.is_positive(dim), "\"permeability\" = {{{}}} is not positive definite{}", fmt::join(texts, ", "),
-               flows_uniformly() ? "" : fmt::format(" at x = ({}, {}, {})", x[0], x[1], x[2]));
-  return m;
+  auto k = tensor_at("permeability", permeability, dim, x);
+  for (auto& row : k.value)
+    for (Real& component : row) component /= viscosity;
+  return k;
 }
 
 void Flow::Joint::describe(base::Section& s) {

@@ -80,8 +80,8 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
     for (std::size_t f = 0; f < openings.size(); ++f) {
       const auto& face = mesh.fracture_faces[f];
       const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
-      faces.push_back(at_place(
-          scene, joint, [&] { return hydraulics(joint, scene.flow->viscosity, openings[f], face.centre); }));
+      faces.push_back(
+          at_place(scene, joint, [&] { return hydraulics(joint, scene.flow->viscosity, openings[f], face.centre); }));
     }
   });
   return faces;
@@ -90,7 +90,7 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
 DarcyFlowParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh, const Properties<laws::Mobility>& rock) {
   const auto& flow = *scene.flow;
   DarcyFlowParameters darcy{rock.values, rock.number};
-  const auto chosen = flux_scheme(flow.scheme, mesh, rock.values, rock.number);
+  const auto chosen = flux_scheme("Flow", flow.scheme, mesh, rock.values, rock.number);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
   darcy.deforms = Mechanics::is_in(scene) || std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) {

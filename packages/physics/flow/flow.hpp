@@ -39,7 +39,7 @@ struct HostFluid {
   /// The host's modules declare the unknowns "pressure" (cells) and "face pressure" (facets, see mesh::Facets) and
   /// write their rows, the balance of volume per time; what displacements add to them, and they to momentum, is
   /// Sprekk's, see physics::make_poroelastic_coupling(). If not, the host gives pressures:
-  /// Model::set_fluid_pressure().
+  /// set_fluid_pressure().
   bool unknown = false;
   Real initial_pressure = 0;  ///< under which the initial state is one of rest, Pa
 };

@@ -17,8 +17,7 @@ void check_stress(Comparison& c, const std::string& section, const std::vector<b
   if (c.names().dim) wanted = *c.names().dim == 2 ? 4 : 6;
   c.check_length(section + " > \"initial stress\"", stress.size(), wanted);
   if (!Mechanics::is_in(c.scene()) && !stress.empty())
-    c.fail(section + " > \"initial stress\"",
-           "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
+    c.fail(section + " > \"initial stress\"", "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
 }
 
 void compare_rock(Comparison& c) {
@@ -41,7 +40,8 @@ void compare_rock(Comparison& c) {
 void compare_fractures(Comparison& c) {
   for (const auto& [name, fracture] : c.scene().fractures) {
     const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
-    c.check_length(jump, fracture.plastic_jump.size(), c.names().dim ? std::optional(*c.names().dim - 1) : std::nullopt);
+    c.check_length(jump, fracture.plastic_jump.size(),
+                   c.names().dim ? std::optional(*c.names().dim - 1) : std::nullopt);
     const auto* joint = c.joint_of(fracture);
     if (!Mechanics::is_in(c.scene())) {
       if (!fracture.plastic_jump.empty())
@@ -60,7 +60,8 @@ void compare_conditions(Comparison& c) {
     c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
     c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
     const bool given = !(condition.displacement.empty() && condition.traction.empty());
-    if (given && condition.fracture) c.fail(section + " > \"fracture\"", "goes without \"displacement\" and \"traction\"");
+    if (given && condition.fracture)
+      c.fail(section + " > \"fracture\"", "goes without \"displacement\" and \"traction\"");
     if (given && !Mechanics::is_in(c.scene()))
       c.fail(section, "moves or loads the rock, which " + rigid_entry(c.scene()) + " says does not deform");
   }

@@ -12,12 +12,9 @@ namespace {
 constexpr Real any = -std::numeric_limits<Real>::infinity();
 
 std::vector<RangedEntry> entries_of(const Mechanics::Rock& rock) {
-  return {{"Young's modulus", rock.E, 0, false},
-          {"Poisson's ratio", rock.nu, -1, false, 0.5},
-          {"shear modulus", rock.G, 0, false},
-          {"Lame's first parameter", rock.lambda, any, false},
-          {"bulk modulus", rock.K, 0, false},
-          {"density", rock.density, 0}};
+  return {{"Young's modulus", rock.E, 0, false}, {"Poisson's ratio", rock.nu, -1, false, 0.5},
+          {"shear modulus", rock.G, 0, false},   {"Lame's first parameter", rock.lambda, any, false},
+          {"bulk modulus", rock.K, 0, false},    {"density", rock.density, 0}};
 }
 
 void describe_initial_stress(base::Section& s, std::vector<base::Expression>& stress, const std::string& whose) {
@@ -76,8 +73,7 @@ void Mechanics::Bulk::describe(base::Section& s) {
 }
 
 void Mechanics::Bulk::check(base::Section& s) const {
-  if (lithostatic_stress && !initial_stress.empty())
-    s.fail("give either \"initial stress\" or \"lithostatic stress\"");
+  if (lithostatic_stress && !initial_stress.empty()) s.fail("give either \"initial stress\" or \"lithostatic stress\"");
 }
 
 void Lithostatic::describe(base::Section& s) {

@@ -70,7 +70,8 @@ PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   const int dim = mesh.dim();
   for (std::size_t k = 0; k < mesh.tied_to.size(); ++k)
     for (int i = 0; i < dim; ++i) {
-      const Real apart = mesh.coordinates[(mesh.n_free_nodes + k) * dim + i] - mesh.coordinates[mesh.tied_to[k] * dim + i];
+      const Real apart =
+          mesh.coordinates[(mesh.n_free_nodes + k) * dim + i] - mesh.coordinates[mesh.tied_to[k] * dim + i];
       for (int piece = 0; piece < mesh.n_pieces && apart != 0; ++piece) held[3 * piece + i] = 1;
     }
   return over_ranks(mesh, Teuchos::REDUCE_MAX, held);

@@ -1,7 +1,9 @@
 #include "physics/poroelasticity/given_pressure.hpp"
 
 #include "assembly/assembler.hpp"
+#include "base/check.hpp"
 #include "physics/poroelasticity/coupling_volumes.hpp"
+#include "physics/properties.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -90,6 +92,9 @@ class Given final : public GivenPressure {
     set(std::vector<Real>(mesh_->n_cells(), 0), std::vector<Real>(mesh_->n_fracture_faces(), 0));
   }
 
+  std::string fingerprint() const override { return fmt::format("{}", initial()); }
+  Real initial() const override { return parameters_.initial; }
+
   void set(const std::vector<Real>& rock, const std::vector<Real>& fractures) override {
     largest_ = 0;
     for (const auto* all : {&rock, &fractures})
@@ -169,6 +174,27 @@ std::unique_ptr<GivenPressure> make_given_pressure(Shape shape, GivenPressurePar
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<GivenPressure> {
     return std::make_unique<Given<s()>>(std::move(parameters));
   });
+}
+
+void set_fluid_pressure(assembly::System& system, const std::vector<Real>& rock, const std::vector<Real>& fractures) {
+  const auto& mesh = system.mesh();
+  GivenPressure* given = nullptr;
+  for (const auto& module : system.modules())
+    if (auto* found = dynamic_cast<GivenPressure*>(module.get())) given = found;
+  SPREKK_CHECK(given, "the pressure of a fluid is set, but the scene has no host_fluid whose pressure is given");
+  base::collectively(*mesh.comm, [&] {
+    const std::size_t n_cells = mesh.n_owned_cells, n_faces = mesh.n_owned_fracture_faces;
+    SPREKK_CHECK(rock.size() == n_cells && fractures.size() == n_faces,
+                 "pressures of {} cells and {} fracture faces are given, a rank has {} and {}", rock.size(),
+                 fractures.size(), n_cells, n_faces);
+    for (const auto* values : {&rock, &fractures})
+      for (const Real p : *values) SPREKK_CHECK(std::isfinite(p), "a given pressure is {}", p);
+  });
+  const auto above = [&](std::vector<Real> values, fields::Entity entity) {
+    for (Real& p : values) p -= given->initial();
+    return with_ghosts(mesh, entity, values);
+  };
+  given->set(above(rock, fields::Entity::cell), above(fractures, fields::Entity::fracture_face));
 }
 
 }  // namespace sprekk::physics

@@ -129,6 +129,7 @@ class PoroelasticCoupling final : public assembly::Module {
   explicit PoroelasticCoupling(PoroelasticCouplingParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "poroelastic coupling"; }
+  std::string fingerprint() const override { return parameters_.initial.text(); }
 
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;

@@ -1,6 +1,5 @@
 #include "physics/poroelasticity/poroelasticity.hpp"
 
-#include "physics/poroelasticity/given_pressure.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 
@@ -21,7 +20,8 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
       std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1)), {}};
   const auto flow = scene.flow ? mobility(scene, mesh) : any;
   coupling.initial = initial_pressure(scene);
-  coupling.scheme = flux_scheme(scene.flow ? scene.flow->scheme : "auto", mesh, flow.values, flow.number).scheme;
+  coupling.scheme =
+      flux_scheme("Flow", scene.flow ? scene.flow->scheme : "auto", mesh, flow.values, flow.number).scheme;
   coupling.fractures = !mesh.fracture_names.empty();
   coupling.tips = mesh.n_global_enriched > 0;
   return make_poroelastic_coupling(mesh.shape, std::move(coupling));
@@ -30,7 +30,8 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
 /// The pressure that a host gives.
 std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
   const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
-  GivenPressureParameters given{{}, !mesh.fracture_names.empty(), mesh.n_global_enriched > 0};
+  GivenPressureParameters given{
+      {}, !mesh.fracture_names.empty(), mesh.n_global_enriched > 0, scene.host_fluid->initial_pressure};
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) given.biot.push_back(biot[mesh.cell_region[cell]]);
   return make_given_pressure(mesh.shape, std::move(given));
 }
@@ -38,17 +39,17 @@ std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mes
 }  // namespace
 
 void Poroelasticity::Rock::describe(base::Section& s) {
-  s.entry(
-      biot, "Biot coefficient", "-", base::between(0, 1),
-      "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
-      "grow by alpha div u");
+  s.entry(biot, "Biot coefficient", "-", base::between(0, 1),
+          "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
+          "grow by alpha div u");
 }
 
 bool Poroelasticity::is_in(const Scene& scene) { return Mechanics::is_in(scene) && has_fluid(scene); }
 
 void Poroelasticity::add_modules(const Setting& setting, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
-  if (is_in(scene)) modules.push_back(has_unknown_pressure(scene) ? make_coupling(scene, mesh) : make_given(scene, mesh));
+  if (is_in(scene))
+    modules.push_back(has_unknown_pressure(scene) ? make_coupling(scene, mesh) : make_given(scene, mesh));
 }
 
 std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/physics.hpp"
+#include "physics/poroelasticity/given_pressure.hpp"
 
 namespace sprekk::physics {
 

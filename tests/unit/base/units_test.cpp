@@ -29,6 +29,9 @@ TEST(Units, numbers_are_what_the_exponent_makes_of_them) {
   EXPECT_EQ(value_of("2650 kg/m^3", "kg/m^3"), 2650);
   EXPECT_EQ(value_of("2.65 g/cm^3", "kg/m^3"), 2650);
   EXPECT_EQ(value_of("26.5 kN/m^3", "N/m^3"), 26.5e3);
+  EXPECT_EQ(value_of("2.5 MJ/(m^3*K)", "J/(m^3*K)"), 2.5e6);
+  EXPECT_EQ(value_of("3 W*s/(kg*K)", "J/(kg*K)"), 3);
+  EXPECT_EQ(value_of("2 N*m", "kJ"), 2e-3);
   EXPECT_EQ(value_of("5 GPa/m", "Pa/m"), 5e9);
   EXPECT_EQ(value_of("5 MPa/mm", "Pa/m"), 5e9);
   EXPECT_EQ(value_of("5e-3 N*m^-2/m", "Pa/m"), 5e-3);

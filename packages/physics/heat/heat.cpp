@@ -1,0 +1,164 @@
+#include "physics/heat/heat.hpp"
+
+#include "physics/comparison.hpp"
+#include "physics/ranged_entry.hpp"
+#include "physics/tensor_entry.hpp"
+
+#include <algorithm>
+
+namespace sprekk::physics {
+
+namespace {
+
+Properties<Conductivity> conductivity(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
+  return properties<Conductivity>(
+      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
+      [&](int region) { return material(region).conducts_uniformly(); },
+      [&](int region, int cell) {
+        const auto x = cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell);
+        return at_place(scene, material(region), [&] { return material(region).conductivity(mesh.dim(), x); });
+      });
+}
+
+bool no_heat(const Comparison& c) { return !c.scene().heat && c.is_absent("Heat"); }
+
+/// What is of heat in a scene without it.
+void compare_without_heat(Comparison& c) {
+  if (!no_heat(c)) return;
+  const auto needs_heat = [&](const std::string& place) { c.fail(place, "needs the section \"Heat\""); };
+  for (const auto& [name, region] : c.scene().regions)
+    if (region.temperature) needs_heat("Regions > " + name + " > \"temperature\"");
+  for (const auto& [name, condition] : c.scene().boundary_conditions)
+    if (condition.temperature || condition.heat_flux)
+      needs_heat("Boundary conditions > " + name + (condition.temperature ? " > \"temperature\"" : " > \"heat flux\""));
+}
+
+void compare_rock(Comparison& c, const Material& rock) {
+  const std::string section = "Materials > " + c.name_of(rock), place = section + " > \"thermal conductivity\"";
+  if (!c.is_sound(section)) return;
+  if (rock.thermal_conductivity.empty()) c.fail(place, "missing; it is required with \"Heat\"");
+  if (rock.thermal_conductivity.empty() || !c.names().dim) return;
+  try {
+    if (rock.conducts_uniformly()) rock.conductivity(*c.names().dim, {});
+  } catch (const Error& error) {
+    c.fail(place, error.what());
+  }
+}
+
+/// Heat that no temperature and no capacity ties to a level has none, or any.
+void compare_level(Comparison& c) {
+  const auto& conditions = c.scene().boundary_conditions;
+  const auto& regions = c.scene().regions;
+  bool known = std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
+    const auto& h = named.second.heat_transfer_coefficient;
+    return named.second.temperature && !(h && is_zero(*h));
+  });
+  known = known || std::any_of(regions.begin(), regions.end(), [](const auto& r) { return r.second.temperature; });
+  c.for_each_rock([&](const Material& rock) { known = known || rock.heat_capacity > 0; });
+  if (known || !c.names().regions || !c.is_sound("Materials") || !c.is_sound("Boundary conditions")) return;
+  c.fail("Heat",
+         "nothing says how high the temperature is: give a \"temperature\" on a boundary or in a region, or "
+         "rock a \"volumetric heat capacity\"");
+}
+
+}  // namespace
+
+void HeatSection::describe(base::Section& s) {
+  s.entry(source, "source", "W/m^3", base::any(), "power per volume of rock, an expression of x, y, z, t");
+  s.entry(initial_temperature, "initial temperature", "K", base::any(),
+          "at the start, where heat is stored; of x, y, z");
+  s.choice(
+      scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
+      "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
+      "orthogonal, else mimetic");
+  check_constant_in_time(s, "initial temperature", initial_temperature);
+}
+
+void Heat::Sections::describe(base::Section& s) { s.section(heat, "Heat", "heat that the rock conducts and stores"); }
+
+void Heat::Rock::describe(base::Section& s) {
+  s.entry(thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
+          "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ in "
+          "3D");
+  s.entry(heat_capacity, "volumetric heat capacity", "J/(m^3*K)", base::at_least(0),
+          "rho c, density times specific heat capacity; 0: no heat is stored");
+  for (const auto& value : thermal_conductivity) check_constant_in_time(s, "thermal conductivity", value);
+}
+
+bool Heat::Rock::conducts_uniformly() const { return is_uniform_tensor(thermal_conductivity); }
+
+Conductivity Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) const {
+  return tensor_at("thermal conductivity", thermal_conductivity, dim, x);
+}
+
+void Heat::Region::describe(base::Section& s) {
+  s.entry(temperature, "temperature", "K", base::any(),
+          "of its cells, with \"Heat\": a value or an expression of x, y, z, t");
+}
+
+std::vector<Prescribed> Heat::Region::prescribed() const {
+  if (!temperature) return {};
+  return {{"temperature", {*temperature}}, {"face temperature", {*temperature}}};
+}
+
+void Heat::BoundaryCondition::describe(base::Section& s) {
+  s.entry(temperature, "temperature", "K", base::any(), "with \"Heat\": a value or an expression of x, y, z, t");
+  s.entry(heat_flux, "heat flux", "W/m^2", base::any(), "heat that leaves per area and time, with \"Heat\"");
+  s.entry(heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
+          "h: the flux is h (T - temperature), the temperature then being that beyond the boundary");
+  if (heat_transfer_coefficient) check_constant_in_time(s, "heat transfer coefficient", *heat_transfer_coefficient);
+}
+
+void Heat::BoundaryCondition::check(base::Section& s) const {
+  if (heat_transfer_coefficient && !temperature)
+    s.fail("heat transfer coefficient", "needs a \"temperature\" beyond the boundary");
+  if (temperature && heat_flux) s.fail("give either \"temperature\" or \"heat flux\"");
+}
+
+std::vector<Prescribed> Heat::BoundaryCondition::prescribed() const {
+  if (!temperature || heat_transfer_coefficient) return {};
+  return {{"face temperature", {*temperature}}};
+}
+
+bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
+
+void Heat::compare(Comparison& c) {
+  compare_without_heat(c);
+  if (!c.scene().heat) return;
+  if (c.names().fractures && !c.names().fractures->empty())
+    c.fail("Heat", "goes without fractures so far, and the mesh has some");
+  c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
+  compare_level(c);
+  for (const auto& [name, condition] : c.scene().boundary_conditions)
+    for (const auto& [second, other] : c.scene().boundary_conditions)
+      if (condition.temperature && !condition.heat_transfer_coefficient &&
+          (other.heat_flux || other.heat_transfer_coefficient) && condition.boundary == other.boundary &&
+          (!condition.region || !other.region || *condition.region == *other.region))
+        c.fail("Boundary conditions > " + second,
+               fmt::format("gives a heat flux where \"{}\" gives the temperature", name));
+}
+
+void Heat::add_modules(const Setting& setting, Modules& modules) {
+  const auto& scene = setting.scene;
+  const auto& mesh = setting.mesh;
+  if (!is_in(scene)) return;
+  Properties<Conductivity> rock;
+  base::collectively(*mesh.comm, [&] { rock = conductivity(scene, mesh); });
+  HeatConductionParameters heat{rock.values, rock.number, {}};
+  heat.capacity = by_region(scene, mesh, [](const Material& m) { return m.heat_capacity; });
+  heat.scheme = flux_scheme("Heat", scene.heat->scheme, mesh, rock.values, rock.number).scheme;
+  if (!is_zero(scene.heat->source)) heat.source = {scene.heat->source};
+  heat.in_regions =
+      std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.temperature; });
+  heat.initial = scene.heat->initial_temperature;
+  const auto number_of = [](const Names& names, const auto& name) { return name ? index_of(names, *name) : -1; };
+  for (const auto& [name, one] : scene.boundary_conditions)
+    if (one.heat_flux || one.heat_transfer_coefficient)
+      heat.conditions.push_back({index_of(mesh.boundary_names, one.boundary),
+                                 one.heat_flux ? *one.heat_flux : *one.temperature, one.heat_transfer_coefficient,
+                                 number_of(mesh.region_names, one.region)});
+  modules.push_back(make_heat_conduction(mesh.shape, std::move(heat)));
+}
+
+}  // namespace sprekk::physics
