@@ -14,7 +14,7 @@ namespace sprekk::assembly {
 
 /// Values of a field on nodes or facets on a boundary, or of one on cells or facets in a region, per component; a
 /// component without value is free. Facets in a region are those between two cells of which one is in it, or both where
-/// a fracture is between them: what flows through the boundary of the domain is left to conditions there.
+/// a fracture is between them: fluxes through the boundary of the domain are left to conditions there.
 struct DirichletCondition {
   std::string name;  ///< how messages call it
   std::string field;

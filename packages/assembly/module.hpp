@@ -60,7 +60,7 @@ struct Unknown {
   std::string enriches = "";        ///< the field that a field on enriched nodes adds to: zero where that is prescribed
   std::string condensed_into = "";  ///< of a field whose unknowns hardly couple among themselves: the one that they
                                     ///< couple to, from which preconditioners eliminate it
-  /// Its rows are balances of rates: of what flows, and State::rate times what is stored. They may differ by orders of
+  /// Its rows are balances of rates: of fluxes, and State::rate times what is stored. They may differ by orders of
   /// magnitude, so each is measured by its diagonal, anew in each step.
   bool balance = false;
   /// Of tractions of contact: the scale of the jumps that their rows have in them, times Grip::augmentation.

@@ -158,6 +158,7 @@ void System::declare_fields() {
     fields::Block block{layout.field().name, layout.owned(), layout.field().n_components, 1, 1, {}, {}};
     block.enriches = unknowns_[b].enriches;
     block.condensed_into = unknowns_[b].condensed_into;
+    block.balance = unknowns_[b].balance;
     if (unknowns_[b].near_null_space != NearNullSpace::none) set_multigrid(unknowns_[b], layout, block);
     blocks_.push_back(block);
     ghosted_.push_back(rcp(new Vector(layout.ghosted())));

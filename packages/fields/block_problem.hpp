@@ -42,6 +42,7 @@ struct Block {
   RCP<const CrsMatrix> interpolation = {};
   std::string enriches = "";        ///< the block whose functions it adds to; multigrid on that one does without it
   std::string condensed_into = "";  ///< its own matrix is about diagonal: preconditioners eliminate it from this block
+  bool balance = false;             ///< its rows are balances of rates: they may differ by many orders of magnitude
 };
 
 /// Blocks whose unknowns couple only within one entity among themselves, so that they can be eliminated entity by
@@ -114,15 +115,14 @@ class BlockProblem {
   /// derivative of f. Solutions do not depend on it. Local.
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
   enum class Lag { none, follow, widest };
-  /// Coefficients of fluxes may depend on x by high powers (the transmissivity of a fracture, on its aperture), which
-  /// misleads Newton's method far from a solution. From now on f takes them as given: `follow`, first those of x, then
-  /// nearer to those of x with each call; `widest`, as large as they may become under the present loads. none: f is as
-  /// it is. Returns the largest |ln| of the ratio of those of x to those that were given before; below zero where there
-  /// are none, and f stays as it is. Collective.
+  /// Coefficients of fluxes may depend on x by high powers, which misleads Newton's method far from a solution. From
+  /// now on f takes them as given: `follow`, first those of x, then nearer to those of x with each call; `widest`, as
+  /// large as they may become under the present loads. none: f is as it is. Returns the largest |ln| of the ratio of
+  /// those of x to those that were given before; below zero where there are none, and f stays as it is. Collective.
   virtual Real lag(Lag how, const BlockVector& x) { return -1; }
   /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
-  /// about as much as the rock around it does): so every body is held, and where they rub friction decides little. Zero
-  /// is f as it is. False where there is no contact, and f stays as it is.
+  /// about as much as the rock around it does): so every body is held, and what it did before decides little. Zero is f
+  /// as it is. False where there is no contact, and f stays as it is.
   virtual bool tether(Real stiffness, const BlockVector& x) { return false; }
   /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
   /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,

@@ -58,9 +58,8 @@ class DirectSolver : public LinearSolver {
       start(system);
     }
     matrix_ = system.matrix;
-    flows_ = std::any_of(system.diagonal.begin(), system.diagonal.end(), [](const auto& part) {
-      return part.block.n_components == 1 && !part.block.coordinates.is_null();
-    });
+    balances_ = std::any_of(system.diagonal.begin(), system.diagonal.end(),
+                            [](const auto& part) { return part.block.balance; });
     failure_.clear();
     fill_values();
     if (!analysed_ && run(analyse) < 0) return failure_ = message(mumps_);
@@ -116,10 +115,10 @@ class DirectSolver : public LinearSolver {
   const Teuchos::ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Relative residual that rounding leaves where there are pressures, whose rows may differ by many orders of
-  /// magnitude: what wide fractures let through is known to the rounding of their transmissivity times the pressure.
+  /// Relative residual that rounding leaves where there are balances of rates, which may differ by many orders of
+  /// magnitude: each is known to the rounding of its diagonal times the unknown.
   Real noise(const Vector& b, const Vector& x) const {
-    if (!flows_) return 0;
+    if (!balances_) return 0;
     Vector Dx(x.getMap());
     matrix_->getLocalDiagCopy(Dx);
     Dx.elementWiseMultiply(1, x, Dx, 0);
@@ -261,7 +260,7 @@ class DirectSolver : public LinearSolver {
   std::map<int, double> cntl_;  // from 0
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
-  bool ready_ = false, analysed_ = false, symmetric_ = false, flows_ = false;
+  bool ready_ = false, analysed_ = false, symmetric_ = false, balances_ = false;
   bool gathers_ = false;  // rank 0 gets all of the matrix
   static constexpr Real most_noise = 0.5;
   std::string failure_ = "the matrix was not set up";

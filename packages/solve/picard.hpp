@@ -8,15 +8,14 @@ namespace sprekk::solve {
 using fields::BlockProblem;
 using fields::BlockVector;
 
-/// The transmissivity of a fracture grows with the cube of its aperture. Where a fluid opens fractures, Newton's method
-/// linearises that at closed ones: the fluid of a step then stays in one face, which opens far too wide, in the next
-/// iterate in its neighbours, and so on; and a search for less residual forbids the way, for residuals of flow rise by
-/// orders of magnitude while volume moves. So f first takes transmissivities as given, see BlockProblem::lag(): a
-/// problem of contact and linear flow, of which one full Newton step is made for each new set of them. If the first
-/// step goes far, it is taken back, and transmissivities start from wide fractures: T ~ a^3 is convex, and iterates
-/// that come from above do not pass over the solution. Once apertures agree, Newton's method takes over; a step of it
-/// that comes no nearer is taken back, and the fixed-point iteration goes on, to a tenth of the distance. All members
-/// are collective but for those that return what is stored.
+/// Newton's method linearises a coefficient that grows with a high power of an unknown where that is small. What enters
+/// in a step then stays in one place, where the unknown grows far too large, in the next iterate in its neighbours, and
+/// so on; and a search for less residual forbids the way, on which residuals rise by orders of magnitude. So f first
+/// takes coefficients as given, see BlockProblem::lag(), and one full Newton step is made for each new set of them. If
+/// the first step goes far, it is taken back, and coefficients start from the largest: where they are convex, iterates
+/// that come from above do not pass over the solution. Once they agree, Newton's method takes over; a step of it that
+/// comes no nearer is taken back, and the fixed-point iteration goes on, to a tenth of the distance. All members are
+/// collective but for those that return what is stored.
 class Picard {
  public:
   /// Refers to the problem, whose f lags from now on, at x, if it has such coefficients, until the end of its life.

@@ -30,7 +30,7 @@ void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(
       tethers, "tethers", "-",
       "where Newton fails, first tether the sides of fractures to each other, and let them go little by little; "
-      "after three halvings where a fluid and rock move each other");
+      "after three halvings where shorter steps are easier to solve");
 }
 
 NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
