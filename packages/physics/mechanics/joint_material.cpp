@@ -149,11 +149,13 @@ std::string give_one_of(const std::vector<std::string>& names) {
 void describe_entry(base::Section& s, const Role& role, const Entry& entry, std::optional<Value>& value, bool of_all) {
   const auto with = role.kinds_with(entry.name);
   if (of_all && !value && entry.otherwise) value = *entry.otherwise;
+  const auto needed = role.kinds_that_need(entry.name);
   std::string meaning = entry.meaning;
   if (of_all && with.size() < role.kinds.size())
-    meaning = fmt::format("{} {}: {}", role.name, base::quoted_list(with), meaning);
-  const auto needed = role.kinds_that_need(entry.name);
-  if (of_all && !needed.empty()) meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
+    meaning =
+        fmt::format("{} {}{}: {}", role.name, base::quoted_list(with), needed == with ? ", required" : "", meaning);
+  if (of_all && needed != with && !needed.empty())
+    meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
   s.entry(value, entry.name, entry.unit, entry.bounds, meaning);
   if (value && !value->constant_in_time())
     s.fail(entry.name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
