@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -174,7 +175,10 @@ class Module {
   virtual std::string name() const = 0;
   /// What of it, besides the scene, must be the same where a checkpoint is restored: its parameters, on every rank.
   virtual std::string fingerprint() const { return {}; }
-  /// Called once. Collective.
+  /// What it does may depend on which fields other modules add: a first declare() tells the unknowns of each module,
+  /// which must not depend on that, then comes this, with all of them, then a second declare(), which counts.
+  virtual void set_fields(const std::set<std::string>& fields) {}
+  /// Collective.
   virtual Declaration declare(const mesh::Mesh& mesh) const = 0;
   /// Builds the module's tables and constant operators. Called once. Collective; what can throw on one rank comes last.
   virtual void bind(const Context& context) = 0;

@@ -142,7 +142,11 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
 }  // namespace
 
 void System::declare_fields() {
+  std::set<std::string> names;
+  for (const auto& module : modules_)
+    for (const auto& unknown : module->declare(*mesh_).unknowns) names.insert(unknown.field.name);
   for (const auto& module : modules_) {
+    module->set_fields(names);
     declarations_.push_back(module->declare(*mesh_));
     for (const auto& unknown : declarations_.back().unknowns) unknowns_.push_back(unknown);
   }

@@ -139,7 +139,7 @@ TEST(TakeBack, MistakesAreErrors) {
   EXPECT_THAT(error_of([&] { given.take_back(); }), HasSubstr("no step to take back"));
   scene.host_fluid->unknown = true;
   EXPECT_THAT(error_of([&] { model::Model nobody(scene, comm); }),
-              HasSubstr("no module declares the field \"face pressure\""));
+              HasSubstr("no module declares the field \"pressure\""));
 }
 
 }  // namespace

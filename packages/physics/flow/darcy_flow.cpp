@@ -28,6 +28,8 @@ class DarcyFlow final : public assembly::Module {
            (parameters_.reason.empty() ? "" : " (" + parameters_.reason + ")");
   }
 
+  void set_fields(const std::set<std::string>& fields) override { deforms_ = fields.count("displacement") > 0; }
+
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     const Real conductance = largest_mobility(mesh) / mesh::largest_extent(mesh) * mesh::typical_face_area(mesh);
@@ -37,8 +39,8 @@ class DarcyFlow final : public assembly::Module {
     auto facets = cells;
     facets.field = {"face pressure", fields::Entity::facet, 1, "Pa"};
     facets.near_null_space = assembly::NearNullSpace::constants;
-    (parameters_.deforms ? cells.condensed_into : cells.local_group) =
-        parameters_.deforms ? "face pressure" : "fluid in cells";
+    const bool stay = parameters_.in_regions || deforms_;
+    (stay ? cells.condensed_into : cells.local_group) = stay ? "face pressure" : "fluid in cells";
     d.unknowns = {cells, facets};
     d.scales = {{"pressure", 1e-12}};
     for (const char* row : {"pressure", "face pressure"})
@@ -214,6 +216,7 @@ class DarcyFlow final : public assembly::Module {
   }
 
   DarcyFlowParameters parameters_;
+  bool deforms_ = false;  // rock, which couples pressures of cells beside fractures: they stay in linear solves
   RCP<const mesh::Mesh> mesh_;
   std::vector<int> blocks_;  // pressure, face pressure
   Real size_ = 0;            // largest extent of the domain, m

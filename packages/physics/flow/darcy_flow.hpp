@@ -38,7 +38,7 @@ struct DarcyFlowParameters {
   std::array<Real, 3> weight{};                 ///< rho_0 g, N/m^3
   std::vector<base::Expression> source = {};    ///< volume of fluid per volume and time, 1/s; empty or one
   std::vector<FluidCondition> conditions = {};  ///< those without a fracture
-  bool deforms = false;  ///< rock that deforms couples pressures of cells beside fractures: they stay in linear solves
+  bool in_regions = false;                      ///< pressures of cells are prescribed: they stay in linear solves
   std::vector<Real> exchange = {};  ///< [local fracture face] of each of its sides, m/(Pa s): a resistance between the
                                     ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };

@@ -93,9 +93,8 @@ DarcyFlowParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh, const
   const auto chosen = flux_scheme("Flow", flow.scheme, mesh, rock.values, rock.number);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
-  darcy.deforms = Mechanics::is_in(scene) || std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) {
-                    return r.second.pressure;  // pressures of cells are prescribed: they stay in linear solves
-                  });
+  darcy.in_regions =
+      std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.pressure; });
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!is_zero(flow.source)) darcy.source = {flow.source};
@@ -104,10 +103,9 @@ DarcyFlowParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh, const
 }
 
 FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh, const DarcyFlowParameters& darcy) {
-  const bool deforms = Mechanics::is_in(scene);
   FractureFlowParameters fractures{
-      {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true), deforms};
-  if (deforms) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
+      {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true)};
+  if (Mechanics::is_in(scene)) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
   fractures.cut_by.resize(mesh.fracture_names.size());
   for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
     const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
@@ -167,7 +165,6 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (!flow.wells.empty()) {
     WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
     for (const auto& face : fractures.faces) all.faces.push_back(face.along);
-    all.widens = fractures.widens && !mesh.fracture_names.empty();
     all.softness = fractures.softness;
     modules.push_back(make_wells(mesh.shape, std::move(all)));
   }

@@ -91,11 +91,12 @@ class FractureFlow final : public assembly::Module {
   explicit FractureFlow(FractureFlowParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "fracture flow"; }
+  void set_fields(const std::set<std::string>& fields) override { widens_ = fields.count("widening") > 0; }
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
-    if (parameters_.widens) d.couplings[0].columns.push_back("widening");
+    if (widens_) d.couplings[0].columns.push_back("widening");
     using assembly::Summary;
     d.outputs = {
         {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "fracture pressure"}},
@@ -113,7 +114,7 @@ class FractureFlow final : public assembly::Module {
     find_fillings(context.layout(block_));
     set_faces();
     const std::vector<int> rows = {block_};
-    if (parameters_.widens) {
+    if (widens_) {
       widening_ = context.field("widening");
       widening_assembler_ = std::make_unique<WideningAssembler>(
           context, Loop::fracture_cells, rows, std::vector<int>{block_, widening_}, WideningAssembler::Positions::keep);
@@ -129,7 +130,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    if (parameters_.widens)
+    if (widens_)
       widening_assembler_->add_residual(WideningFace<n>(op_, state.coefficients), state, r);
     else
       assembler_->add_residual(op_, state, r);
@@ -141,7 +142,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    if (parameters_.widens)
+    if (widens_)
       widening_assembler_->add_jacobian(WideningFace<n>(op_, state.coefficients), state, J);
     else
       assembler_->add_jacobian(op_, state, J);
@@ -149,13 +150,13 @@ class FractureFlow final : public assembly::Module {
   }
   /// Hydraulic apertures.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
-    if (!parameters_.widens) return;
+    if (!widens_) return;
     const auto widening = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]);
     for (std::size_t f = 0; f < values.size(); ++f)
       values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
   }
   /// Widening leaves pressures alone without symmetry, and coupled systems have none in any case.
-  bool symmetric(const assembly::State&) const override { return is_linear() || parameters_.widens; }
+  bool symmetric(const assembly::State&) const override { return is_linear() || widens_; }
 
   bool constant_load() const override {
     return std::all_of(parameters_.source.begin(), parameters_.source.end(),
@@ -165,7 +166,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   void set_time(Real t, const assembly::Scales& scales) override {
-    if (parameters_.widens) open_ = of_displacement * scales.at("displacement");
+    if (widens_) open_ = of_displacement * scales.at("displacement");
     if (loaded_ && constant_load()) return;
     const auto facets = Kokkos::create_mirror_view(load_);
     Kokkos::deep_copy(facets, 0.0);
@@ -228,15 +229,14 @@ class FractureFlow final : public assembly::Module {
 
   std::vector<Real> fluxes(const assembly::State& state) const {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
-    const auto widening =
-        parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
+    const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const Plane plane = this->plane(f);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
       op_.at(f).flow(x, q);
-      const Real wider = parameters_.widens ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
+      const Real wider = widens_ ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
       const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
@@ -258,7 +258,7 @@ class FractureFlow final : public assembly::Module {
     return high;
   }
 
-  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
 
   /// Of each fracture that cuts others, what half of its width resists per area at its ridges, the mean over its faces
   /// that end there. The owner of a ridge sees all of them.
@@ -288,7 +288,7 @@ class FractureFlow final : public assembly::Module {
 
   Plane plane(LocalIndex f) const {
     const auto& face = parameters_.faces[f];
-    Plane plane(*mesh_, f, parameters_.widens ? 1 : face.along.transmissivity(), parameters_.scheme);
+    Plane plane(*mesh_, f, widens_ ? 1 : face.along.transmissivity(), parameters_.scheme);
     for (const int cutting : parameters_.cut_by[mesh_->fracture_faces[f].fracture])
       for (int k = 0; k < n; ++k) {
         const Real filling = fillings_[cutting][mesh_->facets->ridge[f * n + k]];
@@ -344,6 +344,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   FractureFlowParameters parameters_;
+  bool widens_ = false;  // by "widening" of PoroelasticCoupling, which T then depends on
   RCP<const mesh::Mesh> mesh_;
   int block_ = -1, widening_ = -1;  // face pressure, widening
   Real size_ = 0;                   // largest extent of the domain, m

@@ -23,8 +23,8 @@ struct FractureFlowParameters {
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};                 ///< rho_0 g, N/m^3
   std::vector<FluidCondition> conditions = {};  ///< those with a fracture
-  bool widens = false;                          ///< by "widening" of PoroelasticCoupling, which T then depends on
-  Real softness = 0;                            ///< of those that widen: by about how much under a pressure, m/Pa
+  Real softness = 0;                            ///< of those that widen by "widening" of PoroelasticCoupling, which T
+                                                ///< then depends on: by about how much under a pressure, m/Pa
 };
 
 /// Adds to the rows of "face pressure", for a fracture face F with ridges i,

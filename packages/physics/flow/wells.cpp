@@ -44,12 +44,13 @@ class Wells final : public assembly::Module {
   explicit Wells(WellsParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "wells"; }
+  void set_fields(const std::set<std::string>& fields) override { widens_ = fields.count("widening") > 0; }
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{assembly::Loop::cells, "pressure", {"pressure"}},
                    {assembly::Loop::cells, "face pressure", {"face pressure"}}};
-    if (parameters_.widens) {
+    if (widens_) {
       d.couplings.push_back({assembly::Loop::fracture_cells, "face pressure", {"widening"}});
       d.history = {{"widening", fields::Entity::fracture_face, 1}};
     }
@@ -65,16 +66,16 @@ class Wells final : public assembly::Module {
     find_cells_of_nodes();
     std::string failure = find_connections();
     cells_of_node_.clear();
-    if (parameters_.widens) widening_ = context.field("widening");
+    if (widens_) widening_ = context.field("widening");
     sums_ = sums([](LocalIndex) { return 0; });
     for (Real p = least_pressure; parameters_.softness > 0 && p <= largest_pressure; p *= 2)
       under_.push_back(sums([&](LocalIndex) { return parameters_.softness * p; }));
     for (const auto& c : connections_) {
-      const bool widens = parameters_.widens && c.face >= 0;
+      const bool widens = widens_ && c.face >= 0;
       if (well(c).pressure) exchange_[c.face >= 0].add(c.row, widens ? c.index : index(c), c.face);
     }
     for (int k = 0; k < 2; ++k) {
-      const bool widens = parameters_.widens && k == 1;
+      const bool widens = widens_ && k == 1;
       exchange_[k].bind(context, blocks[k], parameters_.fluid,
                         widens ? parameters_.faces : std::vector<laws::Conduit>());
       load_[k] = View<Real*>("load", context.layout(blocks[k]).n_owned());
@@ -98,12 +99,12 @@ class Wells final : public assembly::Module {
   }
 
   bool constant_load() const override {
-    return !parameters_.widens && std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
-                                              [](const Well& well) { return control(well).constant_in_time(); });
+    return !widens_ && std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
+                                   [](const Well& well) { return control(well).constant_in_time(); });
   }
 
   void start_step(const assembly::State& state) override {
-    if (parameters_.widens) {
+    if (widens_) {
       const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
       start_ = {before.data(), before.data() + before.extent(0)};
       sums_ = sums([&](LocalIndex face) { return start_[face]; });
@@ -125,7 +126,7 @@ class Wells final : public assembly::Module {
   }
 
   void commit(assembly::State& state) const override {
-    if (!parameters_.widens) return;
+    if (!widens_) return;
     const auto widening = state.x[widening_];
     const auto kept = state.history[0];
     Kokkos::parallel_for(
@@ -156,11 +157,10 @@ class Wells final : public assembly::Module {
       p[k] = Kokkos::View<Real*>::HostMirror("p", state.x[blocks_[k]].extent(0));
       Kokkos::deep_copy(p[k], state.x[blocks_[k]]);
     }
-    const auto widening =
-        parameters_.widens ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p[1];
+    const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p[1];
     for (const auto& c : connections_) {
       const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
-      const Real W = index(c, parameters_.widens && c.face >= 0 ? widening(c.face) : 0);
+      const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0);
       const bool held = well(c).pressure.has_value();
       const Real flow = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
       const auto of_well = first + c.well * width;
@@ -175,7 +175,7 @@ class Wells final : public assembly::Module {
   /// Between which pressures W is known, Pa.
   static constexpr Real least_pressure = 1, largest_pressure = 1e12;
 
-  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.widens; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
   const Well& well(const Connection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
 
@@ -487,6 +487,7 @@ class Wells final : public assembly::Module {
   }
 
   WellsParameters parameters_;
+  bool widens_ = false;  // fractures do
   RCP<const mesh::Mesh> mesh_;
   Real size_ = 0;  // largest extent of the domain, m
   std::vector<Segment> segments_;

@@ -52,6 +52,8 @@ class ElasticPlasticJump final : public assembly::Module {
 
   std::string name() const override { return "elastic-plastic jump"; }
 
+  void set_fields(const std::set<std::string>& fields) override { holds_fluid_ = fields.count("face pressure") > 0; }
+
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     assembly::Unknown traction{{"traction", fields::Entity::fracture_face, dim, "Pa"}, "stress", {{"stress"}}};
@@ -64,7 +66,7 @@ class ElasticPlasticJump final : public assembly::Module {
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     add_outputs(d);
     if (parameters_.n_kept > 0) d.history.push_back({"kept by laws", face, parameters_.n_kept});
-    if (parameters_.holds_fluid) d.schur = {"face pressure"};
+    if (holds_fluid_) d.schur = {"face pressure"};
     return d;
   }
 
@@ -149,6 +151,7 @@ class ElasticPlasticJump final : public assembly::Module {
   void add_outputs(assembly::Declaration& d) const;
 
   ElasticPlasticJumpParameters parameters_;
+  bool holds_fluid_ = false;  // of unknown pressure
   RCP<const mesh::Mesh> mesh_;
   std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
@@ -195,7 +198,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
   if (tips) fields_.push_back(context.field("tip displacement"));
-  if (parameters_.holds_fluid) pressure_ = context.field("face pressure");
+  if (holds_fluid_) pressure_ = context.field("face pressure");
   using Assembler = assembly::Assembler<Op>;
   faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
                                        Assembler::Positions::keep);
@@ -456,10 +459,11 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
   return jumps;
 }
 
-std::unique_ptr<assembly::Module> make_elastic_plastic_jump(Shape shape, ElasticPlasticJumpParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
+                                                            ElasticPlasticJumpParameters parameters) {
+  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     if constexpr (mesh::order(s()) == 1)
-      if (parameters.tips) return std::make_unique<ElasticPlasticJump<s(), true>>(std::move(parameters));
+      if (mesh.n_global_enriched > 0) return std::make_unique<ElasticPlasticJump<s(), true>>(std::move(parameters));
     return std::make_unique<ElasticPlasticJump<s(), false>>(std::move(parameters));
   });
 }

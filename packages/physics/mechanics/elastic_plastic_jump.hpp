@@ -28,10 +28,8 @@ struct ElasticPlasticJumpParameters {
   /// c / (E/L) with L the size of the fracture: steers Newton's iterates, has no influence on solutions.
   Real augmentation = 0.3;
   FluidPressure fluid_pressure = {};
-  Real start = 0;            ///< time of the initial state, s
-  bool tips = false;         ///< the displacement is enriched around crack tips: "tip displacement" is part of the jump
-  bool holds_fluid = false;  ///< of unknown pressure, "face pressure": given is what it is at the start
-  int n_kept = 0;            ///< how many numbers the joints of any rank keep of a face, at most
+  Real start = 0;  ///< time of the initial state, s
+  int n_kept = 0;  ///< how many numbers the joints of any rank keep of a face, at most
 };
 
 /// w_0 of make_elastic_plastic_jump in the frames of owned fracture faces, m.
@@ -48,6 +46,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// "kept by laws" [face, n_kept], if there are any, which the laws themselves commit.
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
 /// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
-std::unique_ptr<assembly::Module> make_elastic_plastic_jump(mesh::Shape shape, ElasticPlasticJumpParameters parameters);
+std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
+                                                            ElasticPlasticJumpParameters parameters);
 
 }  // namespace sprekk::physics

@@ -102,9 +102,8 @@ MechanicsParameters parameters_of(const Setting& setting) {
   const auto joint = joints(scene, mesh);
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
-  return {
-      bulk,    joint.values, joint.number,      unknown ? FluidPressure() : fluid, unknown ? fluid : FluidPressure(),
-      unknown, start,        scene.augmentation};
+  return {bulk,  joint.values,      joint.number, unknown ? FluidPressure() : fluid, unknown ? fluid : FluidPressure(),
+          start, scene.augmentation};
 }
 
 std::vector<base::Expression> lithostatic_stress(const Scene& scene) {

@@ -23,7 +23,7 @@ int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints
 
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
   const auto& bulk = parameters.bulk;
-  const auto& fluid = parameters.holds_fluid ? parameters.initial_pressure : parameters.fluid_pressure;
+  const auto& fluid = parameters.initial_pressure.empty() ? parameters.fluid_pressure : parameters.initial_pressure;
   return {parameters.joints,
           bulk.elasticity,
           bulk.initial_stress,
@@ -32,8 +32,7 @@ ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const Mecha
           parameters.augmentation,
           fluid,
           parameters.start,
-          mesh.n_global_enriched > 0,
-          parameters.holds_fluid};
+          most_kept(mesh, parameters.joints)};
 }
 
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
@@ -45,9 +44,7 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(make_interface_traction_balance(
       mesh.shape, {bulk.elasticity, bulk.body_force, bulk.initial_stress, bulk.elasticity_of_cell, fluid}));
-  auto jump = jump_parameters(mesh, parameters);
-  jump.n_kept = most_kept(mesh, parameters.joints);
-  modules.push_back(make_elastic_plastic_jump(mesh.shape, jump));
+  modules.push_back(make_elastic_plastic_jump(mesh, jump_parameters(mesh, parameters)));
   if (mesh.n_global_enriched > 0) modules.push_back(make_tip_enrichment(mesh.shape, bulk, fluid));
   return modules;
 }

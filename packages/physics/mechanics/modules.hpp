@@ -12,7 +12,6 @@ struct MechanicsParameters {
   std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
   FluidPressure fluid_pressure = {};
   FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
-  bool holds_fluid = false;             ///< of unknown pressure
   Real start = 0;                       ///< time of the initial state, s
   Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
 };

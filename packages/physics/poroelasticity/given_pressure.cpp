@@ -43,18 +43,21 @@ class Given final : public GivenPressure {
  public:
   static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
 
-  explicit Given(GivenPressureParameters parameters) : parameters_(std::move(parameters)) {}
+  Given(const mesh::Mesh& mesh, GivenPressureParameters parameters)
+      : parameters_(std::move(parameters)),
+        fractures_(!mesh.fracture_names.empty()),
+        tips_(mesh.n_global_enriched > 0) {}
 
   std::string name() const override { return "given pressure"; }
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
-    if (parameters_.fractures) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
-    if (parameters_.tips) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
+    if (fractures_) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
+    if (tips_) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
     d.outputs = {{{"gained pore volume", dim == 2 ? "m^2" : "m^3", fields::Entity::cell, 1},
                   [this](const auto& state) { return volumes(state, true); }}};
-    if (parameters_.fractures)
+    if (fractures_)
       d.outputs.push_back({{"widening", "m", fields::Entity::fracture_face, 1}, [this](const auto& state) {
                              auto widening = volumes(state, false);
                              for (std::size_t f = 0; f < widening.size(); ++f)
@@ -78,12 +81,12 @@ class Given final : public GivenPressure {
     for (const LocalIndex s : assembly::tip_sides(*mesh_)) faces_of_tips.push_back(faces[s]);
     const int u = context.field("displacement");
     cells_.bind(context, Loop::cells, {u}, cell_volumes<shape>(*mesh_, biot), cells);
-    if (parameters_.fractures) {
+    if (fractures_) {
       const int beta = context.field("side bubble");
       bubbles_.bind(context, Loop::fracture_sides, {beta}, bubble_volumes<shape>(*mesh_, biot), cells_of_sides);
       sides_.bind(context, Loop::fracture_sides, {u, beta}, side_volumes<shape>(*mesh_), faces);
     }
-    if (parameters_.tips) {
+    if (tips_) {
       const int q = context.field("tip displacement");
       tip_cells_.bind(context, Loop::tip_cells, {q}, tip_cell_volumes<shape>(*mesh_, biot),
                       assembly::tip_cells(*mesh_));
@@ -150,17 +153,18 @@ class Given final : public GivenPressure {
   template <class Self, class Visit>
   static void for_each(Self& self, const Visit& visit) {
     visit(self.cells_, true);
-    if (self.parameters_.fractures) {
+    if (self.fractures_) {
       visit(self.bubbles_, true);
       visit(self.sides_, false);
     }
-    if (self.parameters_.tips) {
+    if (self.tips_) {
       visit(self.tip_cells_, true);
       visit(self.tip_sides_, false);
     }
   }
 
   GivenPressureParameters parameters_;
+  bool fractures_, tips_;  // the mesh has some; enriched ones
   RCP<const mesh::Mesh> mesh_;
   Real largest_ = 0;  // on this rank, Pa
   Part<Push<Nodes>> cells_, tip_cells_, tip_sides_;
@@ -170,9 +174,9 @@ class Given final : public GivenPressure {
 
 }  // namespace
 
-std::unique_ptr<GivenPressure> make_given_pressure(Shape shape, GivenPressureParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<GivenPressure> {
-    return std::make_unique<Given<s()>>(std::move(parameters));
+std::unique_ptr<GivenPressure> make_given_pressure(const mesh::Mesh& mesh, GivenPressureParameters parameters) {
+  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<GivenPressure> {
+    return std::make_unique<Given<s()>>(mesh, std::move(parameters));
   });
 }
 

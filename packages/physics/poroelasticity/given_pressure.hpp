@@ -10,8 +10,6 @@ namespace sprekk::physics {
 
 struct GivenPressureParameters {
   std::vector<Real> biot;  ///< [local cell] Biot's coefficient
-  bool fractures = false;  ///< there are some
-  bool tips = false;       ///< the displacement is enriched around crack tips
   Real initial = 0;        ///< pressure of the initial state, Pa
 };
 
@@ -25,7 +23,7 @@ class GivenPressure : public assembly::Module {
   virtual void set(const std::vector<Real>& rock, const std::vector<Real>& fractures) = 0;
 };
 
-std::unique_ptr<GivenPressure> make_given_pressure(mesh::Shape shape, GivenPressureParameters parameters);
+std::unique_ptr<GivenPressure> make_given_pressure(const mesh::Mesh& mesh, GivenPressureParameters parameters);
 
 /// Of a scene whose `host_fluid` is given: the pressures of the fluid in owned cells and fracture faces, Pa, in the
 /// order of model::FieldView, from the next step on. The outputs "gained pore volume" and "widening" say what room it

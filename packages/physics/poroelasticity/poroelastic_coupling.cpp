@@ -126,7 +126,10 @@ class PoroelasticCoupling final : public assembly::Module {
  public:
   static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape), n_faces = mesh::n_faces(shape);
 
-  explicit PoroelasticCoupling(PoroelasticCouplingParameters parameters) : parameters_(std::move(parameters)) {}
+  PoroelasticCoupling(const mesh::Mesh& mesh, PoroelasticCouplingParameters parameters)
+      : parameters_(std::move(parameters)),
+        fractures_(!mesh.fracture_names.empty()),
+        tips_(mesh.n_global_enriched > 0) {}
 
   std::string name() const override { return "poroelastic coupling"; }
   std::string fingerprint() const override { return parameters_.initial.text(); }
@@ -143,7 +146,7 @@ class PoroelasticCoupling final : public assembly::Module {
       d.couplings.push_back({loop, "widening", {displacement, "widening"}});
     };
     work(Loop::cells, "displacement");
-    if (parameters_.fractures) {
+    if (fractures_) {
       assembly::Unknown widening{
           {"widening", fields::Entity::fracture_face, 1, "m"}, "displacement", {{"displacement", area}}};
       widening.local_group = "fracture face";
@@ -152,7 +155,7 @@ class PoroelasticCoupling final : public assembly::Module {
       open(Loop::fracture_sides, "displacement");
       open(Loop::fracture_sides, "side bubble");
     }
-    if (parameters_.tips) {
+    if (tips_) {
       work(Loop::tip_cells, "tip displacement");
       open(Loop::tip_sides, "tip displacement");
     }
@@ -233,14 +236,14 @@ class PoroelasticCoupling final : public assembly::Module {
   static void for_each_rate(Self& self, const Visit& visit) {
     visit(self.cells_);
     visit(self.stabilised_);
-    if (self.parameters_.fractures) visit(self.bubbles_);
-    if (self.parameters_.tips) visit(self.tip_cells_);
+    if (self.fractures_) visit(self.bubbles_);
+    if (self.tips_) visit(self.tip_cells_);
   }
   /// The same for those of fractures.
   template <class Self, class Visit>
   static void for_each_opening(Self& self, const Visit& visit) {
-    if (self.parameters_.fractures) visit(self.sides_);
-    if (self.parameters_.tips) visit(self.tip_sides_);
+    if (self.fractures_) visit(self.sides_);
+    if (self.tips_) visit(self.tip_sides_);
   }
 
   void add_rates(const assembly::State& state, const assembly::Rows& r, Real rate) const {
@@ -259,6 +262,7 @@ class PoroelasticCoupling final : public assembly::Module {
   Real mean_initial(LocalIndex cell) const;
 
   PoroelasticCouplingParameters parameters_;
+  bool fractures_, tips_;  // the mesh has some; enriched ones
   RCP<const mesh::Mesh> mesh_;
   std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
   ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: what fixes the stress, of V_K
@@ -278,12 +282,12 @@ void PoroelasticCoupling<shape>::bind(const assembly::Context& context) {
   stabilised_.bind(context, Loop::cells, {p, trace}, {p, trace});
   build_cells();
   build_stabilisation();
-  if (!parameters_.fractures) return;
+  if (!fractures_) return;
   const int beta = context.field("side bubble"), b = context.field("widening");
   bubbles_.bind(context, Loop::fracture_sides, {beta, p}, {beta, p});
   sides_.bind(context, Loop::fracture_sides, {u, beta, b}, {u, beta, trace, b});
   build_sides();
-  if (!parameters_.tips) return;
+  if (!tips_) return;
   const int q = context.field("tip displacement");
   tip_cells_.bind(context, Loop::tip_cells, {q, p}, {q, p});
   tip_sides_.bind(context, Loop::tip_sides, {q, b}, {q, trace, b});
@@ -412,9 +416,10 @@ void PoroelasticCoupling<shape>::build_tips() {
 
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_poroelastic_coupling(Shape shape, PoroelasticCouplingParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    return std::make_unique<PoroelasticCoupling<s()>>(std::move(parameters));
+std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
+                                                            PoroelasticCouplingParameters parameters) {
+  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<PoroelasticCoupling<s()>>(mesh, std::move(parameters));
   });
 }
 

@@ -21,8 +21,6 @@ struct PoroelasticCouplingParameters {
   std::vector<int> rock_of_cell;        ///< [local cell] which of them; empty: the number of the cell's region
   base::Expression initial = 0;         ///< p_0, Pa
   FluxScheme scheme = FluxScheme::rt0;  ///< as in the rock
-  bool fractures = false;               ///< there are some
-  bool tips = false;                    ///< the displacement is enriched around crack tips
 };
 
 /// Couples "displacement" (with "side bubble" and "tip displacement" where there are) to "pressure" and "face pressure"
@@ -37,7 +35,7 @@ struct PoroelasticCouplingParameters {
 /// S the mean of x x^T over the corners of a cell, seen from its centre: h^2/4 for an edge h, as Aguilar, Gaspar,
 /// Lisbona and Rodrigo (2008) have it; it vanishes with h^2. Nothing of it flows into fractures. What fluid fractures
 /// have room for is the matter of make_fracture_storage().
-std::unique_ptr<assembly::Module> make_poroelastic_coupling(mesh::Shape shape,
+std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
                                                             PoroelasticCouplingParameters parameters);
 
 }  // namespace sprekk::physics

@@ -22,18 +22,15 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
   coupling.initial = initial_pressure(scene);
   coupling.scheme =
       flux_scheme("Flow", scene.flow ? scene.flow->scheme : "auto", mesh, flow.values, flow.number).scheme;
-  coupling.fractures = !mesh.fracture_names.empty();
-  coupling.tips = mesh.n_global_enriched > 0;
-  return make_poroelastic_coupling(mesh.shape, std::move(coupling));
+  return make_poroelastic_coupling(mesh, std::move(coupling));
 }
 
 /// The pressure that a host gives.
 std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
   const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
-  GivenPressureParameters given{
-      {}, !mesh.fracture_names.empty(), mesh.n_global_enriched > 0, scene.host_fluid->initial_pressure};
+  GivenPressureParameters given{{}, scene.host_fluid->initial_pressure};
   for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) given.biot.push_back(biot[mesh.cell_region[cell]]);
-  return make_given_pressure(mesh.shape, std::move(given));
+  return make_given_pressure(mesh, std::move(given));
 }
 
 }  // namespace
