@@ -200,7 +200,8 @@ class Module {
   virtual void initial_history(const std::vector<View<Real**>>& history) const {}
   /// Called at the start of a step, before any residual at its end t.
   virtual void set_time(Real t, const Scales& scales) {}
-  /// Called after set_time(), with the histories at the start of the step. Collective.
+  /// Called after set_time(), with the histories at the start of the step. Collective; what can throw on one rank comes
+  /// last.
   virtual void start_step(const State& state) {}
   /// Moves the histories on to `state`.
   virtual void commit(State& state) const {}

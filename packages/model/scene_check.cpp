@@ -3,6 +3,8 @@
 #include "base/check.hpp"
 #include "mesh/msh_file.hpp"
 
+#include <fmt/ranges.h>
+
 namespace sprekk::model {
 
 namespace {
@@ -48,7 +50,7 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   for (const auto& section : absent) rates = rates || !comparison.is_absent(section);
   if (!rates)
     comparison.fail("Time > \"scheme\"",
-                    fmt::format("is \"{}\": needs the section {}", scheme, base::quoted_list(absent)));
+                    fmt::format("is \"{}\": needs the section \"{}\"", scheme, fmt::join(absent, "\" or \"")));
 }
 
 void compare_error_estimate(Comparison& comparison) {

@@ -90,7 +90,12 @@ void Comparison::compare() {
   compare_regions();
   compare_fractures();
   compare_boundary_conditions();
-  for_each_physics([&](auto physics) { physics.compare(*this); });
+  bool any = false;
+  for_each_physics([&](auto physics) {
+    physics.compare(*this);
+    any = any || physics.is_in(scene_);
+  });
+  if (!any && is_sound("Bulk")) fail("Bulk > \"rigid\"", "leaves nothing to solve for; the scene has no other physics");
 }
 
 void Comparison::compare(const mesh::GlobalMesh& mesh) {

@@ -18,10 +18,6 @@ inline bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-inline int index_of(const Names& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 /// What a scene must fit to, as far as it is known.
 struct MeshNames {
   std::optional<int> dim;

@@ -68,9 +68,9 @@ struct Physics {
   static bool needs_facets(const Scene&) { return false; }
   /// Whether it has rates of what it stores, which the scheme in time is of.
   static bool has_rates(const Scene&) { return false; }
-  /// Names of the sections with which it has.
+  /// Names of the sections that bring such rates.
   static std::vector<std::string> sections_with_rates() { return {}; }
-  /// Why errors of a state cannot be estimated with it; empty if they can.
+  /// Why there is no error estimate with it; empty if there is.
   static std::string no_error_estimate(const Scene&) { return ""; }
   /// Reports what does not fit together.
   static void compare(Comparison&) {}

@@ -2,8 +2,6 @@
 
 #include "mesh/facets.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
 namespace sprekk::physics {
 
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned) {

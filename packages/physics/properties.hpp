@@ -3,9 +3,16 @@
 
 #include "fields/layout.hpp"
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 namespace sprekk::physics {
+
+/// The number of a name; how many there are, if it is none of them.
+inline int index_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 /// The different values of a property, and which of them each entity has; no list of numbers where the group of an
 /// entity (region, fracture) tells.

@@ -2,8 +2,6 @@
 
 #include "physics/material_library.hpp"
 
-#include <fmt/ranges.h>
-
 namespace sprekk::physics {
 
 void Material::describe(base::Section& s) {

@@ -24,48 +24,33 @@ struct Materials : P::Rock..., P::Joint... {
   void check_joint(base::Section& s) const { (P::Joint::check(s), ...); }
 };
 
-template <class... P>
-struct Bulks : P::Bulk... {
- protected:
-  void describe_parts(base::Section& s) { (P::Bulk::describe(s), ...); }
-  void check_parts(base::Section& s) const { (P::Bulk::check(s), ...); }
-};
-
-template <class... P>
-struct Fractures : P::Fracture... {
- protected:
-  void describe_parts(base::Section& s) { (P::Fracture::describe(s), ...); }
-  void check_parts(base::Section& s) const { (P::Fracture::check(s), ...); }
-};
-
-template <class... P>
-struct Regions : P::Region... {
+/// Parts of a section, one of each physics.
+template <class... Part>
+struct Parts : Part... {
+  /// What all of them hold.
   std::vector<Prescribed> prescribed() const {
     std::vector<Prescribed> all;
     const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-    (add(P::Region::prescribed()), ...);
+    (add(Part::prescribed()), ...);
     return all;
   }
 
  protected:
-  void describe_parts(base::Section& s) { (P::Region::describe(s), ...); }
-  void check_parts(base::Section& s) const { (P::Region::check(s), ...); }
-  bool is_any_given() const { return (P::Region::is_given() || ...); }
+  void describe_parts(base::Section& s) { (Part::describe(s), ...); }
+  void check_parts(base::Section& s) const { (Part::check(s), ...); }
+  bool is_any_given() const { return (Part::is_given() || ...); }
 };
 
 template <class... P>
-struct BoundaryConditions : P::BoundaryCondition... {
-  std::vector<Prescribed> prescribed() const {
-    std::vector<Prescribed> all;
-    const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-    (add(P::BoundaryCondition::prescribed()), ...);
-    return all;
-  }
+using Bulks = Parts<typename P::Bulk...>;
+template <class... P>
+using Regions = Parts<typename P::Region...>;
+template <class... P>
+using Fractures = Parts<typename P::Fracture...>;
 
+template <class... P>
+struct BoundaryConditions : Parts<typename P::BoundaryCondition...> {
  protected:
-  void describe_parts(base::Section& s) { (P::BoundaryCondition::describe(s), ...); }
-  void check_parts(base::Section& s) const { (P::BoundaryCondition::check(s), ...); }
-  bool is_any_given() const { return (P::BoundaryCondition::is_given() || ...); }
   static std::vector<std::string> kinds() { return {P::BoundaryCondition::kinds...}; }
 };
 

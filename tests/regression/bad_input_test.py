@@ -337,6 +337,25 @@ class Scenes(BadInput):
         self.refuse(["scene.xml", '"end"', '"nan"', "not a number"], "check",
                     self.scene_with(('<Parameter name="end" type="double" value="1"/>', '<Parameter name="end" type="double" value="nan"/>')))
 
+    def test_heat(self):
+        def refuse(expected, *sets):
+            self.refuse(expected, "check", self.scene("heat/cooling_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
+        surface = "Boundary conditions.surface."
+        refuse(['Materials > rock > "thermal conductivity": missing; it is required with "Heat"'], "Materials.rock.thermal conductivity={}")
+        refuse(['"thermal conductivity" = {-1} is not positive definite'], "Materials.rock.thermal conductivity={-1}")
+        refuse(['"volumetric heat capacity": is -1, must be at least 0'], "Materials.rock.volumetric heat capacity=-1")
+        refuse(['surface: give either "temperature" or "heat flux"'], surface + "heat flux=1")
+        refuse(['"heat transfer coefficient": is -1, must be at least 0'], surface + "heat transfer coefficient=-1")
+        refuse(['unknown unit "degC"'], surface + "temperature=20 degC")
+        refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
+        refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
+               "Materials.rock.volumetric heat capacity=0")
+        refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
+        refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
+        self.refuse_set(['moved > "temperature": needs the section "Heat"'], "Boundary conditions.moved.temperature=1")
+        self.refuse_set(["Heat: goes without fractures so far"], "Heat.source=1")
+        self.refuse_set(['Bulk > "rigid": leaves nothing to solve for'], "Bulk.rigid=true")
+
     def test_flow(self):
         def refuse(expected, *sets):
             self.refuse(expected, "check", self.scene("flow/source_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
@@ -369,7 +388,7 @@ class Scenes(BadInput):
         (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
         self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
-        self.refuse_set(['Time > "scheme": is "BDF2": needs the section "Flow"'], "Time.scheme=BDF2")
+        self.refuse_set(['Time > "scheme": is "BDF2": needs the section "Flow" or "Heat"'], "Time.scheme=BDF2")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
 
     def test_poroelasticity(self):

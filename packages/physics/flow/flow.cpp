@@ -11,17 +11,11 @@
 #include "physics/ranged_entry.hpp"
 #include "physics/scene.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
 #include <algorithm>
 
 namespace sprekk::physics {
 
 namespace {
-
-int index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
 
 std::vector<FluidCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
   std::vector<FluidCondition> conditions;
@@ -47,19 +41,19 @@ std::vector<Well> wells(const Scene& scene, int dim) {
 /// Of the flow in and through a joint whose sides have moved apart by `opening`, m.
 FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, Real opening,
                                         const std::array<Real, 3>& x) {
-  const auto at = [&](const char* name, const base::Expression& value) {
-    RangedEntry(name, value, 0).check(x);
+  const auto at = [&](const char* name, const base::Expression& value, bool may_be_zero) {
+    RangedEntry(name, value, 0, may_be_zero).check(x);
     return value(x, 0);
   };
-  const Real aperture = at("initial aperture", joint.initial_aperture),
-             residual = at("residual aperture", joint.residual_aperture), a = std::max(aperture, residual);
+  const Real aperture = at("initial aperture", joint.initial_aperture, true),
+             residual = at("residual aperture", joint.residual_aperture, true), a = std::max(aperture, residual);
   SPREKK_CHECK(a > 0,
                "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
                x[0], x[1], x[2]);
   const auto& given = joint.tangential_permeability;
-  const Real k = given ? at("tangential permeability", *given) : 0,
-             across = at("normal permeability", joint.normal_permeability);
+  const Real k = given ? at("tangential permeability", *given, false) : 0,
+             across = at("normal permeability", joint.normal_permeability, false);
   const FractureFlowParameters::Face face{{aperture + opening, residual, k, viscosity}, 2 * across / (a * viscosity)};
   SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
                "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
@@ -126,7 +120,7 @@ bool has_unknown_pressure(const Scene& scene) { return scene.flow || (scene.host
 
 bool Flow::needs_facets(const Scene& scene) { return has_unknown_pressure(scene); }
 
-bool Flow::has_rates(const Scene& scene) { return has_unknown_pressure(scene); }
+bool Flow::has_rates(const Scene& scene) { return has_fluid(scene); }
 
 base::Expression initial_pressure(const Scene& scene) {
   return scene.flow ? scene.flow->initial_pressure
@@ -179,14 +173,6 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
   if (flow.compressibility > 0 || deforms)
     modules.push_back(make_fracture_storage({aperture, fluid, flow.initial_pressure, deforms}));
-}
-
-Real largest_mobility(const Scene& scene, const mesh::Mesh& mesh) {
-  Real here = 0, largest = 0;
-  for (const auto& one : mobility(scene, mesh).values)
-    for (int i = 0; i < mesh.dim(); ++i) here = std::max(here, one.value[i][i]);
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
-  return largest;
 }
 
 }  // namespace sprekk::physics

@@ -114,7 +114,4 @@ base::Expression initial_pressure(const Scene& scene);
 /// Of local cells.
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Permeability over viscosity, m^2/(Pa s). Collective.
-Real largest_mobility(const Scene& scene, const mesh::Mesh& mesh);
-
 }  // namespace sprekk::physics

@@ -108,6 +108,12 @@ class Wells final : public assembly::Module {
       const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
       start_ = {before.data(), before.data() + before.extent(0)};
       sums_ = sums([&](LocalIndex face) { return start_[face]; });
+      for (std::size_t w = 0; w < sums_.size(); ++w)
+        SPREKK_CHECK(
+            sums_[w] > 0,
+            "Sprekk > Flow > Wells > {}: the fractures that it is in are closed at t = {}, so that nothing flows "
+            "into them; give a \"residual aperture\"",
+            parameters_.wells[w].name, state.t);
     }
     std::array<std::vector<Real>, 2> outside;
     for (int k = 0; k < 2; ++k) {
@@ -163,10 +169,11 @@ class Wells final : public assembly::Module {
       const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0);
       const bool held = well(c).pressure.has_value();
       const Real flow = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
+      const Real drop = flow == 0 ? 0 : flow / W;
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
       totals[of_well + 1].value +=
-          share * (held ? control(well(c))(well(c).points[0], state.t) : at + flow / W - head(c, at + flow / W));
+          share * (held ? control(well(c))(well(c).points[0], state.t) : at + drop - head(c, at + drop));
       totals[of_well + 3 + c.fracture].value += flow;
     }
   }

@@ -50,10 +50,11 @@ void compare_rock(Comparison& c, const Material& rock) {
 void compare_level(Comparison& c) {
   const auto& conditions = c.scene().boundary_conditions;
   const auto& regions = c.scene().regions;
-  bool known = std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
-    const auto& h = named.second.heat_transfer_coefficient;
-    return named.second.temperature && !(h && is_zero(*h));
-  });
+  bool known = conditions.empty() && !c.is_absent("Boundary conditions");
+  known = known || std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
+            const auto& h = named.second.heat_transfer_coefficient;
+            return named.second.temperature && !(h && is_zero(*h));
+          });
   known = known || std::any_of(regions.begin(), regions.end(), [](const auto& r) { return r.second.temperature; });
   c.for_each_rock([&](const Material& rock) { known = known || rock.heat_capacity > 0; });
   if (known || !c.names().regions || !c.is_sound("Materials") || !c.is_sound("Boundary conditions")) return;

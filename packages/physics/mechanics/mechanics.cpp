@@ -16,10 +16,6 @@ namespace sprekk::physics {
 
 namespace {
 
-int number_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 /// Mean over a fracture face whose cell on side minus is local.
 Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const base::Expression& value) {
   Real sum = 0, total = 0;
@@ -96,8 +92,8 @@ MechanicsParameters parameters_of(const Setting& setting) {
       rock.values, body_force(scene, mesh), {}, initial_stress(scene, mesh.region_names), rock.number};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
-      bulk.tractions.push_back({number_of(mesh.boundary_names, condition.boundary), condition.traction,
-                                condition.region ? number_of(mesh.region_names, *condition.region) : -1});
+      bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
+                                condition.region ? index_of(mesh.region_names, *condition.region) : -1});
   if (mesh.fracture_names.empty()) return {bulk};
   const auto joint = joints(scene, mesh);
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
@@ -196,7 +192,12 @@ std::vector<std::string> Mechanics::warnings(const Setting& setting) {
       setting.scene.origin)};
 }
 
+std::string Mechanics::no_error_estimate(const Scene& scene) {
+  return is_in(scene) ? "" : "is of stress and jumps, and the rock does not deform";
+}
+
 std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {
+  if (!is_in(setting.scene)) return {};
   std::vector<std::string> all = {friction_doubt(setting.scene)};
   if (oscillates) all.push_back(dilation_doubt(setting.scene, setting.mesh));
   all.erase(std::remove(all.begin(), all.end(), ""), all.end());

@@ -76,6 +76,7 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   static bool is_in(const Scene& scene);
+  static std::string no_error_estimate(const Scene& scene);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);

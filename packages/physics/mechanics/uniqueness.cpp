@@ -20,11 +20,13 @@ std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.material_of(name));
   Real shear = 0, uniaxial = std::numeric_limits<Real>::infinity();
   for (const auto* rock : rocks) {
+    if (!rock->has_elasticity()) continue;  // of no cell
     if (!rock->is_uniformly_elastic()) return {};
     const auto elasticity = rock->elasticity({});
     shear = std::max(shear, elasticity.G);
     uniaxial = std::min(uniaxial, elasticity.lambda + 2 * elasticity.G);
   }
+  if (shear == 0) return {};
   return laws::Elasticity{shear, uniaxial - 2 * shear};
 }
 
