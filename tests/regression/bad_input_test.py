@@ -348,12 +348,15 @@ class Scenes(BadInput):
         refuse(['"heat transfer coefficient": is -1, must be at least 0'], surface + "heat transfer coefficient=-1")
         refuse(['unknown unit "degC"'], surface + "temperature=20 degC")
         refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
+        refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
         refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0")
         refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
         refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
         self.refuse_set(['moved > "temperature": needs the section "Heat"'], "Boundary conditions.moved.temperature=1")
         self.refuse_set(["Heat: goes without fractures so far"], "Heat.source=1")
+        self.refuse_set(['Heat > "initial temperature": missing; it is required'], "Heat.source=1",
+                        "Materials.rock.volumetric heat capacity=1")
         self.refuse_set(['Bulk > "rigid": leaves nothing to solve for'], "Bulk.rigid=true")
 
     def test_flow(self):

@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "mesh/extents.hpp"
 #include "physics/flow/exchange.hpp"
+#include "physics/ranged_entry.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -66,7 +67,9 @@ class DarcyFlow final : public assembly::Module {
     assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_,
                                              is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
     for_each_condition([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
+      if (!condition.conductance) return;
+      RangedEntry("conductance", condition.conductance, 0).check(x);
+      exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
     exchange_.bind(context, blocks_[1], parameters_.fluid);
     for (int k = 0; k < 2; ++k) load_[k] = View<Real*>("load", context.layout(blocks_[k]).n_owned());

@@ -159,7 +159,6 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (!flow.wells.empty()) {
     WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
     for (const auto& face : fractures.faces) all.faces.push_back(face.along);
-    all.softness = fractures.softness;
     modules.push_back(make_wells(mesh.shape, std::move(all)));
   }
   modules.push_back(make_darcy_flow(mesh.shape, std::move(darcy)));

@@ -6,6 +6,7 @@
 #include "physics/flow/exchange.hpp"
 #include "physics/flow/face_plane.hpp"
 #include "physics/flow/present_conduits.hpp"
+#include "physics/ranged_entry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +124,9 @@ class FractureFlow final : public assembly::Module {
                                                is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
     }
     for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (condition.conductance) exchange_.add(facet, area * (*condition.conductance)(x, 0));
+      if (!condition.conductance) return;
+      RangedEntry("conductance", condition.conductance, 0).check(x);
+      exchange_.add(facet, area * (*condition.conductance)(x, 0));
     });
     exchange_.bind(context, block_, parameters_.fluid);
     load_ = View<Real*>("load", context.layout(block_).n_owned());

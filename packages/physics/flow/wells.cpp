@@ -68,8 +68,6 @@ class Wells final : public assembly::Module {
     cells_of_node_.clear();
     if (widens_) widening_ = context.field("widening");
     sums_ = sums([](LocalIndex) { return 0; });
-    for (Real p = least_pressure; parameters_.softness > 0 && p <= largest_pressure; p *= 2)
-      under_.push_back(sums([&](LocalIndex) { return parameters_.softness * p; }));
     for (const auto& c : connections_) {
       const bool widens = widens_ && c.face >= 0;
       if (well(c).pressure) exchange_[c.face >= 0].add(c.row, widens ? c.index : index(c), c.face);
@@ -146,7 +144,7 @@ class Wells final : public assembly::Module {
     for (std::size_t w = 0; w < parameters_.wells.size(); ++w) {
       const auto& one = parameters_.wells[w];
       const Real value = std::abs(control(one)(one.points[0], t));
-      largest = std::max(largest, one.pressure ? value : pressure_for(w, value));
+      largest = std::max(largest, one.pressure ? value : value / sums_[w]);
     }
     return {{"pressure", largest}};
   }
@@ -179,9 +177,6 @@ class Wells final : public assembly::Module {
   }
 
  private:
-  /// Between which pressures W is known, Pa.
-  static constexpr Real least_pressure = 1, largest_pressure = 1e12;
-
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
   const Well& well(const Connection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
@@ -202,16 +197,6 @@ class Wells final : public assembly::Module {
     return index(c, c.face < 0 || start_.empty() ? 0 : start_[c.face]) / sums_[c.well];
   }
   Real rate(const Connection& c, Real t) const { return control(well(c))(well(c).points[0], t) * share(c); }
-
-  /// About p with p W = rate, W that of fractures which p has opened: see FractureFlowParameters::softness.
-  Real pressure_for(std::size_t w, Real rate) const {
-    Real p = least_pressure;
-    for (const auto& W : under_) {
-      if (p * W[w] >= rate) return rate / W[w];
-      p *= 2;
-    }
-    return rate / sums_[w];
-  }
 
   Real lift(const Connection& c) const {
     Real sum = 0;
@@ -499,11 +484,10 @@ class Wells final : public assembly::Module {
   Real size_ = 0;  // largest extent of the domain, m
   std::vector<Segment> segments_;
   std::vector<std::vector<LocalIndex>> cells_of_node_;
-  std::vector<Connection> connections_;   // of this rank
-  std::vector<Real> start_;               // [owned fracture face] widening at the start of the step; empty: none
-  std::vector<Real> sums_;                // [well] sum of W over all ranks then
-  std::vector<std::vector<Real>> under_;  // [doubling of pressure][well] that under a pressure
-  std::array<int, 2> blocks_{};           // pressure, face pressure
+  std::vector<Connection> connections_;  // of this rank
+  std::vector<Real> start_;              // [owned fracture face] widening at the start of the step; empty: none
+  std::vector<Real> sums_;               // [well] sum of W over all ranks then
+  std::array<int, 2> blocks_{};          // pressure, face pressure
   int widening_ = -1;
   std::array<Exchange, 2> exchange_;  // of wells with a pressure
   std::array<View<Real*>, 2> load_;   // [owned row] of wells with a rate, m^3/s

@@ -29,7 +29,6 @@ struct WellsParameters {
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
   std::vector<laws::Conduit> faces;  ///< [local fracture face]
-  Real softness = 0;                 ///< as in FractureFlowParameters
 };
 
 /// Adds -W (p_w - p) to the rows of "pressure" of cells that a well runs through and of "face pressure" of fracture

@@ -73,7 +73,7 @@ void HeatSection::describe(base::Section& s) {
       scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
       "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
       "orthogonal, else mimetic");
-  check_constant_in_time(s, "initial temperature", initial_temperature);
+  if (initial_temperature) check_constant_in_time(s, "initial temperature", *initial_temperature);
 }
 
 void Heat::Sections::describe(base::Section& s) { s.section(heat, "Heat", "heat that the rock conducts and stores"); }
@@ -131,6 +131,10 @@ void Heat::compare(Comparison& c) {
     c.fail("Heat", "goes without fractures so far, and the mesh has some");
   c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
   compare_level(c);
+  c.for_each_rock([&](const Material& rock) {
+    if (rock.heat_capacity > 0 && !c.scene().heat->initial_temperature && c.is_sound("Heat"))
+      c.fail("Heat > \"initial temperature\"", "missing; it is required where rock has a \"volumetric heat capacity\"");
+  });
   for (const auto& [name, condition] : c.scene().boundary_conditions)
     for (const auto& [second, other] : c.scene().boundary_conditions)
       if (condition.temperature && !condition.heat_transfer_coefficient &&
@@ -152,7 +156,7 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   if (!is_zero(scene.heat->source)) heat.source = {scene.heat->source};
   heat.in_regions =
       std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.temperature; });
-  heat.initial = scene.heat->initial_temperature;
+  heat.initial = scene.heat->initial_temperature.value_or(0);
   const auto number_of = [](const Names& names, const auto& name) { return name ? index_of(names, *name) : -1; };
   for (const auto& [name, one] : scene.boundary_conditions)
     if (one.heat_flux || one.heat_transfer_coefficient)

@@ -12,7 +12,8 @@
 namespace sprekk::physics {
 
 struct HeatSection {
-  base::Expression source = 0, initial_temperature = 0;
+  base::Expression source = 0;
+  std::optional<base::Expression> initial_temperature;  ///< needed where heat is stored
   std::string scheme = "auto";
   void describe(base::Section& section);
 };

@@ -1,7 +1,7 @@
 #include "physics/heat/heat_conduction.hpp"
 
-#include "base/check.hpp"
 #include "mesh/extents.hpp"
+#include "physics/ranged_entry.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -208,7 +208,9 @@ void HeatConduction<shape>::bind(const assembly::Context& context) {
     largest_initial_ = std::max(largest_initial_, std::abs(sum / total));
   }
   for_each_condition([&](const HeatCondition& one, std::size_t face, LocalIndex, Real area, const auto& x) {
-    if (one.coefficient) coefficient[face] += area * (*one.coefficient)(x, 0);
+    if (!one.coefficient) return;
+    RangedEntry("heat transfer coefficient", one.coefficient, 0).check(x);
+    coefficient[face] += area * (*one.coefficient)(x, 0);
   });
   op_->heat = assembly::to_device(heat, "heat capacity");
   op_->initial = assembly::to_device(initial, "initial temperature");

@@ -24,7 +24,7 @@ model::Scene box(const std::string& cell, int n) {
   rock.heat_capacity = 3;
   scene.bulk.material = "rock";
   scene.bulk.rigid = true;
-  scene.heat.emplace();
+  scene.heat.emplace().initial_temperature = 0;
   return scene;
 }
 
