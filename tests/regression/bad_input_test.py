@@ -343,14 +343,14 @@ class Scenes(BadInput):
         surface = "Boundary conditions.surface."
         refuse(['Materials > rock > "thermal conductivity": missing; it is required with "Heat"'], "Materials.rock.thermal conductivity={}")
         refuse(['"thermal conductivity" = {-1} is not positive definite'], "Materials.rock.thermal conductivity={-1}")
-        refuse(['"volumetric heat capacity": is -1, must be at least 0'], "Materials.rock.volumetric heat capacity=-1")
+        refuse(['"volumetric heat capacity": is -1, must be at least 0'], "Materials.rock.volumetric heat capacity=-1 J/(m^3*K)")
         refuse(['surface: give either "temperature" or "heat flux"'], surface + "heat flux=1")
         refuse(['"heat transfer coefficient": is -1, must be at least 0'], surface + "heat transfer coefficient=-1")
         refuse(['unknown unit "degC"'], surface + "temperature=20 degC")
         refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
         refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
         refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
-               "Materials.rock.volumetric heat capacity=0")
+               "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
         refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
         refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
         self.refuse_set(['moved > "temperature": needs the section "Heat"'], "Boundary conditions.moved.temperature=1")
