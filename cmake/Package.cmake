@@ -19,7 +19,7 @@ function(sprekk_package name)
   target_include_directories(sprekk_${name} ${scope}
     $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/packages> $<INSTALL_INTERFACE:include/sprekk>)
   target_link_libraries(sprekk_${name} ${scope} sprekk_trilinos fmt::fmt ${uses} ${ARG_LINKS})
-  target_compile_features(sprekk_${name} ${scope} cxx_std_17)
+  target_compile_features(sprekk_${name} ${scope} cxx_std_20)
   set_target_properties(sprekk_${name} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS sprekk_${name} EXPORT Sprekk)
 endfunction()
