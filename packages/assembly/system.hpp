@@ -178,6 +178,9 @@ class System : public fields::BlockProblem {
   struct Lagged {
     std::vector<Real> used, before, led_to, slope;  // [local fracture face] ln of coefficients: those in f, the ones
                                                     // before them, those of the x that these led to; slopes
+    std::vector<Real> way;     // the farthest that ln of a coefficient moves next
+    std::vector<int> n_turns;  // how often it turned back
+    int n_iterates = 0;
   } lagged_;
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;

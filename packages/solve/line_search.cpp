@@ -148,7 +148,7 @@ bool LineSearch::is_stagnant() {
   const int now = static_cast<int>(merits_.size()) - 1;
   if (picard_.possible()) {
     const bool first = now == static_cast<int>(since_);
-    if (first || changed_ || merits_.back() < 0.5 * least_) progress_ = merits_.size();
+    if (first || changed_ || picard_.lags() || merits_.back() < 0.5 * least_) progress_ = merits_.size();
     least_ = first ? merits_.back() : std::min(least_, merits_.back());
     return merits_.size() > progress_ + trial_period;
   }

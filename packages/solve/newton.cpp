@@ -21,7 +21,7 @@ namespace {
 
 using NOX::StatusTest::StatusType;
 
-constexpr int most_lagged = 30;  // steps while coefficients of fluxes lag
+constexpr int most_lagged = 60;  // steps while coefficients of fluxes lag
 
 /// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is
 /// not finite, without progress, or out of iterations. Keeps the history and the reason.

@@ -37,7 +37,7 @@ class Picard {
  private:
   BlockProblem& problem_;
   bool possible_, lags_;
-  Real near_ = 0.3;  // |ln| of the ratio of coefficients
+  Real near_ = 1;    // |ln| of the ratio of coefficients
   int n_ = 0;
 };
 
