@@ -5,6 +5,7 @@
 #include "assembly/loose_pieces.hpp"
 #include "assembly/module.hpp"
 #include "assembly/rates.hpp"
+#include "assembly/relaxation.hpp"
 #include "base/timer.hpp"
 #include "fields/block_problem.hpp"
 
@@ -175,13 +176,7 @@ class System : public fields::BlockProblem {
   ConstView<Real**> anchor_;  // [owned fracture face, 2 dim] of tether()
   Real tether_ = 0;
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
-  struct Lagged {
-    std::vector<Real> used, before, led_to, slope;  // [local fracture face] ln of coefficients: those in f, the ones
-                                                    // before them, those of the x that these led to; slopes
-    std::vector<Real> way;     // the farthest that ln of a coefficient moves next
-    std::vector<int> n_turns;  // how often it turned back
-    int n_iterates = 0;
-  } lagged_;
+  Relaxation lagged_;              // [local fracture face] of the logarithms of coefficients_
   RCP<base::Timers> timers_;
   Rates::Scheme scheme_;
   Real extent_;  // largest of the domain, m

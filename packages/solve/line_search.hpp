@@ -17,8 +17,8 @@ struct SearchReport {
   std::string failure;  ///< why there was no step
   std::string loose;    ///< what nothing held in one of the iterates, the last such
   /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
-  /// steps together were below half of one of Newton's. Where coefficients of fluxes depend on x: in ten iterates no
-  /// state changed, and no merit was below half the best before.
+  /// steps together were below half of one of Newton's. Where coefficients of fluxes depend on x and do not lag: in
+  /// ten iterates no state changed, and no merit was below half the best before.
   bool stagnant = false;
   bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
   int n_accepted = 0;            ///< iterates but for the start

@@ -169,7 +169,7 @@ class FractureFlow final : public assembly::Module {
   }
 
   void set_time(Real t, const assembly::Scales& scales) override {
-    if (widens_) open_ = of_displacement * scales.at("displacement");
+    if (widens_) open_ = std::min(of_displacement * scales.at("displacement"), of_size * size_);
     if (loaded_ && constant_load()) return;
     const auto facets = Kokkos::create_mirror_view(load_);
     Kokkos::deep_copy(facets, 0.0);
@@ -219,7 +219,7 @@ class FractureFlow final : public assembly::Module {
   }
 
  private:
-  static constexpr Real of_displacement = 1e-2;
+  static constexpr Real of_displacement = 1e-2, of_size = 1e-4;  // see open_
   using Assembler = assembly::Assembler<Op>;
   using WideningAssembler = assembly::Assembler<WideningFace<n>>;
 
@@ -351,7 +351,7 @@ class FractureFlow final : public assembly::Module {
   RCP<const mesh::Mesh> mesh_;
   int block_ = -1, widening_ = -1;  // face pressure, widening
   Real size_ = 0;                   // largest extent of the domain, m
-  Real open_ = 0;                   // aperture of a fracture that is wide open, m
+  Real open_ = 0;                   // aperture of a fracture that lets the fluid on without a drop of pressure, m
   bool loaded_ = false;
   std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
   Op op_;
