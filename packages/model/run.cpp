@@ -1,6 +1,6 @@
 #include "model/run.hpp"
 
-#include "base/any_rank.hpp"
+#include "base/over_ranks.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/directory_lock.hpp"
@@ -187,6 +187,7 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
       }
       const auto faces = results.add_step(step, last || !step.converged);
       progress.add(step, times[k] - begin, faces);
+      for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
       return step;

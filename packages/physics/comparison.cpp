@@ -3,6 +3,9 @@
 #include "base/check.hpp"
 #include "physics/material_library.hpp"
 
+#include <array>
+#include <set>
+
 namespace sprekk::physics {
 
 void Comparison::fail(const std::string& place, const std::string& what) {
@@ -65,8 +68,13 @@ void Comparison::compare_fractures() {
     if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
       check_material("Fractures > " + name, fracture.material, "joint");
   if (!names_.fractures || (scene_.fractures.empty() && !is_absent("Fractures"))) return;
+  const auto is_misspelt = [&](const std::string& name) {  // which is told
+    return std::any_of(scene_.fractures.begin(), scene_.fractures.end(), [&](const auto& one) {
+      return !has(*names_.fractures, one.first) && !base::did_you_mean(one.first, {name}).empty();
+    });
+  };
   for (const auto& name : *names_.fractures)
-    if (!scene_.fractures.count(name) && is_sound("Fractures > " + name))
+    if (!scene_.fractures.count(name) && is_sound("Fractures > " + name) && !is_misspelt(name))
       fail("Fractures", fmt::format("\"{}\" is in the mesh and has no section here", name));
 }
 
@@ -98,7 +106,21 @@ void Comparison::compare() {
   if (!any && is_sound("Bulk")) fail("Bulk > \"rigid\"", "leaves nothing to solve for; the scene has no other physics");
 }
 
+/// Conditions that hold on no face, for their region is not beside their boundary.
+void Comparison::compare_places(const mesh::GlobalMesh& mesh) {
+  std::set<std::array<std::string, 2>> touching;
+  for (const auto& face : mesh.boundary_faces)
+    touching.insert({mesh.boundary_names[face.boundary], mesh.region_names[mesh.cell_region[face.cell]]});
+  for (const auto& [name, condition] : scene_.boundary_conditions)
+    if (condition.region && has(mesh.boundary_names, condition.boundary) && has(mesh.region_names, *condition.region) &&
+        !touching.count({condition.boundary, *condition.region}))
+      fail("Boundary conditions > " + name + " > \"region\"",
+           fmt::format("is \"{}\", which does not touch the boundary \"{}\": the condition would hold nowhere",
+                       *condition.region, condition.boundary));
+}
+
 void Comparison::compare(const mesh::GlobalMesh& mesh) {
+  compare_places(mesh);
   for_each_physics([&](auto physics) { physics.compare_mesh(*this, mesh); });
 }
 
@@ -117,15 +139,20 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
     }
   };
   for (const auto& [name, one] : conditions)
-    add({name,
-         "",
-         index_of(*names.boundaries, one.boundary),
-         {},
-         one.region ? index_of(*names.regions, *one.region) : -1,
-         one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
+    add({.name = name,
+         .field = "",
+         .boundary = index_of(*names.boundaries, one.boundary),
+         .values = {},
+         .region = one.region ? index_of(*names.regions, *one.region) : -1,
+         .fracture = one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
         one.prescribed());
   for (const auto& [name, one] : regions)
-    add({"Regions > " + name, "", -1, {}, index_of(*names.regions, name)}, one.prescribed());
+    add({.name = "Regions > " + name,
+         .field = "",
+         .boundary = -1,
+         .values = {},
+         .region = index_of(*names.regions, name)},
+        one.prescribed());
   return all;
 }
 

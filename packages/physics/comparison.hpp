@@ -86,6 +86,7 @@ class Comparison {
   void compare_regions();
   void compare_fractures();
   void compare_boundary_conditions();
+  void compare_places(const mesh::GlobalMesh& mesh);
 
   const Scene& scene_;
   const base::Report& report_;
