@@ -186,6 +186,21 @@ class Results(ProgramTest):
         self.assertEqual((out + err).count("failed"), 1)
         self.assertIn("no convergence in 1 iterations", out + err)
 
+    def test_doubtful_flow_is_told_once(self):
+        def warnings(*overrides, ranks=1):
+            sets = [word for override in ("Mesh.cell=quadrilateral", "Time.steps=3", QUIET, *overrides) for word in ("--set", override)]
+            return self.call("run", self.scene("flow/source_2d.xml"), "--output", "out", *sets, ranks=ranks)[1].splitlines()
+        turned = "Materials.rock.permeability={1, 1, 0.5}"
+        self.assertEqual(warnings(), [])
+        self.assertEqual(warnings(turned), [])  # mimetic
+        for ranks in (1, 2):
+            told = warnings(turned, "Flow.scheme=tpfa", ranks=ranks)
+            self.assertEqual(len(told), 1, told)
+            self.assertIn('Sprekk > Flow > "scheme": in 256 of 256 cells permeability and faces are not orthogonal', told[0])
+            told = warnings("Boundary conditions.west.pressure=-5", ranks=ranks)
+            self.assertEqual(len(told), 1, told)
+            self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the fluid's pressure is below 0 in places")
+
     def test_rock_that_nothing_holds_is_told_once(self):
         # the frame shrinks, lets go of the block in it (ax, ay < 0), and takes hold again
         scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"
