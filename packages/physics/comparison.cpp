@@ -108,12 +108,12 @@ void Comparison::compare() {
 
 /// Conditions that hold on no face, for their region is not beside their boundary.
 void Comparison::compare_places(const mesh::GlobalMesh& mesh) {
-  std::set<std::array<std::string, 2>> touching;
-  for (const auto& face : mesh.boundary_faces)
-    touching.insert({mesh.boundary_names[face.boundary], mesh.region_names[mesh.cell_region[face.cell]]});
+  std::set<std::array<int, 2>> touching;  // boundary, region
+  for (const auto& face : mesh.boundary_faces) touching.insert({face.boundary, mesh.cell_region[face.cell]});
   for (const auto& [name, condition] : scene_.boundary_conditions)
     if (condition.region && has(mesh.boundary_names, condition.boundary) && has(mesh.region_names, *condition.region) &&
-        !touching.count({condition.boundary, *condition.region}))
+        !touching.count(
+            {index_of(mesh.boundary_names, condition.boundary), index_of(mesh.region_names, *condition.region)}))
       fail("Boundary conditions > " + name + " > \"region\"",
            fmt::format("is \"{}\", which does not touch the boundary \"{}\": the condition would hold nowhere",
                        *condition.region, condition.boundary));
