@@ -8,6 +8,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
+#include "physics/comparison.hpp"
 
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -125,6 +126,7 @@ void describe(const Model& model, base::Log& log) {
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
+  for (const auto& warning : physics::conditions_that_hold_nowhere(model.scene(), mesh)) log.warning("{}", warning);
   physics::for_each_physics([&](auto physics) {
     for (const auto& doubt : physics.doubts(model.setting(), true)) log.warning("{}", doubt);
   });

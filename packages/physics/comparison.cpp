@@ -1,10 +1,8 @@
 #include "physics/comparison.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "physics/material_library.hpp"
-
-#include <array>
-#include <set>
 
 namespace sprekk::physics {
 
@@ -106,21 +104,7 @@ void Comparison::compare() {
   if (!any && is_sound("Bulk")) fail("Bulk > \"rigid\"", "leaves nothing to solve for; the scene has no other physics");
 }
 
-/// Conditions that hold on no face, for their region is not beside their boundary.
-void Comparison::compare_places(const mesh::GlobalMesh& mesh) {
-  std::set<std::array<int, 2>> touching;  // boundary, region
-  for (const auto& face : mesh.boundary_faces) touching.insert({face.boundary, mesh.cell_region[face.cell]});
-  for (const auto& [name, condition] : scene_.boundary_conditions)
-    if (condition.region && has(mesh.boundary_names, condition.boundary) && has(mesh.region_names, *condition.region) &&
-        !touching.count(
-            {index_of(mesh.boundary_names, condition.boundary), index_of(mesh.region_names, *condition.region)}))
-      fail("Boundary conditions > " + name + " > \"region\"",
-           fmt::format("is \"{}\", which does not touch the boundary \"{}\": the condition would hold nowhere",
-                       *condition.region, condition.boundary));
-}
-
 void Comparison::compare(const mesh::GlobalMesh& mesh) {
-  compare_places(mesh);
   for_each_physics([&](auto physics) { physics.compare_mesh(*this, mesh); });
 }
 
@@ -153,6 +137,22 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
          .values = {},
          .region = index_of(*names.regions, name)},
         one.prescribed());
+  return all;
+}
+
+std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto n = mesh.region_names.size();
+  std::vector<int> here(mesh.boundary_names.size() * n, 0);
+  for (const auto& face : mesh.boundary_faces) here[face.boundary * n + mesh.cell_region[face.cell]] = 1;
+  const auto touches = base::max_over_ranks(*mesh.comm, here);
+  std::vector<std::string> all;
+  for (const auto& [name, one] : scene.boundary_conditions)
+    if (one.region &&
+        !touches[index_of(mesh.boundary_names, one.boundary) * n + index_of(mesh.region_names, *one.region)])
+      all.push_back(fmt::format(
+          "{}: Sprekk > Boundary conditions > {} > \"region\": \"{}\" does not touch the boundary \"{}\": the "
+          "condition holds nowhere",
+          scene.origin, name, *one.region, one.boundary));
   return all;
 }
 

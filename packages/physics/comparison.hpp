@@ -86,7 +86,6 @@ class Comparison {
   void compare_regions();
   void compare_fractures();
   void compare_boundary_conditions();
-  void compare_places(const mesh::GlobalMesh& mesh);
 
   const Scene& scene_;
   const base::Report& report_;
@@ -102,5 +101,8 @@ class Comparison {
 std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
     const MeshNames& names, const std::string& field = "");
+
+/// A line for each boundary condition whose region is nowhere beside its boundary. Collective.
+std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

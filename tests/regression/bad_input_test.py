@@ -378,9 +378,6 @@ class Scenes(BadInput):
         refuse(['Materials > rock: "porosity" = 0.5-x is -0.', "must be between 0 and 1"], "Materials.rock.porosity=0.5-x")
         refuse(['is 11 Pa, must not be above 10 Pa'], "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2+0*x",
                "Flow.compressibility=0.5")
-        refuse(['west > "region": is "core", which does not touch the boundary "west": the condition would hold nowhere'],
-               "Mesh.regions.core.lower corner={0.25, 0.25}", "Mesh.regions.core.upper corner={0.75, 0.75}",
-               "Boundary conditions.west.region=core")
         refuse(['"scheme"', '"mpfa"', '"mimetic"'], "Flow.scheme=mpfa")
         refuse(['Boundary conditions > west: give either "pressure" or "flux"'], "Boundary conditions.west.flux=1")
         refuse(['Boundary conditions > west: moves or loads the rock'], "Boundary conditions.west.displacement={0, 0}")
