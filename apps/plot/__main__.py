@@ -3,7 +3,8 @@
 PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
 as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
 error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps. A run
-with flow has flow.png, with pressure and velocity, too; one with flow alone has no others but the last.
+with flow has flow.png, with pressure and velocity, too, one with heat temperature.png, with temperature and heat flux;
+where the rock does not deform there are no others but these and the last.
 """
 import argparse
 import sys
@@ -58,8 +59,10 @@ def of_run(directory, options):
         rock, joints = read.grid(file), None
         for file in [file for t, file in fracture_steps if t == time]:
             joints = read.grid(file)
-        if rock.GetCellData().HasArray("pressure"):
-            yield "flow", flow.of_step(rock, joints if joints and joints.GetNumberOfCells() else None, title, options.whole)
+        cut = joints if joints and joints.GetNumberOfCells() else None
+        for picture, kind in ("flow", flow.FLUID), ("temperature", flow.HEAT):
+            if rock.GetCellData().HasArray(kind.drive):
+                yield picture, flow.of_step(rock, cut, title, options.whole, kind)
         deforms = rock.GetPointData().HasArray("displacement")
         if deforms:
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)

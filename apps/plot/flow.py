@@ -1,9 +1,18 @@
-"""Flow: pressure of the fluid in rock and fractures, and how fast it flows in either."""
+"""What drives a flow and how fast it is: pressure of a fluid in rock and fractures, temperature of rock."""
+from collections import namedtuple
+
 import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
 from style import INK, Quantity, colour_bar, draw_polygons_3d, limits, plt, without_noise
+
+
+# Arrays of rock and fractures with what drives and what flows; how figures call them, and the unit of what drives.
+Kind = namedtuple("Kind", "drive unit flux flux_label drive_inside flux_inside flux_inside_label")
+FLUID = Kind("pressure", "Pa", "Darcy velocity", "Darcy velocity (m/s)", "fracture pressure", "fluid flux",
+             "flux along fractures (m²/s)")
+HEAT = Kind("temperature", "K", "heat flux", "heat flux (W/m²)", None, None, None)
 
 
 def decades(values):
@@ -13,19 +22,19 @@ def decades(values):
     return LogNorm(max(least, 1e-8 * largest), max(largest, 1.001 * least)) if largest > 0 else limits(values)
 
 
-def panels(rock, joints):
+def panels(rock, joints, kind=FLUID):
     """(name of the panel, of the rock: (values, norm, colours, label), of the fractures the same or None)."""
     data = rock.cell_data
-    faces = joints.cell_data if joints else {}
-    inside = faces.get("fracture pressure", np.zeros(0))
-    pressure = Quantity("pressure", "Pa", data["pressure"], inside)
-    norm = limits(pressure(without_noise(np.concatenate([data["pressure"], inside]), 0)))
-    bar = (norm, plt.get_cmap("viridis"), pressure.label)
-    yield "pressure", (pressure(data["pressure"]), *bar), (pressure(inside), *bar) if joints else None
-    speed = np.linalg.norm(data["Darcy velocity"], axis=1)
-    flux = np.linalg.norm(faces["fluid flux"], axis=1) if joints else np.zeros(0)
-    yield ("flow", (speed, decades(speed), plt.get_cmap("Blues"), "Darcy velocity (m/s)"),
-           (flux, decades(flux), plt.get_cmap("autumn_r"), "flux along fractures (m²/s)") if joints else None)
+    faces = joints.cell_data if joints and kind.drive_inside else {}
+    inside = faces.get(kind.drive_inside, np.zeros(0))
+    drive = Quantity(kind.drive, kind.unit, data[kind.drive], inside)
+    norm = limits(drive(without_noise(np.concatenate([data[kind.drive], inside]), 0)))
+    bar = (norm, plt.get_cmap("viridis"), drive.label)
+    yield kind.drive, (drive(data[kind.drive]), *bar), (drive(inside), *bar) if faces else None
+    speed = np.linalg.norm(data[kind.flux], axis=1)
+    flux = np.linalg.norm(faces[kind.flux_inside], axis=1) if faces else np.zeros(0)
+    yield ("flow", (speed, decades(speed), plt.get_cmap("Blues"), kind.flux_label),
+           (flux, decades(flux), plt.get_cmap("autumn_r"), kind.flux_inside_label) if faces else None)
 
 
 def bars(figure, ax, of_rock, of_fractures, **where):
@@ -37,10 +46,10 @@ def bars(figure, ax, of_rock, of_fractures, **where):
             bar.update_ticks()
 
 
-def of_plane(rock, joints, title):
+def of_plane(rock, joints, title, kind):
     figure, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(10.5, 4.2))
     figure.suptitle(title, fontsize=10)
-    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints)):
+    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints, kind)):
         values, norm, colours, _ = of_rock
         ax.add_collection(PolyCollection(rock.corners(rock.points[:, :2]), array=values, cmap=colours, norm=norm,
                                          edgecolors="face", linewidths=0.2))
@@ -59,10 +68,10 @@ def of_plane(rock, joints, title):
     return figure
 
 
-def of_body(rock, joints, title, whole):
+def of_body(rock, joints, title, whole, kind):
     figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), subplot_kw={"projection": "3d"})
     figure.suptitle(title + ("" if whole else ", front half of the rock cut away"), fontsize=10)
-    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints)):
+    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints, kind)):
         drawn = [(rock, of_rock)] + ([(joints, of_fractures)] if of_fractures and not whole else [])
         corners = sum((list(surface.corners()) for surface, _ in drawn), [])
         colours = np.concatenate([colour(norm(values)) for _, (values, norm, colour, _) in drawn])
@@ -71,10 +80,10 @@ def of_body(rock, joints, title, whole):
     return figure
 
 
-def of_step(grid, fractures, title, whole=False):
+def of_step(grid, fractures, title, whole=False, kind=FLUID):
     """Of the rock's grid; the fractures' may be None."""
     flat = read.is_plane(grid)
     rock = read.surface(grid if flat or whole else read.behind(grid))
     if flat:
-        return of_plane(rock, read.segments(fractures) if fractures else None, title)
-    return of_body(rock, read.surface(fractures) if fractures else None, title, whole)
+        return of_plane(rock, read.segments(fractures) if fractures else None, title, kind)
+    return of_body(rock, read.surface(fractures) if fractures else None, title, whole, kind)

@@ -28,11 +28,12 @@ plt.rcParams.update({
 })
 
 PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
-            "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")]}
+            "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")],
+            "K": [(1, "K")]}
 
 
 def unit(largest, base):
-    """(factor, name) of the unit in which `largest`, in m or Pa, is a number that is easily read."""
+    """(factor, name) of the unit in which `largest`, in m, Pa or K, is a number that is easily read."""
     for factor, name in PREFIXES[base]:
         if largest >= 0.5 * factor:
             return factor, name

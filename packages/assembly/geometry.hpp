@@ -132,6 +132,28 @@ void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face
   }
 }
 
+/// The mean over a face of value(N, x), see for_each_face_point.
+template <Shape shape, class Value>
+Real face_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const Value& value) {
+  Real sum = 0, total = 0;
+  for_each_face_point<shape>(mesh, cell, local_face, [&](const auto& N, Real area, const auto& x) {
+    total += area;
+    sum += area * value(N, x);
+  });
+  return sum / total;
+}
+
+/// A cell's volume and the mean of value(x) over it.
+template <Shape shape, class Value>
+std::array<Real, 2> cell_mean(const mesh::Mesh& mesh, LocalIndex cell, const Value& value) {
+  Real sum = 0, total = 0;
+  for_each_cell_point<shape>(mesh, cell, [&](const auto&, Real volume, const auto& x) {
+    total += volume;
+    sum += volume * value(x);
+  });
+  return {total, sum / total};
+}
+
 /// The face function of ReferenceCell::bubble on its face, from the values of the face's node functions.
 template <Shape shape>
 Real face_bubble(const FaceValues& N) {
@@ -163,12 +185,7 @@ FaceValues mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face) 
 /// affine map of the reference cell's.
 template <Shape shape>
 Real bubble_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
-  Real sum = 0, total = 0;
-  for_each_face_point<shape>(mesh, cell, local_face, [&](const auto& N, Real area, const auto&) {
-    total += area;
-    sum += area * face_bubble<shape>(N);
-  });
-  return sum / total;
+  return face_mean<shape>(mesh, cell, local_face, [](const auto& N, const auto&) { return face_bubble<shape>(N); });
 }
 
 }  // namespace sprekk::assembly

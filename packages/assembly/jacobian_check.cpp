@@ -1,6 +1,6 @@
 #include "assembly/jacobian_check.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,14 +30,13 @@ void fill_direction(Vector& d, int direction, Real scale) {
 Real size_of_product(const RCP<fields::CrsMatrix>& J, Real scale) {
   if (J.is_null()) return 0;
   const auto local = J->getLocalMatrixHost();
-  Real here = 0, all = 0;
+  Real here = 0;
   for (LocalIndex i = 0; i < local.numRows(); ++i) {
     Real sum = 0;
     for (auto k = local.graph.row_map(i); k < local.graph.row_map(i + 1); ++k) sum += std::abs(local.values(k)) * scale;
     here = std::max(here, sum);
   }
-  Teuchos::reduceAll(*J->getComm(), Teuchos::REDUCE_MAX, 1, &here, &all);
-  return all;
+  return base::max_over_ranks(*J->getComm(), here);
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 
 #include "assembly/order_one.hpp"
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "fields/without_zeros.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -296,7 +295,7 @@ void System::declare_gains() {
 
 void System::find_exchanges() {
   const auto context = this->context();
-  std::vector<int> here(blocks_.size(), 0), anywhere(blocks_.size(), 0);
+  std::vector<int> here(blocks_.size(), 0);
   for (const auto& declaration : declarations_) {
     for (const auto& coupling : declaration.couplings)
       for (const auto& name : coupling.columns) {
@@ -307,7 +306,7 @@ void System::find_exchanges() {
           for (std::size_t g = 0; g < host.extent(1); ++g) here[f] |= host(e, g) >= layouts_[f].n_owned();
       }
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), anywhere.data());
+  const auto anywhere = base::max_over_ranks(*comm(), here);
   needs_ghosts_.assign(anywhere.begin(), anywhere.end());
 }
 

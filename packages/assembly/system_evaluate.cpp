@@ -1,6 +1,7 @@
 // Evaluation: residuals, Jacobians, measures and outputs at a given x.
 #include "assembly/system.hpp"
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <fmt/ranges.h>
@@ -50,7 +51,15 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 
 /// Views of what refresh_ghosts has fetched last.
 State System::state(int module) const {
-  State s{t_, rates_.now, damping_, augmentation_, tether_, anchor_, coefficients_, {}, history_[module]};
+  State s{.t = t_,
+          .rate = rates_.now,
+          .damping = damping_,
+          .augmentation = augmentation_,
+          .tether = tether_,
+          .anchor = anchor_,
+          .coefficients = coefficients_,
+          .x = {},
+          .history = history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -104,7 +113,7 @@ void System::update_scales(Real t) {
         loads.at(name) = std::max(loads.at(name), size);
       }
   });
-  for (auto& [name, scale] : scales_) Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &loads.at(name), &scale);
+  for (auto& [name, scale] : scales_) scale = base::max_over_ranks(*comm(), loads.at(name));
   for (std::size_t pass = 0; pass < scales_.size(); ++pass)
     for (const auto& [larger, factor, than] : relations_)
       if (const Real least = factor * scales_.at(than); least > (1 + rounding) * scales_.at(larger))
@@ -224,17 +233,16 @@ void System::residual(const BlockVector& x, BlockVector& r) {
 void System::jacobian(const BlockVector& x) {
   refresh_ghosts(x, false);
   const auto scope = timers_->scope("Jacobian");
-  int asymmetric = 0, anywhere = 0;
+  bool symmetric = true;
   start_matrix();
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     if (declarations_[m].linear) continue;
     const auto scope_of_module = timers_->scope(modules_[m]->name());
     const auto s = state(static_cast<int>(m));
     modules_[m]->jacobian(s, matrix_);
-    asymmetric |= !modules_[m]->symmetric(s);
+    symmetric = modules_[m]->symmetric(s) && symmetric;
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &asymmetric, &anywhere);
-  symmetric_ = !anywhere;
+  symmetric_ = base::on_all_ranks(*comm(), symmetric);
   find_schur();
   find_loose();
 }
@@ -327,16 +335,16 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto scope_of_module = timers_->scope(modules_[m]->name());
     modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
   }
-  std::vector<Real> here, all(measures.size());
+  std::vector<Real> here;
   for (const auto& measure : measures)  // a number that is none must not vanish in the maximum
     here.push_back(std::isnan(measure.value) ? std::numeric_limits<Real>::infinity() : measure.value);
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), all.data());
+  const auto all = base::max_over_ranks(*comm(), here);
   for (std::size_t k = 0; k < measures.size(); ++k) measures[k].value = all[k];
   return measures;
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
-  Real sum = 0, total = 0;
+  Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
     const auto row = const_view(*r[b]);
@@ -358,8 +366,7 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
         part);
     sum += powers ? dt_ * part : part;  // the energy of a power
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 1, &sum, &total);
-  return total;
+  return base::sum_over_ranks(*comm(), sum);
 }
 
 std::vector<char> System::states(const BlockVector& x) {
@@ -383,18 +390,17 @@ std::size_t System::state_hash(const std::vector<char>& states) {
     here += h;
   }
   // in halves: a sum modulo 2^64 does not depend on the partition, and one of signed numbers may not overflow
-  const long long halves[] = {static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)};
-  long long sums[2];
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, 2, halves, sums);
+  const auto sums = base::sum_over_ranks(
+      *comm(), std::array{static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)});
   return static_cast<std::size_t>(sums[0]) + (static_cast<std::size_t>(sums[1]) << 32);
 }
 
 std::string System::where(const std::vector<char>& flagged) {
   const auto& names = mesh_->fracture_names;
-  std::vector<long long> here(names.size(), 0), all(names.size());
+  std::vector<long long> here(names.size(), 0);
   std::array<Real, 3> nowhere, lowest, highest;
   nowhere.fill(std::numeric_limits<Real>::max());
-  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere}, reach;  // smallest x and -x
+  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere};  // smallest x and -x
   for (std::size_t f = 0; f < flagged.size(); ++f) {
     if (!flagged[f]) continue;
     const auto& face = mesh_->fracture_faces[f];
@@ -404,8 +410,8 @@ std::string System::where(const std::vector<char>& flagged) {
       ends[1][i] = std::min(ends[1][i], -face.centre[i]);
     }
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MIN, 6, ends[0].data(), reach[0].data());
+  const auto all = base::sum_over_ranks(*comm(), here);
+  const std::array reach = {base::min_over_ranks(*comm(), ends[0]), base::min_over_ranks(*comm(), ends[1])};
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (all[k] > 0) parts.push_back(fmt::format("{} of \"{}\"", all[k], names[k]));
@@ -440,10 +446,9 @@ std::vector<Total> System::totals(const BlockVector& x) {
   base::collectively(*comm(), [&] {
     for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->totals(state(static_cast<int>(m)), totals);
   });
-  std::vector<Real> here, all(totals.size());
+  std::vector<Real> here;
   for (const auto& total : totals) here.push_back(total.value);
-  if (!here.empty())
-    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+  const auto all = base::sum_over_ranks(*comm(), here);
   for (std::size_t k = 0; k < all.size(); ++k) totals[k].value = all[k];
   return totals;
 }
@@ -460,7 +465,7 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
     const auto view = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
     const int n_components = blocks_[b].n_components, width = n_components + 3;  // the force, then the moment
     const auto& conditions = constraints_[b].conditions();
-    std::vector<Real> here(conditions.size() * width, 0), all(here.size());
+    std::vector<Real> here(conditions.size() * width, 0);
     for (const auto& entry : constraints_[b].entries()) {
       Real* sums = &here[entry.condition * width];
       const int i = entry.component, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -469,7 +474,7 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
       sums[n_components + j] += entry.x[k] * force;
       sums[n_components + k] -= entry.x[j] * force;
     }
-    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
+    const auto all = base::sum_over_ranks(*comm(), here);
     for (std::size_t c = 0; c < conditions.size(); ++c) {
       const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
       result.push_back({conditions[c].name, conditions[c].field, {sums, sums + n_components}});

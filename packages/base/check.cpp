@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/memory.hpp"
+#include "base/over_ranks.hpp"
 
 namespace sprekk::base {
 
@@ -24,8 +25,7 @@ void collectively(const Comm& comm, const std::function<void()>& work) {
     message = error.what();
     failing_rank = comm.getRank();
   }
-  int first = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, 1, &failing_rank, &first);
+  const int first = min_over_ranks(comm, failing_rank);
   if (first == comm.getSize()) return;
   int length = static_cast<int>(message.size());
   Teuchos::broadcast(comm, first, 1, &length);

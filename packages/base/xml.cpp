@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "base/units.hpp"
 #include "base/value.hpp"
 
 namespace sprekk::base {
@@ -160,9 +161,17 @@ bool set_if_it_is(ParameterList& list, const std::string& name, const std::strin
   return true;
 }
 
+/// Whether an entry is a text like "25 GPa", which may stand for a number.
+bool is_quantity_in_text(const Teuchos::ParameterEntry& entry) {
+  if (!entry.isType<std::string>()) return false;
+  const auto quantity = parse_quantity(Teuchos::getValue<std::string>(entry));
+  return quantity && defect_of_unit(quantity->unit).empty();
+}
+
 void set_value(ParameterList& list, const std::string& name, const std::string& value) {
   std::vector<std::string> types = {"int", "double", "bool", "Array(int)", "Array(double)", "Array(string)", "string"};
-  if (const auto* entry = list.getEntryPtr(name)) types.insert(types.begin(), type_of(*entry));
+  const auto* entry = list.getEntryPtr(name);
+  if (entry && !is_quantity_in_text(*entry)) types.insert(types.begin(), type_of(*entry));
   for (const auto& type : types)
     if (set_if_it_is(list, name, type, value)) return;
 }

@@ -28,9 +28,9 @@ Teuchos::ParameterList parse_xml(const std::string& text, const std::string& fil
 std::string to_xml(const Teuchos::ParameterList& list);
 
 /// Applies "Section.Inner section.entry name=value" to `list`; sections that are not there are added. The value keeps
-/// the type of the entry that it replaces if it can be read as such, else it is the first it can be of int, double,
-/// bool, {a, b} of int, double or string, and string. Throws an Error if the text has no "=", or its path ends at a
-/// section or leads through an entry.
+/// the type of the entry that it replaces if it can be read as such, a text with a unit standing for a number, else it
+/// is the first it can be of int, double, bool, {a, b} of int, double or string, and string. Throws an Error if the
+/// text has no "=", or its path ends at a section or leads through an entry.
 void apply_override(Teuchos::ParameterList& list, const std::string& text);
 
 /// Applies all that can be applied to a list, in their order; of the others what apply_override throws, after `file`,

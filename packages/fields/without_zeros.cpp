@@ -1,6 +1,6 @@
 #include "fields/without_zeros.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 namespace sprekk::fields {
 
@@ -18,10 +18,7 @@ RCP<CrsMatrix> without_zeros(const RCP<CrsMatrix>& A) {
         if (last) start(row + 1) = sum;
       },
       n_left);
-  const int some_here = n_left < from.nnz();
-  int some = 0;
-  Teuchos::reduceAll(*A->getComm(), Teuchos::REDUCE_MAX, 1, &some_here, &some);
-  if (some == 0) return A;
+  if (!base::on_any_rank(*A->getComm(), n_left < from.nnz())) return A;
   const Local::index_type::non_const_type column("columns", n_left);
   const Local::values_type::non_const_type value("values", n_left);
   Kokkos::parallel_for(

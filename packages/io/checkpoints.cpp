@@ -23,6 +23,8 @@ using nlohmann::json;
 
 namespace {
 
+constexpr int format = 2;  ///< of what is written; the first had no number
+
 /// The seal of what has the seal `before`, and then `content`.
 Seal seal_of(const std::string& content, const Seal& before = {}) {
   const auto* bytes = reinterpret_cast<const Bytef*>(content.data());
@@ -146,7 +148,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
     base::collectively(*comm_, [&] {
       if (!first) return;
       for (const auto& file : journal_files(path_)) append_durably(file, journal_[0], news);
-      json sealed = {{"content", checkpoint.content}, {"pieces", seals}, {"journal", journal}};
+      json sealed = {{"format", format}, {"content", checkpoint.content}, {"pieces", seals}, {"journal", journal}};
       for (const auto& [name, vector] : checkpoint.vectors) sealed["vectors"].push_back(name);
       write_durably(part + "/manifest.json", json{{"sealed", sealed}, {"seal", seal_of(sealed.dump())}}.dump());
       bring_to_disk(part);
@@ -217,6 +219,10 @@ Checkpoint Checkpoints::read(long long number, Seal& journal) const {
                    manifest["sealed"].contains("journal") &&
                    manifest["seal"] == json(seal_of(manifest["sealed"].dump())),
                "{}: is damaged", manifest_file);
+  const int written = manifest["sealed"].value("format", 1);
+  SPREKK_CHECK(written == format,
+               "{}: is of {} version of Sprekk (format {}, this one goes on from {}): start the run anew",
+               folder(number), written < format ? "an earlier" : "a later", written, format);
   const auto& pieces = manifest["sealed"]["pieces"];
   std::map<std::string, NumberedValues> values;
   base::collectively(*comm_, [&] {

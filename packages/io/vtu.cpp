@@ -1,10 +1,10 @@
 #include "io/vtu.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "io/file.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -275,7 +275,7 @@ void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
     return fmt::format("{}/{}_{}_{}.vtu", name_, step_name(times_.size()), block, rank);
   };
   const int n_ranks = comm_->getSize(), rank = comm_->getRank();
-  std::vector<int> here(blocks.size() * n_ranks, 0), has_cells(here.size());
+  std::vector<int> here(blocks.size() * n_ranks, 0);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto& piece = blocks[b].piece;
     const std::string declared_on_0 = from_rank_0(*comm_, declared(piece));
@@ -284,7 +284,7 @@ void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
       if (piece.n_cells() > 0) write_piece(piece_file(b, rank), piece, declared_on_0);
     });
   }
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), has_cells.data());
+  const auto has_cells = base::max_over_ranks(*comm_, here);
   std::string content;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     content += fmt::format("    <Piece index=\"{}\" name=\"{}\">\n", b, base::xml_escaped(blocks[b].name));

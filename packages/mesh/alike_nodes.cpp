@@ -1,6 +1,7 @@
 #include "mesh/alike_nodes.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
+
 #include <numeric>
 
 namespace sprekk::mesh {
@@ -38,12 +39,6 @@ void AlikeNodes::to_largest(std::vector<GlobalIndex>& values) {
   } while (exchange_ && any(values != before));
 }
 
-bool AlikeNodes::any(bool here) const {
-  if (comm_.is_null()) return here;
-  const int mine = here ? 1 : 0;
-  int result = 0;
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &mine, &result);
-  return result != 0;
-}
+bool AlikeNodes::any(bool here) const { return comm_.is_null() ? here : base::on_any_rank(*comm_, here); }
 
 }  // namespace sprekk::mesh

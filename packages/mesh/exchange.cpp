@@ -59,10 +59,4 @@ std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const 
   return {values.begin(), values.end()};
 }
 
-GlobalIndex global_sum(GlobalIndex here, const Comm& comm) {
-  GlobalIndex sum = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &sum);
-  return sum;
-}
-
 }  // namespace sprekk::mesh

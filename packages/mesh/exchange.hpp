@@ -46,7 +46,4 @@ class GhostExchange {
 std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& counts,
                                      const RCP<const Comm>& comm);
 
-/// The sum over all ranks. Collective.
-GlobalIndex global_sum(GlobalIndex here, const Comm& comm);
-
 }  // namespace sprekk::mesh

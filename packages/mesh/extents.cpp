@@ -1,9 +1,10 @@
 #include "mesh/extents.hpp"
 
+#include "base/over_ranks.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <limits>
 
 namespace sprekk::mesh {
@@ -24,8 +25,7 @@ class Boxes {
   }
 
   std::vector<Vector> extents(const Mesh& mesh) const {
-    std::vector<Real> all(corners_.size());
-    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, static_cast<int>(all.size()), corners_.data(), all.data());
+    const auto all = base::max_over_ranks(*mesh.comm, corners_);
     std::vector<Vector> result(all.size() / 6);
     for (std::size_t box = 0; box < result.size(); ++box)
       for (int i = 0; i < mesh.dim(); ++i) result[box][i] = all[6 * box + 2 * i] + all[6 * box + 2 * i + 1];

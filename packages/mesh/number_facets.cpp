@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/exchange.hpp"
 #include "mesh/facets.hpp"
 
@@ -233,7 +234,7 @@ RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
     const auto before = facets->id.size();
     for (LocalIndex k = 0; k < n; ++k)
       if (is_own(k)) facets->id.push_back(ids[k]);
-    return global_sum(static_cast<GlobalIndex>(facets->id.size() - before), *mesh->comm);
+    return base::sum_over_ranks(*mesh->comm, static_cast<GlobalIndex>(facets->id.size() - before));
   };
   GlobalIndex n = own(cells, mesh->n_owned_cells * n_faces, [&](LocalIndex k) { return of_cells[k] == k; });
   for (GlobalIndex& id : ridges) id += n;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/cell_geometry.hpp"
 #include "mesh/exchange.hpp"
 #include "mesh/raise_order.hpp"
@@ -187,7 +188,7 @@ class PartRaiser {
     const auto is_new = [&](LocalIndex place) { return lowest_[root(place)] == place; };
     std::vector<GlobalIndex> n_new(mesh_.n_owned_cells, 0);
     for (LocalIndex place = 0; place < n_owned_places(); ++place) n_new[place / n_added_] += is_new(place);
-    n_global_added_ = global_sum(std::accumulate(n_new.begin(), n_new.end(), GlobalIndex{0}), *mesh_.comm);
+    n_global_added_ = base::sum_over_ranks(*mesh_.comm, std::accumulate(n_new.begin(), n_new.end(), GlobalIndex{0}));
     auto next = sums_before({mesh_.cell_id.begin(), mesh_.cell_id.begin() + mesh_.n_owned_cells}, n_new, mesh_.comm);
     ids_.assign(n_places(), -1);
     for (LocalIndex place = 0; place < n_owned_places(); ++place)

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/exchange.hpp"
 #include "mesh/facets.hpp"
 
@@ -105,7 +106,7 @@ void number_enriched(Mesh& mesh, const GhostExchange& exchange) {
   ids.resize(mesh.n_nodes(), -1);
   exchange(ids);
   mesh.n_owned_enriched = static_cast<LocalIndex>(std::accumulate(counts.begin(), counts.end(), GlobalIndex{0}));
-  mesh.n_global_enriched = global_sum(mesh.n_owned_enriched, *mesh.comm);
+  mesh.n_global_enriched = base::sum_over_ranks<GlobalIndex>(*mesh.comm, mesh.n_owned_enriched);
   mesh.enriched.clear();
   mesh.enriched_id.clear();
   for (const GlobalIndex id : ids) {

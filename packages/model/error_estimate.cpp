@@ -1,11 +1,10 @@
 #include "model/error_estimate.hpp"
 
 #include "assembly/prescribed_error.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/comparison.hpp"
 #include "physics/mechanics/traction_recovery.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +23,8 @@ const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, cons
 
 std::unique_ptr<physics::StressRecovery> make_recovery(const Model& model,
                                                        const physics::ByField<const fields::Layout*>& layouts) {
-  const auto rock = physics::elasticity(model.scene(), model.mesh());
-  return physics::make_stress_recovery(Teuchos::rcpFromRef(model.mesh()), layouts, rock.values, rock.number);
+  return physics::make_stress_recovery(Teuchos::rcpFromRef(model.mesh()), layouts,
+                                       physics::elasticity(model.scene(), model.mesh()));
 }
 
 /// part / whole; close to 0 where the whole is nothing but round-off of something as large as scale.
@@ -73,7 +72,11 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   ErrorEstimate estimate;
   estimate.stress = error.error;
   estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * energy));
-  estimate.fields.push_back({"error density", "J/m^3", fields::Entity::cell, 1, {}, std::move(error.density)});
+  estimate.fields.push_back({.name = "error density",
+                             .unit = "J/m^3",
+                             .entity = fields::Entity::cell,
+                             .n_components = 1,
+                             .values = std::move(error.density)});
   if (!model_.mesh().fracture_names.empty()) estimate_jump(error, outputs, estimate);
   return estimate;
 }
@@ -81,8 +84,8 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
 void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
   const auto& system = model_.system();
   const auto& mesh = model_.mesh();
-  const auto conditions = physics::dirichlet_conditions(
-      model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
+  const auto conditions =
+      physics::dirichlet_conditions(model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
   const auto error =
       assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
   const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -116,16 +119,20 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   estimate.failure = report.reason;
   if (!report.converged) return;
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
-  OutputField error{"jump error", "m", fields::Entity::fracture_face, dim, {}, values_of(system.outputs(x), "jump")};
+  OutputField error{.name = "jump error",
+                    .unit = "m",
+                    .entity = fields::Entity::fracture_face,
+                    .n_components = dim,
+                    .values = values_of(system.outputs(x), "jump")};
   const auto& jump = values_of(outputs, "jump");
-  Real here[2] = {}, all[2];
+  std::array<Real, 2> here{};
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
     for (int k = f * dim; k < (f + 1) * dim; ++k) {
       error.values[k] -= jump[k];
       here[0] += mesh.fracture_faces[f].area * error.values[k] * error.values[k];
       here[1] += mesh.fracture_faces[f].area * jump[k] * jump[k];
     }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 2, here, all);
+  const auto all = base::sum_over_ranks(*mesh.comm, here);
   estimate.jump = std::sqrt(all[0]);
   const Real length = system.scales().at("displacement");
   estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);

@@ -1,8 +1,7 @@
 #include "model/fingerprint.hpp"
 
+#include "base/over_ranks.hpp"
 #include "base/xml.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <fmt/ranges.h>
 
@@ -25,7 +24,7 @@ long long hash(const std::vector<T>& numbers) {
 
 /// Sums over all cells with their nodes, fracture faces and boundary faces, by their global numbers.
 json mesh_hash(const mesh::Mesh& mesh) {
-  std::array<long long, 3> here{}, all{};
+  std::array<long long, 3> here{};
   const int dim = mesh.dim(), n = mesh.nodes_per_cell();
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     std::vector<GlobalIndex> numbers = {mesh.cell_id[cell], mesh.cell_region[cell]};
@@ -45,8 +44,7 @@ json mesh_hash(const mesh::Mesh& mesh) {
   }
   for (const auto& face : mesh.boundary_faces)
     if (face.owned) here[2] += hash(std::vector<GlobalIndex>{face.boundary, mesh.cell_id[face.cell], face.local_face});
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 3, here.data(), all.data());
-  return all;
+  return base::sum_over_ranks(*mesh.comm, here);
 }
 
 json unknowns(const assembly::System& system) {

@@ -1,15 +1,13 @@
 #include "model/model.hpp"
 
 #include "assembly/geometry.hpp"
-#include "base/any_rank.hpp"
+#include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <array>
@@ -57,10 +55,10 @@ namespace {
 /// A condition on the end of a fracture that is not on its boundary would hold nowhere. Collective.
 void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
   const auto n = mesh.boundary_names.size();
-  std::vector<int> here(n * mesh.fracture_names.size(), 0), anywhere(here.size());
+  std::vector<int> here(n * mesh.fracture_names.size(), 0);
   if (mesh.facets.is_null() || here.empty()) return;
   for (const auto& rim : mesh.facets->rims) here[mesh.fracture_faces[rim.face].fracture * n + rim.boundary] = 1;
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, static_cast<int>(here.size()), here.data(), anywhere.data());
+  const auto anywhere = base::max_over_ranks(*mesh.comm, here);
   for (const auto& [name, condition] : scene.boundary_conditions) {
     if (!condition.fracture) continue;
     const auto first = anywhere.begin() + physics::index_of(mesh.fracture_names, *condition.fracture) * n;

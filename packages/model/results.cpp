@@ -1,5 +1,6 @@
 #include "model/results.hpp"
 
+#include "base/over_ranks.hpp"
 #include "base/xml.hpp"
 #include "io/json.hpp"
 
@@ -15,13 +16,6 @@ using assembly::Summary;
 using nlohmann::json;
 
 namespace {
-
-template <class T>
-std::vector<T> reduce(const Comm& comm, Teuchos::EReductionType how, const std::vector<T>& here) {
-  std::vector<T> all(here.size());
-  if (!here.empty()) Teuchos::reduceAll(comm, how, static_cast<int>(here.size()), here.data(), all.data());
-  return all;
-}
 
 constexpr const char* unsettled_name = "unsettled";  ///< of the VTU files
 
@@ -75,19 +69,18 @@ Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
       s.sum[face.fracture * n + c] += face.area * output.values[f * n + c];
       s.maximum[face.fracture * n + c] = std::max(s.maximum[face.fracture * n + c], output.values[f * n + c]);
     }
-  s.sum = reduce(*mesh.comm, Teuchos::REDUCE_SUM, s.sum);
-  s.maximum = reduce(*mesh.comm, Teuchos::REDUCE_MAX, s.maximum);
+  s.sum = base::sum_over_ranks(*mesh.comm, s.sum);
+  s.maximum = base::max_over_ranks(*mesh.comm, s.maximum);
   return s;
 }
 
 /// Faces of the three classes of a state.
 std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<OutputField>& outputs) {
-  std::vector<long long> counts(3, 0);
+  std::array<long long, 3> counts{};
   for (const auto& output : outputs)
     if (output.summary.classes.size() == counts.size())
       for (Real value : output.values) ++counts[static_cast<int>(value)];
-  counts = reduce(comm, Teuchos::REDUCE_SUM, counts);
-  return {counts[0], counts[1], counts[2]};
+  return base::sum_over_ranks(comm, counts);
 }
 
 }  // namespace
@@ -143,11 +136,10 @@ json block_summary(const assembly::System& system) {
   const auto& comm = *system.comm();
   for (std::size_t b = 0; b < system.blocks().size(); ++b) {
     const auto& layout = system.layouts()[b];
-    const auto halo = system.exchanged(static_cast<int>(b))
-                          ? reduce<long long>(comm, Teuchos::REDUCE_SUM,
-                                              {static_cast<long long>(layout.halo_bytes()),
-                                               static_cast<long long>(layout.halo_messages())})
-                          : std::vector<long long>{0, 0};
+    std::array<long long, 2> halo{};
+    if (system.exchanged(static_cast<int>(b)))
+      halo = base::sum_over_ranks(comm, std::array{static_cast<long long>(layout.halo_bytes()),
+                                                   static_cast<long long>(layout.halo_messages())});
     summary["fields"].push_back({{"name", layout.field().name},
                                  {"entity", fields::name_of(layout.field().entity)},
                                  {"components", layout.field().n_components},
@@ -168,7 +160,7 @@ json block_summary(const assembly::System& system) {
       const long long bytes = entries * static_cast<long long>(sizeof(Real)) +
                               static_cast<long long>(numbers.column.extent(0) * sizeof(LocalIndex)) +
                               starts * static_cast<long long>(sizeof(std::size_t));
-      const auto sums = reduce<long long>(comm, Teuchos::REDUCE_SUM, {entries, bytes});
+      const auto sums = base::sum_over_ranks(comm, std::array{static_cast<long long>(entries), bytes});
       summary["matrices"].push_back({{"row", system.blocks()[i].name},
                                      {"column", system.blocks()[j].name},
                                      {"entries", sums[0]},
@@ -235,10 +227,7 @@ void Results::start_fractures(const std::vector<Real>& written) {
   const auto& mesh = model_.mesh();
   fractures_.emplace(mesh.comm, directory_, "fractures", written, io::VtuSeries::Of::blocks);
   const auto piece = io::intersection_piece(mesh::intersections(mesh));
-  const int n = piece.n_cells();
-  int any = 0;
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &n, &any);
-  if (any > 0) fractures_->keep({"intersections", piece});
+  if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
 std::vector<json> Results::journal(int begin) const {
@@ -270,6 +259,10 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
     return {0, 0, 0};
   }
   auto outputs = model_.system().outputs(model_.state());
+  physics::for_each_physics([&](auto physics) {
+    for (const auto& warning : physics.warnings_of_state(model_.setting(), outputs))
+      if (told_.insert(warning).second) warnings_.push_back(warning);
+  });
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
   step.update(reactions());
   if (estimator_) {
@@ -280,8 +273,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   json_["steps"].push_back(step);
   ++n_steps_;
   if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);
-  if (reduce<int>(*model_.mesh().comm, Teuchos::REDUCE_MAX,
-                  {std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)})[0])
+  if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)))
     write_json();
   return counts_of_classes(*model_.mesh().comm, outputs);
 }
@@ -323,7 +315,7 @@ long long Results::add_unsettled(const solve::StepReport& report) {
   std::vector<Real> flags(report.unsettled.begin(), report.unsettled.end());
   flags.resize(mesh.n_owned_fracture_faces);  // none where no iterate was accepted
   const long long here = std::count(flags.begin(), flags.end(), 1);
-  const long long n = reduce<long long>(*mesh.comm, Teuchos::REDUCE_SUM, {here})[0];
+  const auto n = base::sum_over_ranks(*mesh.comm, here);
   if (n == 0 || !bulk_) return n;
   auto piece = fractures_with(mesh, model_.system().outputs(model_.state()));
   piece.cell_data.push_back(io::data_array("unsettled", 1, flags));
@@ -352,19 +344,19 @@ void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
 
 void Results::write_json() {
   const auto& comm = *model_.system().comm();
-  std::vector<Real> here = {static_cast<Real>(base::peak_memory_bytes())};
-  json_["memory"] = {{"peak_bytes_largest_rank", reduce(comm, Teuchos::REDUCE_MAX, here)[0]},
-                     {"peak_bytes_all_ranks", reduce(comm, Teuchos::REDUCE_SUM, here)[0]}};
+  const auto here = static_cast<Real>(base::peak_memory_bytes());
+  json_["memory"] = {{"peak_bytes_largest_rank", base::max_over_ranks(comm, here)},
+                     {"peak_bytes_all_ranks", base::sum_over_ranks(comm, here)}};
   auto& parts = json_["solver"]["parts"] = json::array();
   for (const auto& cost : model_.newton().linear().solver().solver->costs()) {
-    const auto most = reduce<Real>(comm, Teuchos::REDUCE_MAX, {cost.setup_seconds, cost.application_seconds});
+    const auto most = base::max_over_ranks(comm, std::array<Real, 2>{cost.setup_seconds, cost.application_seconds});
     parts.push_back({{"name", cost.name},
                      {"setups", cost.n_setups},
                      {"applications", cost.n_applications},
                      {"setup_seconds", most[0]},
                      {"application_seconds", most[1]},
                      {"operator_complexity", cost.operator_complexity},
-                     {"bytes", reduce<Real>(comm, Teuchos::REDUCE_SUM, {cost.bytes})[0]}});
+                     {"bytes", base::sum_over_ranks(comm, static_cast<Real>(cost.bytes))}});
   }
   json_["timing"] = json::object();
   for (const auto& phase : model_.timers().phases())

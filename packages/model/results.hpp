@@ -10,6 +10,8 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <set>
+#include <utility>
 
 namespace sprekk::model {
 
@@ -34,6 +36,8 @@ class Results {
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
   /// fracture faces are open, stick and slip.
   std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
+  /// What may be wrong with the states added since the last call, each text once in the life of the results.
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
   /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
@@ -52,6 +56,8 @@ class Results {
   std::optional<io::VtuSeries> bulk_, fractures_;
   nlohmann::json json_;
   int n_steps_ = 0, n_written_ = 0;
+  std::set<std::string> told_;
+  std::vector<std::string> warnings_;
   std::chrono::steady_clock::time_point last_write_;
 };
 

@@ -1,6 +1,6 @@
 #include "model/run.hpp"
 
-#include "base/any_rank.hpp"
+#include "base/over_ranks.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/directory_lock.hpp"
@@ -8,6 +8,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
+#include "physics/comparison.hpp"
 
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -125,6 +126,7 @@ void describe(const Model& model, base::Log& log) {
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
+  for (const auto& warning : physics::conditions_that_hold_nowhere(model.scene(), mesh)) log.warning("{}", warning);
   physics::for_each_physics([&](auto physics) {
     for (const auto& doubt : physics.doubts(model.setting(), true)) log.warning("{}", doubt);
   });
@@ -187,6 +189,7 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
       }
       const auto faces = results.add_step(step, last || !step.converged);
       progress.add(step, times[k] - begin, faces);
+      for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
       return step;

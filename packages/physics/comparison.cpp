@@ -1,6 +1,7 @@
 #include "physics/comparison.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "physics/material_library.hpp"
 
 namespace sprekk::physics {
@@ -65,8 +66,13 @@ void Comparison::compare_fractures() {
     if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
       check_material("Fractures > " + name, fracture.material, "joint");
   if (!names_.fractures || (scene_.fractures.empty() && !is_absent("Fractures"))) return;
+  const auto is_misspelt = [&](const std::string& name) {  // which is told
+    return std::any_of(scene_.fractures.begin(), scene_.fractures.end(), [&](const auto& one) {
+      return !has(*names_.fractures, one.first) && !base::did_you_mean(one.first, {name}).empty();
+    });
+  };
   for (const auto& name : *names_.fractures)
-    if (!scene_.fractures.count(name) && is_sound("Fractures > " + name))
+    if (!scene_.fractures.count(name) && is_sound("Fractures > " + name) && !is_misspelt(name))
       fail("Fractures", fmt::format("\"{}\" is in the mesh and has no section here", name));
 }
 
@@ -117,15 +123,36 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
     }
   };
   for (const auto& [name, one] : conditions)
-    add({name,
-         "",
-         index_of(*names.boundaries, one.boundary),
-         {},
-         one.region ? index_of(*names.regions, *one.region) : -1,
-         one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
+    add({.name = name,
+         .field = "",
+         .boundary = index_of(*names.boundaries, one.boundary),
+         .values = {},
+         .region = one.region ? index_of(*names.regions, *one.region) : -1,
+         .fracture = one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
         one.prescribed());
   for (const auto& [name, one] : regions)
-    add({"Regions > " + name, "", -1, {}, index_of(*names.regions, name)}, one.prescribed());
+    add({.name = "Regions > " + name,
+         .field = "",
+         .boundary = -1,
+         .values = {},
+         .region = index_of(*names.regions, name)},
+        one.prescribed());
+  return all;
+}
+
+std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto n = mesh.region_names.size();
+  std::vector<int> here(mesh.boundary_names.size() * n, 0);
+  for (const auto& face : mesh.boundary_faces) here[face.boundary * n + mesh.cell_region[face.cell]] = 1;
+  const auto touches = base::max_over_ranks(*mesh.comm, here);
+  std::vector<std::string> all;
+  for (const auto& [name, one] : scene.boundary_conditions)
+    if (one.region &&
+        !touches[index_of(mesh.boundary_names, one.boundary) * n + index_of(mesh.region_names, *one.region)])
+      all.push_back(fmt::format(
+          "{}: Sprekk > Boundary conditions > {} > \"region\": \"{}\" does not touch the boundary \"{}\": the "
+          "condition holds nowhere",
+          scene.origin, name, *one.region, one.boundary));
   return all;
 }
 

@@ -102,4 +102,7 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
     const MeshNames& names, const std::string& field = "");
 
+/// A line for each boundary condition whose region is nowhere beside its boundary. Collective.
+std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);
+
 }  // namespace sprekk::physics

@@ -5,22 +5,13 @@
 #include "assembly/geometry.hpp"
 #include "laws/darcy.hpp"
 #include "laws/fluid.hpp"
+#include "physics/flux_scheme.hpp"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 namespace sprekk::physics {
 
 using mesh::Shape;
-
-/// How flows through a cell's faces follow from pressures: q_i = sum_j T_ij (p - p_j). All are exact for constant
-/// gradients where faces are plane, but tpfa.
-enum class FluxScheme {
-  rt0,   ///< lowest-order Raviart-Thomas-Nedelec on simplices
-  tpfa,  ///< two points, T diagonal: exact where (k/mu) n is parallel to the line from the cell's centre to the face's
-  mimetic  ///< any cell, with the quasi-RT inner product of Lie et al. (2012)
-};
 
 /// | symbol   | shape       | unit        |                                                       |
 /// | area     | [face, dim] | m^2 (2D: m) | outward area vectors A_i                              |
@@ -237,6 +228,40 @@ struct HybridFlow {
   }
 };
 
+/// HybridFlow of entities whose T is kept.
+///
+/// | symbol | shape           | unit       |                                                                 |
+/// | x, r   | 1 + n           | Pa, m^3/s  | as in HybridFlow, in the slots of `Unknowns`                    |
+/// | T      | [entity, n * n] | m^3/(Pa s) | with a rate m^3/Pa                                              |
+/// | lift   | [entity, n]     | Pa         | empty: zero                                                     |
+/// | rate   |                 | -, 1/s     | factor of T                                                     |
+template <int n, class Unknowns>
+struct KeptFlow {
+  using Columns = Unknowns;
+  using Rows = Unknowns;
+  ConstView<Real**> T, lift;
+  laws::Fluid fluid = {};
+  Real rate = 1;
+
+  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int e) const {
+    HybridFlow<n> result{fluid, {}, {}};
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) result.T[i][j] = T(e, i * n + j);
+      result.lift[i] = lift.extent(0) > 0 ? lift(e, i) : 0;
+    }
+    return result;
+  }
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
+    at(e).residual(x, r);
+    for (Real& row : r) row *= rate;
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    at(e).jacobian(x, J);
+    for (auto& row : J)
+      for (Real& value : row) value *= rate;
+  }
+};
+
 /// HybridFlow of one cell through its faces.
 ///
 /// | symbol   | shape         | unit          |                                            |
@@ -290,17 +315,5 @@ struct HybridCell {
     return at(cell, Faces(X));
   }
 };
-
-struct ChosenScheme {
-  FluxScheme scheme;
-  std::string reason;
-};
-
-/// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
-/// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
-/// `section` of the scene for messages.
-ChosenScheme flux_scheme(const std::string& section, const std::string& name, const mesh::Mesh& mesh,
-                         const std::vector<laws::Mobility>& mobility, const std::vector<int>& mobility_of_cell = {});
-std::string name_of(FluxScheme scheme);
 
 }  // namespace sprekk::physics

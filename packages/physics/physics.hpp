@@ -80,6 +80,11 @@ struct Physics {
   static void add_modules(const Setting&, Modules&) {}
   /// What may be wrong with a scene that has a mesh, a line each. Collective.
   static std::vector<std::string> warnings(const Setting&) { return {}; }
+  /// What may be wrong with a state that a step has reached, whose outputs these are: the same text in each.
+  /// Collective.
+  static std::vector<std::string> warnings_of_state(const Setting&, const std::vector<assembly::OutputField>&) {
+    return {};
+  }
   /// Why there may be no solution, or more than one; `oscillates`: faces change their contact state from one iterate of
   /// Newton's method to the next. Collective.
   static std::vector<std::string> doubts(const Setting&, bool oscillates) { return {}; }

@@ -19,7 +19,11 @@ inline int index_of(const std::vector<std::string>& names, const std::string& na
 template <class T>
 struct Properties {
   std::vector<T> values;
-  std::vector<int> number;
+  std::vector<int> number = {};
+
+  const T& of(int entity, int group) const { return values[number.empty() ? group : number[entity]]; }
+  /// Of a local cell, where groups are regions.
+  const T& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const { return of(cell, mesh.cell_region[cell]); }
 };
 
 /// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's

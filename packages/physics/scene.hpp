@@ -3,7 +3,9 @@
 
 #include "base/check.hpp"
 #include "base/table.hpp"
+#include "mesh/facets.hpp"
 #include "physics/list.hpp"
+#include "physics/properties.hpp"
 
 #include <algorithm>
 #include <map>
@@ -131,14 +133,6 @@ struct Scene : OfAll<detail::Sections> {
   const Material& material_of(const std::string& region) const;
 };
 
-/// Of the materials of the mesh's regions, by their numbers.
-template <class Of>
-auto by_region(const Scene& scene, const mesh::Mesh& mesh, const Of& of) {
-  std::vector<decltype(of(scene.material_of("")))> values;
-  for (const auto& name : mesh.region_names) values.push_back(of(scene.material_of(name)));
-  return values;
-}
-
 /// What `find` finds of a material; its errors get the place of the material in the scene.
 template <class Find>
 auto at_place(const Scene& scene, const Material& material, const Find& find) {
@@ -149,6 +143,19 @@ auto at_place(const Scene& scene, const Material& material, const Find& find) {
     const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
     throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
   }
+}
+
+/// What of(material, x) finds of local cells, at their centres; once for each region where uniform(material).
+template <class Uniform, class Of>
+auto by_cell(const Scene& scene, const mesh::Mesh& mesh, const Uniform& uniform, const Of& of) {
+  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
+  return properties<decltype(of(material(0), mesh::Vector()))>(
+      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
+      [&](int region) { return uniform(material(region)); },
+      [&](int region, int cell) {
+        const auto x = cell < 0 ? mesh::Vector{} : mesh::cell_centre(mesh, cell);
+        return at_place(scene, material(region), [&] { return of(material(region), x); });
+      });
 }
 
 }  // namespace sprekk::physics

@@ -1,6 +1,6 @@
 #include "solve/aggregates.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -128,7 +128,7 @@ std::vector<Real> reach(const Nodes& nodes) {
 
 Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
   constexpr std::size_t third = 2;
-  Real here[2] = {}, all[2] = {};  // sum, number
+  std::array<Real, 2> here{};  // sum, number
   std::vector<Real> far;
   for (std::size_t i = 0; i < nodes.place.size(); ++i) {
     far.clear();
@@ -139,7 +139,7 @@ Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
     here[0] += std::fmin(far[third] / far[0], flattest);
     ++here[1];
   }
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, here, all);
+  const auto all = base::sum_over_ranks(comm, here);
   return all[1] > 0 ? all[0] / all[1] : 1;
 }
 

@@ -1,11 +1,11 @@
 #include "solve/chebyshev.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_LAPACK.hpp>
 
 #include <cmath>
 #include <vector>
 
+#include "base/over_ranks.hpp"
 #include "solve/node_kernels.hpp"
 
 namespace sprekk::solve {
@@ -104,11 +104,10 @@ void Chebyshev::find_largest_eigenvalue() {
 /// Over all owned nodes.
 Real Chebyshev::dot(const View<Real*>& x, const View<Real*>& y) const {
   const auto& halo = *graph_.columns;
-  Real here = 0, all = 0;
+  Real here = 0;
   Kokkos::parallel_reduce(
       "dot", Policy(0, halo.n_owned() * size_), KOKKOS_LAMBDA(LocalIndex i, Real & sum) { sum += x(i) * y(i); }, here);
-  Teuchos::reduceAll(*halo.owned()->getComm(), Teuchos::REDUCE_SUM, 1, &here, &all);
-  return all;
+  return base::sum_over_ranks(*halo.owned()->getComm(), here);
 }
 
 void Chebyshev::apply(const ConstView<Real*>& b, const View<Real*>& x, bool add) const {

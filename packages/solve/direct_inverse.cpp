@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -44,7 +45,8 @@ DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& n
 void DirectInverse::setup(bool symmetric) {
   if (!solver_) return factor_dense();
   const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
-  const auto failure = solver_->setup({joined, {}, symmetric, {}, A_});
+  const auto failure =
+      solver_->setup({.joined = joined, .blocks = {}, .symmetric = symmetric, .diagonal = {}, .matrix = A_});
   SPREKK_CHECK(failure.empty(), "{}: {}", name_, failure);
 }
 
@@ -58,12 +60,11 @@ void DirectInverse::factor_dense() {
   for (LocalIndex row = 0, n_rows = local.numRows(); row < n_rows; ++row)
     for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
       part[columns.getGlobalElement(local.graph.entries(k)) * n + rows.getGlobalElement(row)] = local.values(k);
-  factors_.resize(part.size());
+  factors_ = base::sum_over_ranks(*rows.getComm(), part);
   pivots_.resize(n);
-  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_SUM, n * n, part.data(), factors_.data());
-  int info = 0, singular = 0;
+  int info = 0;
   Teuchos::LAPACK<int, Real>().GETRF(n, n, factors_.data(), n, pivots_.data(), &info);
-  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_MAX, 1, &info, &singular);  // ranks may round differently
+  const int singular = base::max_over_ranks(*rows.getComm(), info);  // ranks may round differently
   SPREKK_CHECK(singular == 0, "{}: the matrix is singular (after {} pivots)", name_, singular - 1);
 }
 

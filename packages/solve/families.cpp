@@ -93,7 +93,10 @@ class Pair : public Family {
     if (const auto& schur = family.diagonal[1].schur; !schur.is_null()) D_inverse->update(1, *schur, 1);
     D_inverse->reciprocal(*D_inverse);
     fill_S(family, *D_inverse);
-    solver_->setup({block_, rows_of_S_, {}, false});  // what was eliminated locally need not leave it symmetric
+    solver_->setup({.block = block_,
+                    .matrix = rows_of_S_,
+                    .bulk = {},
+                    .symmetric = false});  // what was eliminated locally need not leave it symmetric
     inverse_ = rcp(new PairInverse(family, D_inverse, S_, solver_->inverse()));
   }
   RCP<const Operator> inverse() const override { return inverse_; }

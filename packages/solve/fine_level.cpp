@@ -214,7 +214,8 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
     fill_order_one(A, P, *product_->crs());
     matrix = product_;
   }
-  order_one_->setup({first.block, matrix, bulk, system.symmetric, {}, first.careful});
+  order_one_->setup(
+      {.block = first.block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful});
 }
 
 void FineLevel::setup(const LinearSystem& system, bool keeps) {

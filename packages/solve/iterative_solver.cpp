@@ -2,12 +2,12 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <MueLu_MasterList.hpp>
-#include <Teuchos_CommHelpers.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "solve/block_solver.hpp"
 #include "solve/families.hpp"
 #include "solve/fine_level.hpp"
@@ -258,11 +258,10 @@ class IterativeSolver : public LinearSolver {
     const auto diagonal = diagonal_of(matrix);
     const auto now = diagonal->getLocalViewHost(Tpetra::Access::ReadOnly),
                then = diagonal_->getLocalViewHost(Tpetra::Access::ReadOnly);
-    GlobalIndex here = 0, anywhere = 0;
+    GlobalIndex here = 0;
     for (std::size_t i = 0; i < now.extent(0); ++i)
       here += std::fabs(now(i, 0) - then(i, 0)) > much * std::fabs(then(i, 0));
-    Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 1, &here, &anywhere);
-    return anywhere;
+    return base::sum_over_ranks(*comm_, here);
   }
 
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/over_ranks.hpp"
 #include "solve/condensed_block.hpp"
 #include "solve/node_kernels.hpp"
 #include "solve/small_lu.hpp"
@@ -82,12 +82,10 @@ LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
       constrain(block(r, s), *constrained_[r], r == s);
       sum = 3 * sum + checksum(block(r, s));
     }
-  const int changed_here = fresh_ || sum != checksum_;
-  int changed = 0;
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &changed_here, &changed);
+  const bool changed = base::on_any_rank(*comm_, fresh_ || sum != checksum_);
   checksum_ = sum;
   fresh_ = !failure.empty();
-  return {changed != 0, failure};
+  return {changed, failure};
 }
 
 /// The flags of all columns, too. True if any has changed on any rank.
@@ -106,7 +104,7 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
         Kokkos::Max<int>(anywhere));
     changed = std::max(changed, anywhere);
   }
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 1, &changed, &anywhere);
+  anywhere = base::max_over_ranks(*comm_, changed);
   for (int r = 0; r < n_remaining() && anywhere; ++r)
     for (int s = 0; s < n_remaining(); ++s)
       if (const auto& condensed = block(r, s); !condensed.matrix.is_null()) take_flags(*constrained_[s], condensed);
@@ -144,9 +142,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
       },
       Kokkos::Min<LocalIndex>(first));
   const auto none = std::numeric_limits<GlobalIndex>::max();
-  const GlobalIndex singular_here = first < n ? group.slots->owned()->getGlobalElement(first) : none;
-  GlobalIndex singular = none;
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MIN, 1, &singular_here, &singular);
+  const auto singular = base::min_over_ranks(*comm_, first < n ? group.slots->owned()->getGlobalElement(first) : none);
   if (singular != none) {
     failure = fmt::format("local group '{}': the matrix of entity {} is singular", group.name, singular);
     return false;

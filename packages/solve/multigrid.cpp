@@ -1,10 +1,9 @@
 #include "solve/multigrid.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/over_ranks.hpp"
 #include "solve/node_kernels.hpp"
 
 namespace sprekk::solve {
@@ -32,9 +31,9 @@ std::size_t enough_for(const Nodes& nodes, const NodeGraph& graph) {
   constexpr std::size_t long_row = 27, enough = 36;
   constexpr GlobalIndex share = 20;
   if (nodes.n_modes != modes_in_space) return 0;
-  GlobalIndex here[2] = {0, graph.n_rows()}, all[2] = {};
+  std::array<GlobalIndex, 2> here{0, graph.n_rows()};
   for (LocalIndex i = 0; i < graph.n_rows(); ++i) here[0] += graph.start(i + 1) - graph.start(i) >= long_row;
-  Teuchos::reduceAll(*graph.columns->owned()->getComm(), Teuchos::REDUCE_SUM, 2, here, all);
+  const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
   return share * all[0] < all[1] ? enough : 0;
 }
 
@@ -67,10 +66,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
                      const RCP<const MultiVector>& modes)
     : map_(matrix->row_map()), finest_(matrix), size_(n_components) {
   add_level(node_matrix(*matrix, size_));
-  const int shares = levels_.front().A.value.data() == matrix->numbers().value.data();
-  int all_share = 0;
-  Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_MIN, 1, &shares, &all_share);
-  shares_ = all_share == 1;
+  shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
   degree_ = modes.is_null() ? Chebyshev::usual_degree : degree_for(flatness(nodes, *map_->getComm()));
   while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
     const auto& A = levels_.back().A;
@@ -92,9 +88,9 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     levels_.back().to_coarse = std::move(galerkin);
     add_level(levels_.back().to_coarse->coarse());
   }
-  double here[2] = {static_cast<double>(levels_.front().A.value.extent(0)), 0}, all[2] = {};
+  std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
   for (const auto& level : levels_) here[1] += level.A.value.extent(0);
-  Teuchos::reduceAll(*map_->getComm(), Teuchos::REDUCE_SUM, 2, here, all);
+  const auto all = base::sum_over_ranks(*map_->getComm(), here);
   operator_complexity_ = all[1] / all[0];
 }
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <sstream>
 
-#include "base/any_rank.hpp"
+#include "base/over_ranks.hpp"
 #include "base/check.hpp"
 #include "base/parameters.hpp"
 #include "base/text.hpp"

@@ -1,11 +1,10 @@
 #include "solve/node_matrix.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
 
+#include "base/over_ranks.hpp"
 #include "solve/node_kernels.hpp"
 
 namespace sprekk::solve {
@@ -178,10 +177,8 @@ NodeMatrix node_matrix(const fields::Matrix& A, int size) {
   bool rows_first = columns.getNodeNumElements() >= rows.getNodeNumElements();
   for (LocalIndex i = 0, n = rows.getNodeNumElements(); i < n && rows_first; ++i)
     rows_first = columns.getGlobalElement(i) == rows.getGlobalElement(i);
-  const int in_nodes = rows_first && numbers.height == size && numbers.width == size;
-  int all_in_nodes = 0;
-  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_MIN, 1, &in_nodes, &all_in_nodes);
-  if (all_in_nodes == 0) return node_matrix(*A.crs(), size);
+  const bool in_nodes = rows_first && numbers.height == size && numbers.width == size;
+  if (!base::on_all_ranks(*rows.getComm(), in_nodes)) return node_matrix(*A.crs(), size);
   const auto nodes = [size](const Map& unknowns) {
     std::vector<GlobalIndex> numbers;
     for (LocalIndex i = 0, n = unknowns.getNodeNumElements(); i < n; i += size)

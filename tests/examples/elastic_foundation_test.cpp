@@ -34,7 +34,7 @@ std::unique_ptr<assembly::System> bar(const std::tuple<std::string, int>& cell_a
   traction[0] = pull;
   const int west = 0, east = 1, south = 2, bottom = 4;
   physics::BulkMomentumParameters rock;
-  rock.elasticity = {laws::Elasticity{E / 2, 0}};  // Poisson's ratio 0
+  rock.elasticity.values = {laws::Elasticity{E / 2, 0}};  // Poisson's ratio 0
   rock.tractions = {{east, traction}};
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(physics::make_bulk_momentum(mesh->shape, rock));

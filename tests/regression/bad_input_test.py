@@ -349,6 +349,8 @@ class Scenes(BadInput):
         refuse(['unknown unit "degC"'], surface + "temperature=20 degC")
         refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
         refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
+        refuse(['Materials > rock: "volumetric heat capacity" = 1-x is -', "must be at least 0"], "Materials.rock.volumetric heat capacity=1-x")
+        refuse(['"volumetric heat capacity": is "t"; it may depend on x, y, z, not on t'], "Materials.rock.volumetric heat capacity=t")
         refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
         refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
@@ -373,6 +375,9 @@ class Scenes(BadInput):
         refuse(['Materials > rock > "Biot modulus": is 0, must be positive or infinite'], "Materials.rock.Biot modulus=0")
         refuse(['Materials > rock > "Biot modulus": is 11 Pa, must not be above 10 Pa, which "porosity" and "compressibility"'],
                "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2", "Flow.compressibility=0.5")
+        refuse(['Materials > rock: "porosity" = 0.5-x is -0.', "must be between 0 and 1"], "Materials.rock.porosity=0.5-x")
+        refuse(['is 11 Pa, must not be above 10 Pa'], "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2+0*x",
+               "Flow.compressibility=0.5")
         refuse(['"scheme"', '"mpfa"', '"mimetic"'], "Flow.scheme=mpfa")
         refuse(['Boundary conditions > west: give either "pressure" or "flux"'], "Boundary conditions.west.flux=1")
         refuse(['Boundary conditions > west: moves or loads the rock'], "Boundary conditions.west.displacement={0, 0}")
@@ -398,6 +403,8 @@ class Scenes(BadInput):
         def refuse(expected, *sets):
             self.refuse(expected, "check", self.scene("poro/injection_2d.xml"), *(word for entry in sets for word in ("--set", entry)))
         refuse(['granite > "Biot coefficient": is 1.2, must be between 0 and 1'], "Materials.granite.Biot coefficient=1.2")
+        refuse(['Materials > granite: "Biot coefficient" = 1.2-0*x is 1.2 at (', "must be between 0 and 1"],
+               "Materials.granite.Biot coefficient=1.2-0*x")
         refuse(['middle > "fluid pressure": is not given but found, with "Flow"'], "Fractures.middle.fluid pressure=1")
         refuse(['Output > "error estimate": is of stress and jumps without a fluid'], "Output.error estimate=true")
         refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
@@ -519,7 +526,7 @@ class Scenes(BadInput):
     def test_materials_that_depend_on_the_place(self):
         self.refuse([PUSH + ": Sprekk > Materials > joint: ", '"friction coefficient" = x-0.7 is -0.', "must be at least 0"], "run",
                     self.scene(PUSH), "--set", "Materials.joint.friction coefficient=x-0.7", any_point=True)
-        self.refuse([PUSH + ": Sprekk > Materials > rock: ", '"shear modulus" = x-0.7 is -0.', "must be above 0"], "run",
+        self.refuse([PUSH + ": Sprekk > Materials > rock: ", '"shear modulus" = x-0.7 is -0.', "must be positive"], "run",
                     self.scene(PUSH), "--set", "Materials.rock.shear modulus=x-0.7", any_point=True)
 
     def test_numbers_beyond_use(self):
@@ -592,6 +599,8 @@ class AllAtOnce(BadInput):
                         *self.sets(self.TYPO, "Boundary conditions.moved.displacement={0, 0/(t-1)}"))
 
     def test_what_only_follows_is_not_told(self):
+        misspelt = self.scene_with(('"Fractures">\n    <ParameterList name="fracture"', '"Fractures">\n    <ParameterList name="fractrue"'))
+        self.refuse_all([['Fractures > "fractrue"', 'Did you mean "fracture"?']], misspelt)
         scene = self.scene(PUSH)
         moved = "Boundary conditions.moved."
         unknown = ['moved > "displacment"', "unknown"]

@@ -131,6 +131,19 @@ class Pictures(PlotTest):
         _, err = self.draw(self.folder / "out", "--paraview", expect=1)
         self.assertIn("of runs that deform", err)
 
+    def test_heat(self):
+        """Temperature and heat flux, as the run wrote them; in 2D on one rank and in 3D on two."""
+        for dim, cells in ((2, "{8, 6}"), (3, "{4, 3, 3}")):
+            self.run_scene(f"heat/cooling_{dim}d.xml", f"Mesh.cells={cells}", "Time.steps=1", ranks=dim - 1)
+            out, _ = self.draw(self.folder / "out")
+            self.assertEqual([Path(line).name for line in out.splitlines()], ["temperature.png", "convergence.png"])
+            self.expect_pictures(["out/temperature.png"])
+            self.expect_labels(self.figures("out")["temperature"], "temperature (K)", "heat flux (W/m²)")
+            if dim == 2:
+                rock = read.grid(self.folder / "out/bulk_0000.pvtu")
+                panels = dict((panel[0], panel[1]) for panel in flow.panels(read.surface(rock), None, flow.HEAT))
+                np.testing.assert_allclose(np.sort(panels["temperature"][0]), np.sort(read.arrays(rock.GetCellData())["temperature"]))
+
     def test_rim_of_a_plane_run_is_that_of_the_body(self):
         """No edges between the pieces of ranks; each side of a fracture once."""
         def rim(ranks, *overrides):

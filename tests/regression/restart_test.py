@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import zlib
 
 import program
 from program import ProgramTest, main
@@ -301,6 +302,22 @@ class Restart(ProgramTest):
                                     "going on from the checkpoint before")
             self.expect_same_bits("whole", "out")
             shutil.rmtree(self.folder / "out")
+
+    def test_other_versions(self):
+        """Of a checkpoint in another format it is said that it is one; what is in it is not compared with the scene."""
+        self.go(CYCLIC, "Time.end=1", "Time.steps=1", EVERY_STEP, QUIET)
+        manifest = self.checkpoints()[0] / "manifest.json"
+        sealed = json.loads(manifest.read_text())["sealed"]
+        text = manifest.read_text()
+        written = f'"format":{sealed["format"]}'
+        for replacement, told in (("", "an earlier version of Sprekk \\(format 1, "), ('"format":99', "a later version of Sprekk \\(format 99, ")):
+            changed = text.replace(written + ",", replacement + "," if replacement else "")
+            begin = changed.index('"sealed":') + len('"sealed":')
+            body = changed[begin:changed.rindex("}")]
+            manifest.write_text(f'{{"seal":[{len(body.encode())},{zlib.crc32(body.encode())}],"sealed":{body}}}')
+            words = self.go(CYCLIC, EVERY_STEP, QUIET, restart=True, expect=1)
+            self.assertRegex(words, told)
+            self.assertNotIn("damaged", words)
 
     def test_damaged_journal(self):
         """The results of the earlier steps, in one of two copies."""

@@ -186,6 +186,26 @@ class Results(ProgramTest):
         self.assertEqual((out + err).count("failed"), 1)
         self.assertIn("no convergence in 1 iterations", out + err)
 
+    def test_doubts_are_told_once(self):
+        def warnings(*overrides, ranks=1):
+            sets = [word for override in ("Mesh.cell=quadrilateral", "Time.steps=3", QUIET, *overrides) for word in ("--set", override)]
+            return self.call("run", self.scene("flow/source_2d.xml"), "--output", "out", *sets, ranks=ranks)[1].splitlines()
+        turned = "Materials.rock.permeability={1, 1, 0.5}"
+        self.assertEqual(warnings(), [])
+        self.assertEqual(warnings(turned), [])  # mimetic
+        for ranks in (1, 2):
+            told = warnings(turned, "Flow.scheme=tpfa", ranks=ranks)
+            self.assertEqual(len(told), 1, told)
+            self.assertIn('Sprekk > Flow > "scheme": in 256 of 256 cells permeability and faces are not orthogonal', told[0])
+            core = ["Mesh.regions.core.lower corner={0.25, 0.25}", "Mesh.regions.core.upper corner={0.75, 0.75}"]
+            told = warnings(*core, "Boundary conditions.west.region=core", ranks=ranks)
+            self.assertEqual(len(told), 1, told)
+            self.assertIn('west > "region": "core" does not touch the boundary "west": the condition holds nowhere', told[0])
+            self.assertEqual(warnings(*core, "Boundary conditions.west.region=bulk", ranks=ranks), [])
+            told = warnings("Boundary conditions.west.pressure=-5", ranks=ranks)
+            self.assertEqual(len(told), 1, told)
+            self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the fluid's pressure is below 0 in places")
+
     def test_rock_that_nothing_holds_is_told_once(self):
         # the frame shrinks, lets go of the block in it (ax, ay < 0), and takes hold again
         scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"

@@ -153,7 +153,7 @@ def check_text(text):
 
 def check(root):
     """All violations under root as (file, line, rule, what), sorted."""
-    files = [f for f in root.iterdir() if f.is_file()]
+    files = [f for f in root.iterdir() if f.is_file() and f.name != ".git"]  # a file in worktrees
     for folder in FOLDERS:
         files += [f for f in (root / folder).rglob("*") if f.is_file()]
     texts = {}

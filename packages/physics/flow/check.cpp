@@ -1,7 +1,7 @@
 // What scenes may ask of flow.
 #include "base/text.hpp"
 #include "physics/comparison.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/entry_of_place.hpp"
 
 #include <algorithm>
 
@@ -78,11 +78,10 @@ void compare_level(Comparison& c) {
   const bool deforms = Mechanics::is_in(scene);
   const Real fluid = scene.flow->compressibility;
   const bool in_fractures = !fractures->empty() && (fluid > 0 || deforms);
-  const bool stored =
-      in_fractures || std::any_of(regions->begin(), regions->end(), [&](const auto& name) {
-        const auto* rock = c.rock_of(name);
-        return !rock || rock->growth_of_pores(fluid) + rock->porosity * fluid > 0 || (deforms && rock->biot > 0);
-      });
+  const bool stored = in_fractures || std::any_of(regions->begin(), regions->end(), [&](const auto& name) {
+                        const auto* rock = c.rock_of(name);
+                        return !rock || rock->may_store(fluid) || (deforms && !is_zero(rock->biot));
+                      });
   const bool known =
       c.is_sound("Boundary conditions") && (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
   if (!given && !stored && known && c.is_sound("Materials") && c.is_sound("Flow"))
@@ -108,21 +107,21 @@ void compare_conditions(Comparison& c) {
 
 void compare_rock(Comparison& c, const Material& rock) {
   const std::string name = c.name_of(rock);
-  const Real least = rock.porosity * c.scene().flow->compressibility;  // storage that pores add to
-  if (rock.biot_modulus && least * *rock.biot_modulus > 1 + 1e-12)
-    c.fail(fmt::format("Materials > {} > \"Biot modulus\"", name),
-           fmt::format("is {:.6g} Pa, must not be above {:.6g} Pa, which \"porosity\" and \"compressibility\" of the "
-                       "fluid make without any growth of pores",
-                       *rock.biot_modulus, 1 / least));
+  const auto& flow = *c.scene().flow;
   const std::string place = fmt::format("Materials > {} > \"permeability\"", name);
+  const auto try_to = [&](const std::string& where, const auto& find) {
+    try {
+      find();
+    } catch (const Error& error) {
+      c.fail(where, error.what());
+    }
+  };
+  if (rock.porosity.is_constant())
+    try_to(fmt::format("Materials > {} > \"Biot modulus\"", name), [&] { rock.capacity(flow.compressibility, {}); });
   if (rock.permeability.empty() && c.is_sound("Materials > " + name))
     c.fail(place, "missing; it is required with \"Flow\"");
   if (rock.permeability.empty() || !c.names().dim) return;
-  try {
-    if (rock.flows_uniformly()) rock.mobility(*c.names().dim, c.scene().flow->viscosity, {});
-  } catch (const Error& error) {
-    c.fail(place, error.what());
-  }
+  if (rock.flows_uniformly()) try_to(place, [&] { rock.mobility(*c.names().dim, flow.viscosity, {}); });
 }
 
 }  // namespace

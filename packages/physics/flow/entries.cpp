@@ -1,17 +1,18 @@
 // What scenes say of flow.
 #include "physics/flow/flow.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/entry_of_place.hpp"
 #include "physics/tensor_entry.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprekk::physics {
 
 void Flow::Rock::describe(base::Section& s) {
-  s.entry(permeability, "permeability", "m^2", base::any(),
-          "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ "
-          "in 3D");
-  s.entry(porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
+  entry_of_place(s, permeability, "permeability", "m^2", base::any(),
+                 "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, "
+                 "YZ, XZ in 3D");
+  entry_of_place(s, porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
   s.entry(
       compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
       "growth of the porosity with the fluid's pressure; of rock that deforms: at constant strain, (Biot coefficient "
@@ -19,7 +20,6 @@ void Flow::Rock::describe(base::Section& s) {
   s.entry(biot_modulus, "Biot modulus", "Pa", base::positive_or_infinite(),
           "M, instead of the compressibility of pores: 1/M is that plus the porosity times the compressibility of "
           "the fluid, the storage at constant strain");
-  for (const auto& value : permeability) check_constant_in_time(s, "permeability", value);
 }
 
 void Flow::Rock::check(base::Section& s) const {
@@ -28,8 +28,20 @@ void Flow::Rock::check(base::Section& s) const {
 
 bool Flow::Rock::flows_uniformly() const { return is_uniform_tensor(permeability); }
 
-Real Flow::Rock::growth_of_pores(Real of_fluid) const {
-  return biot_modulus ? std::max(Real(0), 1 / *biot_modulus - porosity * of_fluid) : compressibility.value_or(0);
+Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
+  const Real room = value_at("porosity", porosity, base::between(0, 1), x), least = room * of_fluid;
+  if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
+  SPREKK_CHECK(
+      least * *biot_modulus <= 1 + 1e-12,
+      "is {:.6g} Pa, must not be above {:.6g} Pa, which \"porosity\" and \"compressibility\" of the fluid make "
+      "without any growth of pores",
+      *biot_modulus, 1 / least);
+  return {.room = room, .growth = std::max(Real(0), 1 / *biot_modulus - least)};
+}
+
+bool Flow::Rock::may_store(Real of_fluid) const {
+  return biot_modulus ? std::isfinite(*biot_modulus) || (of_fluid > 0 && !is_zero(porosity))
+                      : compressibility.value_or(0) > 0 || (of_fluid > 0 && !is_zero(porosity));
 }
 
 laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const {
@@ -40,17 +52,14 @@ laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Re
 }
 
 void Flow::Joint::describe(base::Section& s) {
-  s.entry(residual_aperture, "residual aperture", "m", base::at_least(0),
-          "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
-  s.entry(
-      tangential_permeability, "tangential permeability", "m^2", base::positive(),
+  entry_of_place(s, residual_aperture, "residual aperture", "m", base::at_least(0),
+                 "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
+  entry_of_place(
+      s, tangential_permeability, "tangential permeability", "m^2", base::positive(),
       "k_t of the flow along the fracture, with \"Flow\"; without it the cubic law holds, (hydraulic aperture)^2/12");
-  s.entry(normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
-          "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
-          "beside it");
-  check_constant_in_time(s, std::vector<RangedEntry>{{"residual aperture", residual_aperture, 0},
-                                                     {"tangential permeability", tangential_permeability, 0},
-                                                     {"normal permeability", normal_permeability, 0}});
+  entry_of_place(s, normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
+                 "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
+                 "beside it");
 }
 
 void FlowSection::describe(base::Section& s) {
@@ -64,12 +73,12 @@ void FlowSection::describe(base::Section& s) {
           "with a compressibility: where the density is as given; volumes of fluid are at this pressure");
   s.entry(source, "source", "s^-1", base::any(),
           "volume of fluid per volume of rock and time, an expression of x, y, z, t");
-  s.entry(initial_pressure, "initial pressure", "Pa", base::any(), "at the start, where fluid is stored; of x, y, z");
+  entry_of_place(s, initial_pressure, "initial pressure", "Pa", base::any(),
+                 "at the start, where fluid is stored; of x, y, z");
   s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
            "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
            "orthogonal, else mimetic");
   s.named_sections(wells, "Wells", "by names of your choice");
-  check_constant_in_time(s, "initial pressure", initial_pressure);
 }
 
 void WellSection::describe(base::Section& s) {
@@ -112,9 +121,8 @@ void Flow::BoundaryCondition::describe(base::Section& s) {
           "of the fluid, with \"Flow\": a value or an expression of x, y, z, t; without a \"fracture\" and without a "
           "conductance it holds for rock and fractures, all else for rock");
   s.entry(flux, "flux", "m/s", base::any(), "volume of fluid that leaves per area and time, with \"Flow\"");
-  s.entry(conductance, "conductance", "m/(Pa*s)", base::at_least(0),
-          "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
-  if (conductance) check_constant_in_time(s, "conductance", *conductance);
+  entry_of_place(s, conductance, "conductance", "m/(Pa*s)", base::at_least(0),
+                 "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
 }
 
 void Flow::BoundaryCondition::check(base::Section& s) const {

@@ -1,39 +1,41 @@
 #include "physics/flow/flow.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/flow/darcy_flow.hpp"
-#include "physics/flow/fluid_storage.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/wells.hpp"
+#include "physics/hybrid_diffusion.hpp"
 #include "physics/mechanics/mechanics.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/entry_of_place.hpp"
 #include "physics/scene.hpp"
+#include "physics/storage.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprekk::physics {
 
 namespace {
 
-std::vector<FluidCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
-  std::vector<FluidCondition> conditions;
-  for (const auto& [name, one] : scene.boundary_conditions)
-    if (one.fracture.has_value() == of_fractures && (one.flux || one.conductance))
-      conditions.push_back({index_of(mesh.boundary_names, one.boundary), one.flux ? *one.flux : *one.pressure,
-                            one.conductance, one.region ? index_of(mesh.region_names, *one.region) : -1,
-                            one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
-  return conditions;
+std::vector<FluxCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
+  return flux_conditions(scene, mesh,
+                         {&BoundaryCondition::flux, &BoundaryCondition::pressure, &BoundaryCondition::conductance},
+                         of_fractures);
 }
 
 std::vector<Well> wells(const Scene& scene, int dim) {
   std::vector<Well> wells;
   for (const auto& [name, one] : scene.flow->wells) {
-    wells.push_back({name, {}, one.radius, one.skin, one.rate, one.pressure});
-    for (std::size_t k = 0; k < one.points.size(); k += dim) {
+    wells.push_back({.name = name,
+                     .points = {},
+                     .radius = one.radius,
+                     .skin = one.skin,
+                     .rate = one.rate,
+                     .pressure = one.pressure});
+    for (std::size_t k = 0; k < one.points.size(); k += dim)
       std::copy_n(&one.points[k], dim, wells.back().points.emplace_back().begin());
-    }
   }
   return wells;
 }
@@ -41,20 +43,18 @@ std::vector<Well> wells(const Scene& scene, int dim) {
 /// Of the flow in and through a joint whose sides have moved apart by `opening`, m.
 FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, Real opening,
                                         const std::array<Real, 3>& x) {
-  const auto at = [&](const char* name, const base::Expression& value, bool may_be_zero) {
-    RangedEntry(name, value, 0, may_be_zero).check(x);
-    return value(x, 0);
-  };
-  const Real aperture = at("initial aperture", joint.initial_aperture, true),
-             residual = at("residual aperture", joint.residual_aperture, true), a = std::max(aperture, residual);
+  const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
+             residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
+             a = std::max(aperture, residual);
   SPREKK_CHECK(a > 0,
                "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
                x[0], x[1], x[2]);
   const auto& given = joint.tangential_permeability;
-  const Real k = given ? at("tangential permeability", *given, false) : 0,
-             across = at("normal permeability", joint.normal_permeability, false);
-  const FractureFlowParameters::Face face{{aperture + opening, residual, k, viscosity}, 2 * across / (a * viscosity)};
+  const Real k = given ? value_at("tangential permeability", *given, base::positive(), x) : 0,
+             across = value_at("normal permeability", joint.normal_permeability, base::positive_or_infinite(), x);
+  const FractureFlowParameters::Face face{.along = {aperture + opening, residual, k, viscosity},
+                                          .exchange = 2 * across / (a * viscosity)};
   SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
                "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
                "0: give a \"residual aperture\", or an \"initial aperture\" above the closure",
@@ -81,24 +81,35 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   return faces;
 }
 
-DarcyFlowParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh, const Properties<laws::Mobility>& rock) {
+HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh) {
   const auto& flow = *scene.flow;
-  DarcyFlowParameters darcy{rock.values, rock.number};
-  const auto chosen = flux_scheme("Flow", flow.scheme, mesh, rock.values, rock.number);
+  HybridDiffusionParameters darcy{.name = "Darcy flow",
+                                  .field = "pressure",
+                                  .unit = "Pa",
+                                  .flux = "Darcy velocity",
+                                  .flux_unit = "m/s",
+                                  .outflow = {"conductance", "inflows"},
+                                  .fluid = {flow.compressibility, flow.reference_pressure},
+                                  .conditions = fluid_conditions(scene, mesh, false),
+                                  .coupled_by = "displacement"};
+  base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
+  const auto chosen = flux_scheme(scheme_entry(scene), mesh, darcy.mobility);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
   darcy.in_regions =
       std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.pressure; });
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
-  darcy.fluid = {flow.compressibility, flow.reference_pressure};
   if (!is_zero(flow.source)) darcy.source = {flow.source};
-  darcy.conditions = fluid_conditions(scene, mesh, false);
   return darcy;
 }
 
-FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh, const DarcyFlowParameters& darcy) {
-  FractureFlowParameters fractures{
-      {}, {}, {}, darcy.scheme, darcy.fluid, darcy.weight, fluid_conditions(scene, mesh, true)};
+FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
+                                     const HybridDiffusionParameters& darcy) {
+  FractureFlowParameters fractures{.scheme = darcy.scheme,
+                                   .fluid = darcy.fluid,
+                                   .weight = darcy.weight,
+                                   .outflow = darcy.outflow,
+                                   .conditions = fluid_conditions(scene, mesh, true)};
   if (Mechanics::is_in(scene)) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
   fractures.cut_by.resize(mesh.fracture_names.size());
   for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
@@ -128,15 +139,13 @@ base::Expression initial_pressure(const Scene& scene) {
 }
 
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<laws::Mobility>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
-      [&](int region) { return material(region).flows_uniformly(); },
-      [&](int region, int cell) {
-        const auto x = cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell);
-        return at_place(scene, material(region),
-                        [&] { return material(region).mobility(mesh.dim(), scene.flow->viscosity, x); });
-      });
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.flows_uniformly(); },
+      [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
+}
+
+SchemeEntry scheme_entry(const Scene& scene) {
+  return {.section = "Flow", .name = scene.flow ? scene.flow->scheme : "auto", .property = "permeability"};
 }
 
 void Flow::add_modules(const Setting& setting, Modules& modules) {
@@ -145,9 +154,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (!is_in(scene)) return;
   const auto& flow = *scene.flow;
   const bool deforms = Mechanics::is_in(scene);
-  Properties<laws::Mobility> rock;
-  base::collectively(*mesh.comm, [&] { rock = mobility(scene, mesh); });
-  auto darcy = darcy_flow(scene, mesh, rock);
+  auto darcy = darcy_flow(scene, mesh);
   auto fractures = fracture_flow(scene, mesh, darcy);
   fractures.faces = hydraulics(setting);
   std::vector<Real> aperture;
@@ -157,21 +164,57 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   }
   const auto fluid = darcy.fluid;
   if (!flow.wells.empty()) {
-    WellsParameters all{wells(scene, mesh.dim()), rock.values, rock.number, darcy.scheme, fluid, darcy.weight, {}};
+    WellsParameters all{.wells = wells(scene, mesh.dim()),
+                        .mobility = darcy.mobility,
+                        .scheme = darcy.scheme,
+                        .fluid = fluid,
+                        .weight = darcy.weight};
     for (const auto& face : fractures.faces) all.faces.push_back(face.along);
-    modules.push_back(make_wells(mesh.shape, std::move(all)));
+    modules.push_back(make_wells(std::move(all)));
   }
-  modules.push_back(make_darcy_flow(mesh.shape, std::move(darcy)));
-  const auto pores = by_region(scene, mesh, [&](const Material& m) {
-    return Pores{m.porosity, m.growth_of_pores(flow.compressibility)};
+  modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(darcy)));
+  StorageParameters storage{
+      .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure};
+  base::collectively(*mesh.comm, [&] {
+    storage.capacity = by_cell(
+        scene, mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
+        [&](const Material& rock, const auto& x) { return rock.capacity(fluid.compressibility, x); });
   });
-  if (std::any_of(pores.begin(), pores.end(),
-                  [&](const auto& of) { return of.growth > 0 || of.porosity * fluid.compressibility > 0; }))
-    modules.push_back(make_fluid_storage({pores, {}, fluid, flow.initial_pressure}));
+  if (std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
+                  [&](const auto& of) { return of.growth > 0 || of.room * fluid.compressibility > 0; }))
+    modules.push_back(make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;
   modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
   if (flow.compressibility > 0 || deforms)
-    modules.push_back(make_fracture_storage({aperture, fluid, flow.initial_pressure, deforms}));
+    modules.push_back(make_fracture_storage(
+        {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms}));
+}
+
+std::vector<std::string> Flow::warnings(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene)) return {};
+  const auto skew = scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh));
+  return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
+}
+
+std::vector<std::string> Flow::warnings_of_state(const Setting& setting,
+                                                 const std::vector<assembly::OutputField>& outputs) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene)) return {};
+  std::array<Real, 2> here{};  // of a pressure below 0, of any: the largest
+  for (const auto& output : outputs)
+    for (const Real p : output.values)
+      if (output.name == "pressure" || output.name == "fracture pressure") {
+        here[0] = std::max(here[0], -p);
+        here[1] = std::max(here[1], std::abs(p));
+      }
+  const auto all = base::max_over_ranks(*mesh.comm, here);
+  if (all[0] <= 1e-9 * all[1]) return {};
+  return {
+      fmt::format("{}: the fluid's pressure is below 0 in places: as an absolute pressure no fluid has that, and no "
+                  "liquid stays one "
+                  "where it nears 0; as one relative to another pressure it is as good as any",
+                  scene.origin)};
 }
 
 }  // namespace sprekk::physics

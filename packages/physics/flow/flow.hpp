@@ -3,9 +3,10 @@
 
 #include "base/expression.hpp"
 #include "laws/darcy.hpp"
-#include "physics/flow/fracture_flow.hpp"
+#include "physics/flux_scheme.hpp"
 #include "physics/physics.hpp"
 #include "physics/properties.hpp"
+#include "physics/storage.hpp"
 
 #include <limits>
 #include <map>
@@ -47,7 +48,7 @@ struct HostFluid {
 struct Flow : Physics<Flow> {
   struct Rock : Physics::Rock {
     std::vector<base::Expression> permeability;  ///< one value, or those of a tensor; of x, y, z
-    Real porosity = 0;
+    base::Expression porosity = 0;
     /// Of the pores; Biot's modulus. At most one.
     std::optional<Real> compressibility, biot_modulus;
     void describe(base::Section& section);
@@ -55,8 +56,10 @@ struct Flow : Physics<Flow> {
     bool flows_uniformly() const;  ///< the permeability does not depend on the place
     /// k/mu. Throws an Error where k is no positive definite tensor of that dimension.
     laws::Mobility mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const;
-    /// How the porosity grows with the pressure at constant strain, 1/Pa, where the fluid has this compressibility.
-    Real growth_of_pores(Real of_fluid) const;
+    /// Of the pores at constant strain, where the fluid has this compressibility, 1/Pa. Throws an Error where pores and
+    /// fluid do not fit together.
+    Capacity capacity(Real of_fluid, const std::array<Real, 3>& x) const;
+    bool may_store(Real of_fluid) const;  ///< somewhere
   };
 
   struct Joint : Physics::Joint {
@@ -102,6 +105,9 @@ struct Flow : Physics<Flow> {
   static std::string no_error_estimate(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
+  static std::vector<std::string> warnings(const Setting& setting);
+  static std::vector<std::string> warnings_of_state(const Setting& setting,
+                                                    const std::vector<assembly::OutputField>& outputs);
 };
 
 /// A fluid that flows, or a host's.
@@ -111,6 +117,7 @@ bool has_unknown_pressure(const Scene& scene);
 /// Of the fluid in rock and fractures; 0 without.
 base::Expression initial_pressure(const Scene& scene);
 
+SchemeEntry scheme_entry(const Scene& scene);
 /// Of local cells.
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
 

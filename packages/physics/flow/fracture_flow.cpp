@@ -3,10 +3,8 @@
 #include "assembly/assembler.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/flow/exchange.hpp"
 #include "physics/flow/face_plane.hpp"
 #include "physics/flow/present_conduits.hpp"
-#include "physics/ranged_entry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,36 +15,9 @@ using assembly::Loop;
 
 namespace {
 
-/// HybridFlow of one fracture face through its ridges.
-///
-/// | symbol | shape         | unit       |                            |
-/// | x      | 1 + n         | Pa         | p_F, pressures on ridges   |
-/// | r      | 1 + n         | m^3/s      | sum q, -q (2D: m^2/s)      |
-/// | T      | [face, n * n] | m^3/(Pa s) |                            |
-/// | lift   | [face, n]     | Pa         | rho_0 g . d                |
+/// Of a fracture face through its ridges: p_F, pressures on ridges.
 template <int n>
-struct FractureFace {
-  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>>;
-  using Rows = Columns;
-  ConstView<Real**> T, lift;
-  laws::Fluid fluid;
-  ConstView<laws::Conduit*> conduit = {};
-
-  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int face) const {
-    HybridFlow<n> result{fluid, {}, {}};
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) result.T[i][j] = T(face, i * n + j);
-      result.lift[i] = lift(face, i);
-    }
-    return result;
-  }
-  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
-    at(face).residual(x, r);
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
-    at(face).jacobian(x, J);
-  }
-};
+using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
 
 /// The same where T is that of a transmissivity of 1, and the face's own follows from its widening, the last of x, m.
 template <int n>
@@ -57,7 +28,7 @@ struct WideningFace : FractureFace<n> {
 
   PresentConduits conduits;
 
-  WideningFace(const Base& base, ConstView<Real*> aperture) : Base(base), conduits{base.conduit, aperture} {}
+  WideningFace(const Base& base, const PresentConduits& conduits) : Base(base), conduits(conduits) {}
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
     evaluate(face, x, conduits.transmissivity(face, x[1 + n]), r);
   }
@@ -89,7 +60,8 @@ class FractureFlow final : public assembly::Module {
   static constexpr int dim = Plane::dim, n = Plane::n;
   using Op = FractureFace<n>;
 
-  explicit FractureFlow(FractureFlowParameters parameters) : parameters_(std::move(parameters)) {}
+  explicit FractureFlow(FractureFlowParameters parameters)
+      : parameters_(std::move(parameters)), outflow_(parameters_.conditions, parameters_.outflow) {}
 
   std::string name() const override { return "fracture flow"; }
   void set_fields(const std::set<std::string>& fields) override { widens_ = fields.count("widening") > 0; }
@@ -123,33 +95,28 @@ class FractureFlow final : public assembly::Module {
       assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, rows, rows,
                                                is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
     }
-    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (!condition.conductance) return;
-      RangedEntry("conductance", condition.conductance, 0).check(x);
-      exchange_.add(facet, area * (*condition.conductance)(x, 0));
+    load_ = assembly::Load(context.layout(block_).n_owned());
+    for_each_end([&](std::size_t condition, const mesh::Facets::Rim& rim, Real area, const auto& x) {
+      outflow_.add(condition, mesh_->facets->ridge[rim.face * n + rim.ridge], area, x);
     });
-    exchange_.bind(context, block_, parameters_.fluid);
-    load_ = View<Real*>("load", context.layout(block_).n_owned());
+    outflow_.bind(context, block_, parameters_.fluid);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     if (widens_)
-      widening_assembler_->add_residual(WideningFace<n>(op_, state.coefficients), state, r);
+      widening_assembler_->add_residual(WideningFace<n>(op_, {conduits_, state.coefficients}), state, r);
     else
       assembler_->add_residual(op_, state, r);
-    exchange_.add_residual(state, r);
-    const auto rows = r[block_];
-    const auto load = load_;
-    Kokkos::parallel_for(
-        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) += load(i); });
+    outflow_.add_residual(state, r);
+    load_.add_to(r[block_]);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     if (widens_)
-      widening_assembler_->add_jacobian(WideningFace<n>(op_, state.coefficients), state, J);
+      widening_assembler_->add_jacobian(WideningFace<n>(op_, {conduits_, state.coefficients}), state, J);
     else
       assembler_->add_jacobian(op_, state, J);
-    exchange_.add_jacobian(state, J);
+    outflow_.add_jacobian(state, J);
   }
   /// Hydraulic apertures.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
@@ -162,60 +129,39 @@ class FractureFlow final : public assembly::Module {
   bool symmetric(const assembly::State&) const override { return is_linear() || widens_; }
 
   bool constant_load() const override {
-    return std::all_of(parameters_.source.begin(), parameters_.source.end(),
-                       [](const auto& source) { return source.constant_in_time(); }) &&
-           std::all_of(parameters_.conditions.begin(), parameters_.conditions.end(),
-                       [](const auto& one) { return one.value.constant_in_time(); });
+    return outflow_.constant_in_time() && std::all_of(parameters_.source.begin(), parameters_.source.end(),
+                                                      [](const auto& source) { return source.constant_in_time(); });
   }
 
   void set_time(Real t, const assembly::Scales& scales) override {
     if (widens_) open_ = std::min(of_displacement * scales.at("displacement"), of_size * size_);
     if (loaded_ && constant_load()) return;
-    const auto facets = Kokkos::create_mirror_view(load_);
-    Kokkos::deep_copy(facets, 0.0);
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      for_each_source(f, t, [&](Real area, Real source) { facets(mesh_->facets->fracture_face[f]) -= area * source; });
-    std::vector<Real> beyond;
-    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (condition.conductance)
-        beyond.push_back(condition.value(x, t));
-      else if (facet < mesh_->facets->n_owned)
-        facets(facet) += area * condition.value(x, t);
+    load_.set([&](const auto& rows) {
+      for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+        for_each_source(f, t, [&](Real area, Real source) { rows(mesh_->facets->fracture_face[f]) -= area * source; });
+      outflow_.set_time(t, rows);
     });
-    exchange_.set_outside(beyond);
-    Kokkos::deep_copy(load_, facets);
     loaded_ = true;
   }
 
   /// What sources and prescribed flow make of pressure over the size of the domain.
   assembly::Scales loads(Real t) const override {
-    Real largest = 0;
+    Real largest = outflow_.largest(t, true);
     const auto let = [&](Real flow, const laws::Conduit& conduit) {
       if (flow != 0) largest = std::max(largest, pressure_for(size_ * std::abs(flow), conduit));
     };
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for_each_source(f, t, [&](Real, Real source) { let(source * size_, parameters_.faces[f].along); });
-    for (const auto& rim : mesh_->facets->rims)
-      for (const auto& condition : parameters_.conditions)
-        if (holds(condition, rim)) {
-          const auto& face = parameters_.faces[rim.face];
-          const Real value = condition.value(mesh::ridge_centre(*mesh_, rim.face, rim.ridge), t);
-          if (condition.conductance)
-            largest = std::max(largest, std::abs(value));
-          else
-            let(face.along.hydraulic_aperture() * value, face.along);
-        }
+    for_each_end([&](std::size_t number, const mesh::Facets::Rim& rim, Real, const auto& x) {
+      const auto& condition = outflow_.conditions()[number];
+      const auto& conduit = parameters_.faces[rim.face].along;
+      if (!condition.coefficient) let(conduit.hydraulic_aperture() * condition.value(x, t), conduit);
+    });
     return {{"pressure", largest}};
   }
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
-    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
-    const auto first = add_inflows(parameters_.conditions, *mesh_, totals);
-    for_each_end([&](const FluidCondition& condition, LocalIndex facet, Real area, const auto& x) {
-      if (facet >= mesh_->facets->n_owned) return;
-      const auto number = &condition - parameters_.conditions.data();
-      totals[first + number].value -= area * condition.outflow(p(facet), x, state.t, parameters_.fluid);
-    });
+    outflow_.totals(state, *mesh_, totals);
   }
 
  private:
@@ -317,7 +263,8 @@ class FractureFlow final : public assembly::Module {
     Kokkos::deep_copy(lift, lift_host);
     std::vector<laws::Conduit> conduits;
     for (const auto& face : parameters_.faces) conduits.push_back(face.along);
-    op_ = {T, lift, parameters_.fluid, assembly::to_device(conduits, "conduits")};
+    op_ = {.T = T, .lift = lift, .fluid = parameters_.fluid};
+    conduits_ = assembly::to_device(conduits, "conduits");
   }
 
   /// Calls visit(area, source) at the points of a face.
@@ -330,20 +277,18 @@ class FractureFlow final : public assembly::Module {
                                          [&](const auto&, Real area, const auto& x) { visit(area, source(x, t)); });
   }
 
-  bool holds(const FluidCondition& condition, const mesh::Facets::Rim& rim) const {
-    return condition.boundary == rim.boundary && condition.fracture == mesh_->fracture_faces[rim.face].fracture;
-  }
-
-  /// Calls visit(condition, facet, length times aperture, x) for all ends of fractures with a condition.
+  /// Calls visit(condition, rim, length times aperture, x) for all ends of fractures with a condition.
   template <class Visit>
   void for_each_end(const Visit& visit) const {
-    for (const auto& condition : parameters_.conditions)
-      for (const auto& rim : mesh_->facets->rims)
-        if (holds(condition, rim))
-          visit(
-              condition, mesh_->facets->ridge[rim.face * n + rim.ridge],
-              parameters_.faces[rim.face].along.hydraulic_aperture() * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
+    for (std::size_t k = 0; k < outflow_.conditions().size(); ++k)
+      for (const auto& rim : mesh_->facets->rims) {
+        const auto& condition = outflow_.conditions()[k];
+        if (condition.boundary != rim.boundary || condition.fracture != mesh_->fracture_faces[rim.face].fracture)
+          continue;
+        const Real aperture = parameters_.faces[rim.face].along.hydraulic_aperture();
+        visit(k, rim, aperture * mesh::ridge_length(*mesh_, rim.face, rim.ridge),
               mesh::ridge_centre(*mesh_, rim.face, rim.ridge));
+      }
   }
 
   FractureFlowParameters parameters_;
@@ -355,10 +300,11 @@ class FractureFlow final : public assembly::Module {
   bool loaded_ = false;
   std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
   Op op_;
+  ConstView<laws::Conduit*> conduits_;  // [local fracture face]
   std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<WideningAssembler> widening_assembler_;
-  Exchange exchange_;  // with what is beyond the ends
-  View<Real*> load_;   // [owned row], m^3/s
+  Outflow outflow_;      // through the ends
+  assembly::Load load_;  // m^3/s
 };
 
 }  // namespace

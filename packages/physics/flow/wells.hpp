@@ -3,7 +3,8 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
-#include "physics/hybrid_cell.hpp"
+#include "laws/fluid.hpp"
+#include "physics/flux_scheme.hpp"
 
 #include <array>
 #include <memory>
@@ -23,12 +24,11 @@ struct Well {
 
 struct WellsParameters {
   std::vector<Well> wells;
-  std::vector<laws::Mobility> mobility;  ///< as in DarcyFlowParameters, and the following
-  std::vector<int> mobility_of_cell;
+  Properties<laws::Mobility> mobility;  ///< as in HybridDiffusionParameters, and the following
   FluxScheme scheme = FluxScheme::rt0;
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
-  std::vector<laws::Conduit> faces;  ///< [local fracture face]
+  std::vector<laws::Conduit> faces = {};  ///< [local fracture face]
 };
 
 /// Adds -W (p_w - p) to the rows of "pressure" of cells that a well runs through and of "face pressure" of fracture
@@ -43,6 +43,6 @@ struct WellsParameters {
 /// 1e-9 of the domain's extent, in a direction that no face has. Errors, on every rank: a well leaves the domain, lies
 /// in a fracture, or is as wide as an equivalent radius. Totals: "wells", the name, then "rate", "pressure" (of a well
 /// with a rate the mean by shares), "in rock" and "in FRACTURE", rates.
-std::unique_ptr<assembly::Module> make_wells(mesh::Shape shape, WellsParameters parameters);
+std::unique_ptr<assembly::Module> make_wells(WellsParameters parameters);
 
 }  // namespace sprekk::physics

@@ -1,7 +1,9 @@
 #include "physics/heat/heat.hpp"
 
 #include "physics/comparison.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/hybrid_diffusion.hpp"
+#include "physics/entry_of_place.hpp"
+#include "physics/storage.hpp"
 #include "physics/tensor_entry.hpp"
 
 #include <algorithm>
@@ -10,15 +12,16 @@ namespace sprekk::physics {
 
 namespace {
 
-Properties<Conductivity> conductivity(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<Conductivity>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
-      [&](int region) { return material(region).conducts_uniformly(); },
-      [&](int region, int cell) {
-        const auto x = cell < 0 ? std::array<Real, 3>{} : mesh::cell_centre(mesh, cell);
-        return at_place(scene, material(region), [&] { return material(region).conductivity(mesh.dim(), x); });
-      });
+constexpr const char* capacity_name = "volumetric heat capacity";
+
+Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh& mesh) {
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.conducts_uniformly(); },
+      [&](const Material& rock, const auto& x) { return rock.conductivity(mesh.dim(), x); });
+}
+
+SchemeEntry scheme_entry(const HeatSection& heat) {
+  return {.section = "Heat", .name = heat.scheme, .property = "thermal conductivity"};
 }
 
 bool no_heat(const Comparison& c) { return !c.scene().heat && c.is_absent("Heat"); }
@@ -56,7 +59,7 @@ void compare_level(Comparison& c) {
             return named.second.temperature && !(h && is_zero(*h));
           });
   known = known || std::any_of(regions.begin(), regions.end(), [](const auto& r) { return r.second.temperature; });
-  c.for_each_rock([&](const Material& rock) { known = known || rock.heat_capacity > 0; });
+  c.for_each_rock([&](const Material& rock) { known = known || !is_zero(rock.heat_capacity); });
   if (known || !c.names().regions || !c.is_sound("Materials") || !c.is_sound("Boundary conditions")) return;
   c.fail("Heat",
          "nothing says how high the temperature is: give a \"temperature\" on a boundary or in a region, or "
@@ -67,29 +70,27 @@ void compare_level(Comparison& c) {
 
 void HeatSection::describe(base::Section& s) {
   s.entry(source, "source", "W/m^3", base::any(), "power per volume of rock, an expression of x, y, z, t");
-  s.entry(initial_temperature, "initial temperature", "K", base::any(),
-          "at the start, where heat is stored; of x, y, z");
+  entry_of_place(s, initial_temperature, "initial temperature", "K", base::any(),
+                 "at the start, where heat is stored; of x, y, z");
   s.choice(
       scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
       "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
       "orthogonal, else mimetic");
-  if (initial_temperature) check_constant_in_time(s, "initial temperature", *initial_temperature);
 }
 
 void Heat::Sections::describe(base::Section& s) { s.section(heat, "Heat", "heat that the rock conducts and stores"); }
 
 void Heat::Rock::describe(base::Section& s) {
-  s.entry(thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
-          "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ in "
-          "3D");
-  s.entry(heat_capacity, "volumetric heat capacity", "J/(m^3*K)", base::at_least(0),
-          "rho c, density times specific heat capacity; 0: no heat is stored");
-  for (const auto& value : thermal_conductivity) check_constant_in_time(s, "thermal conductivity", value);
+  entry_of_place(s, thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
+                 "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, "
+                 "XZ in 3D");
+  entry_of_place(s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+                 "rho c, density times specific heat capacity; 0: no heat is stored");
 }
 
 bool Heat::Rock::conducts_uniformly() const { return is_uniform_tensor(thermal_conductivity); }
 
-Conductivity Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) const {
+laws::Mobility Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) const {
   return tensor_at("thermal conductivity", thermal_conductivity, dim, x);
 }
 
@@ -106,9 +107,8 @@ std::vector<Prescribed> Heat::Region::prescribed() const {
 void Heat::BoundaryCondition::describe(base::Section& s) {
   s.entry(temperature, "temperature", "K", base::any(), "with \"Heat\": a value or an expression of x, y, z, t");
   s.entry(heat_flux, "heat flux", "W/m^2", base::any(), "heat that leaves per area and time, with \"Heat\"");
-  s.entry(heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
-          "h: the flux is h (T - temperature), the temperature then being that beyond the boundary");
-  if (heat_transfer_coefficient) check_constant_in_time(s, "heat transfer coefficient", *heat_transfer_coefficient);
+  entry_of_place(s, heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
+                 "h: the flux is h (T - temperature), the temperature then being that beyond the boundary");
 }
 
 void Heat::BoundaryCondition::check(base::Section& s) const {
@@ -132,7 +132,7 @@ void Heat::compare(Comparison& c) {
   c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
   compare_level(c);
   c.for_each_rock([&](const Material& rock) {
-    if (rock.heat_capacity > 0 && !c.scene().heat->initial_temperature && c.is_sound("Heat"))
+    if (!is_zero(rock.heat_capacity) && !c.scene().heat->initial_temperature && c.is_sound("Heat"))
       c.fail("Heat > \"initial temperature\"", "missing; it is required where rock has a \"volumetric heat capacity\"");
   });
   for (const auto& [name, condition] : c.scene().boundary_conditions)
@@ -148,22 +148,45 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   const auto& scene = setting.scene;
   const auto& mesh = setting.mesh;
   if (!is_in(scene)) return;
-  Properties<Conductivity> rock;
-  base::collectively(*mesh.comm, [&] { rock = conductivity(scene, mesh); });
-  HeatConductionParameters heat{rock.values, rock.number, {}};
-  heat.capacity = by_region(scene, mesh, [](const Material& m) { return m.heat_capacity; });
-  heat.scheme = flux_scheme("Heat", scene.heat->scheme, mesh, rock.values, rock.number).scheme;
-  if (!is_zero(scene.heat->source)) heat.source = {scene.heat->source};
-  heat.in_regions =
+  const auto& heat = *scene.heat;
+  Properties<laws::Mobility> conductivity;
+  Properties<Capacity> capacity;
+  base::collectively(*mesh.comm, [&] {
+    conductivity = conductivity_of(scene, mesh);
+    capacity = by_cell(
+        scene, mesh, [](const Material& rock) { return rock.heat_capacity.is_constant(); },
+        [](const Material& rock, const auto& x) {
+          return Capacity{.room = 0, .growth = value_at(capacity_name, rock.heat_capacity, base::at_least(0), x)};
+        });
+  });
+  const auto chosen = flux_scheme(scheme_entry(heat), mesh, conductivity);
+  HybridDiffusionParameters conduction{.name = "heat conduction",
+                                       .field = "temperature",
+                                       .unit = "K",
+                                       .flux = "heat flux",
+                                       .flux_unit = "W/m^2",
+                                       .outflow = {"heat transfer coefficient", "heat_inflows"},
+                                       .mobility = std::move(conductivity),
+                                       .scheme = chosen.scheme,
+                                       .reason = chosen.reason};
+  if (!is_zero(heat.source)) conduction.source = {heat.source};
+  conduction.conditions = flux_conditions(
+      scene, mesh,
+      {&BoundaryCondition::heat_flux, &BoundaryCondition::temperature, &BoundaryCondition::heat_transfer_coefficient});
+  conduction.in_regions =
       std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.temperature; });
-  heat.initial = scene.heat->initial_temperature.value_or(0);
-  const auto number_of = [](const Names& names, const auto& name) { return name ? index_of(names, *name) : -1; };
-  for (const auto& [name, one] : scene.boundary_conditions)
-    if (one.heat_flux || one.heat_transfer_coefficient)
-      heat.conditions.push_back({index_of(mesh.boundary_names, one.boundary),
-                                 one.heat_flux ? *one.heat_flux : *one.temperature, one.heat_transfer_coefficient,
-                                 number_of(mesh.region_names, one.region)});
-  modules.push_back(make_heat_conduction(mesh.shape, std::move(heat)));
+  modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(conduction)));
+  modules.push_back(make_storage({.name = "heat storage",
+                                  .field = "temperature",
+                                  .capacity = std::move(capacity),
+                                  .initial = heat.initial_temperature.value_or(0)}));
+}
+
+std::vector<std::string> Heat::warnings(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene)) return {};
+  const auto skew = scheme_warning(scheme_entry(*scene.heat), mesh, conductivity_of(scene, mesh));
+  return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
 }
 
 }  // namespace sprekk::physics

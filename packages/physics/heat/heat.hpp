@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/expression.hpp"
-#include "physics/heat/heat_conduction.hpp"
+#include "laws/darcy.hpp"
 #include "physics/physics.hpp"
 
 #include <optional>
@@ -21,11 +21,11 @@ struct HeatSection {
 struct Heat : Physics<Heat> {
   struct Rock : Physics::Rock {
     std::vector<base::Expression> thermal_conductivity;  ///< one value, or those of a tensor; of x, y, z
-    Real heat_capacity = 0;                              ///< per volume
+    base::Expression heat_capacity = 0;                  ///< per volume; of x, y, z
     void describe(base::Section& section);
     bool conducts_uniformly() const;  ///< the conductivity does not depend on the place
-    /// Throws an Error where it is no positive definite tensor of that dimension.
-    Conductivity conductivity(int dim, const std::array<Real, 3>& x) const;
+    /// K in Fourier's law q = -K grad T. Throws an Error where it is no positive definite tensor of that dimension.
+    laws::Mobility conductivity(int dim, const std::array<Real, 3>& x) const;
   };
 
   struct Region : Physics::Region {
@@ -55,6 +55,7 @@ struct Heat : Physics<Heat> {
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
+  static std::vector<std::string> warnings(const Setting& setting);
 };
 
 }  // namespace sprekk::physics

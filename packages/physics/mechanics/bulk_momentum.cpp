@@ -1,11 +1,11 @@
 #include "physics/mechanics/bulk_momentum.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/elastic_cell.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -47,23 +47,20 @@ class BulkMomentum final : public assembly::Module {
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
     size_ = mesh::largest_extent(*mesh_);
-    op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity, "material"),
-                                  assembly::material_numbers(context.geometry(), parameters_.elasticity_of_cell)});
+    op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity.values, "material"),
+                                  assembly::material_numbers(context.geometry(), parameters_.elasticity.number)});
     displacement_ = context.field("displacement");
     if (mesh_->n_global_enriched > 0) tip_displacement_ = context.field("tip displacement");
     using Assembler = assembly::Assembler<Op>;
     cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
                                          std::vector<int>{displacement_}, Assembler::Positions::once);
-    if (has_load()) load_ = View<Real*>("load", context.layout(displacement_).n_owned());
+    if (has_load()) load_ = assembly::Load(context.layout(displacement_).n_owned());
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     cells_->add_residual(*op_, state, r);
     if (!has_load()) return;
-    const auto rows = r[displacement_];
-    const auto load = load_;
-    Kokkos::parallel_for(
-        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= load(i); });
+    load_.add_to(r[displacement_], -1);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
@@ -80,12 +77,11 @@ class BulkMomentum final : public assembly::Module {
 
   void set_time(Real t, const assembly::Scales&) override {
     if (!has_load() || (loaded_ && constant_load())) return;
-    const auto host = Kokkos::create_mirror_view(load_);
-    Kokkos::deep_copy(host, 0.0);
-    add_body_force(t, host);
-    add_initial_stress(host);
-    for (const auto& traction : parameters_.tractions) add_traction(traction, t, host);
-    Kokkos::deep_copy(load_, host);
+    load_.set([&](const auto& rows) {
+      add_body_force(t, rows);
+      add_initial_stress(rows);
+      for (const auto& traction : parameters_.tractions) add_traction(traction, t, rows);
+    });
     loaded_ = true;
   }
 
@@ -138,16 +134,12 @@ class BulkMomentum final : public assembly::Module {
     return face.boundary == traction.boundary &&
            (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
   }
-  const laws::Elasticity& law_of(const mesh::Mesh& mesh, LocalIndex cell) const {
-    const auto& of_cell = parameters_.elasticity_of_cell;
-    return parameters_.elasticity[of_cell.empty() ? mesh.cell_region[cell] : of_cell[cell]];
-  }
   /// Young's, Pa. Collective.
   Real largest_modulus(const mesh::Mesh& mesh) const {
-    Real here = 0, largest = 0;
-    for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) here = std::max(here, law_of(mesh, c).youngs_modulus());
-    Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &largest);
-    return largest;
+    Real here = 0;
+    for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c)
+      here = std::max(here, parameters_.elasticity.of_cell(mesh, c).youngs_modulus());
+    return base::max_over_ranks(*mesh.comm, here);
   }
 
   template <class Host>
@@ -229,7 +221,7 @@ class BulkMomentum final : public assembly::Module {
             for (int i = 0; i < dim; ++i)
               for (int j = 0; j < dim; ++j) H[i][j] += q(number * dim + i) * v.grad_psi[a][j];
       }
-    const auto& law = law_of(*mesh_, c);
+    const auto& law = parameters_.elasticity.of_cell(*mesh_, c);
     law.stress(H, sigma);
     for (int i = 0; i < dim; ++i) trace += H[i][i];
     if constexpr (dim == 2)
@@ -253,7 +245,7 @@ class BulkMomentum final : public assembly::Module {
   Real size_ = 0;  // largest extent of the domain, m
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;
-  View<Real*> load_;  // [owned row], N
+  assembly::Load load_;  // N
 };
 
 }  // namespace

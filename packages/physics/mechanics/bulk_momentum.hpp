@@ -4,6 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/loads.hpp"
+#include "physics/properties.hpp"
 
 #include <memory>
 #include <optional>
@@ -19,11 +20,10 @@ struct BoundaryTraction {
 };
 
 struct BulkMomentumParameters {
-  std::vector<laws::Elasticity> elasticity;  ///< different ones
-  BodyForce body_force;
-  std::vector<BoundaryTraction> tractions;
+  Properties<laws::Elasticity> elasticity = {};  ///< of cells
+  BodyForce body_force = {};
+  std::vector<BoundaryTraction> tractions = {};
   InitialStress initial_stress = {};
-  std::vector<int> elasticity_of_cell = {};  ///< [local cell] which of them; empty: the number of the cell's region
 };
 
 /// Declares the unknown "displacement" (nodes, m) and adds to its rows, with test function v,

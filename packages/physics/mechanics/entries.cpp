@@ -1,46 +1,39 @@
 // What scenes say of mechanics.
 #include "physics/mechanics/mechanics.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/entry_of_place.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 
 namespace sprekk::physics {
 
 namespace {
 
-constexpr Real any = -std::numeric_limits<Real>::infinity();
-
-std::vector<RangedEntry> entries_of(const Mechanics::Rock& rock) {
-  return {{"Young's modulus", rock.E, 0, false}, {"Poisson's ratio", rock.nu, -1, false, 0.5},
-          {"shear modulus", rock.G, 0, false},   {"Lame's first parameter", rock.lambda, any, false},
-          {"bulk modulus", rock.K, 0, false},    {"density", rock.density, 0}};
-}
+constexpr const char* density_name = "density";
+base::Bounds bounds_of_nu() { return base::greater_than(-1).below(0.5); }
 
 void describe_initial_stress(base::Section& s, std::vector<base::Expression>& stress, const std::string& whose) {
-  s.entry(stress, "initial stress", "Pa",
-          "stress at zero displacement" + whose +
-              ", tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of x, y, "
-              "z");
-  for (const auto& component : stress) check_constant_in_time(s, "initial stress", component);
+  entry_of_place(s, stress, "initial stress", "Pa", base::any(),
+                 "stress at zero displacement" + whose +
+                     ", tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of "
+                     "x, y, z");
 }
 
 }  // namespace
 
 void Mechanics::Rock::describe(base::Section& s) {
-  s.entry(E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
-  s.entry(nu, "Poisson's ratio", "-", base::greater_than(-1).below(0.5), "nu");
-  s.entry(G, "shear modulus", "Pa", base::positive(), "G");
-  s.entry(lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
-  s.entry(K, "bulk modulus", "Pa", base::positive(), "K");
-  s.entry(density, "density", "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
+  entry_of_place(s, E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
+  entry_of_place(s, nu, "Poisson's ratio", "-", bounds_of_nu(), "nu");
+  entry_of_place(s, G, "shear modulus", "Pa", base::positive(), "G");
+  entry_of_place(s, lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
+  entry_of_place(s, K, "bulk modulus", "Pa", base::positive(), "K");
+  entry_of_place(s, density, density_name, "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
   s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
   s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
   s.hint({"G"}, "Did you mean \"shear modulus\"?");
   s.hint({"K"}, "Did you mean \"bulk modulus\"?");
   s.hint({"lambda"}, "Did you mean \"Lame's first parameter\"?");
   s.hint({"rho"}, "Did you mean \"density\"?");
-  check_constant_in_time(s, entries_of(*this));
 }
 
 void Mechanics::Rock::check(base::Section& s) const {
@@ -49,16 +42,23 @@ void Mechanics::Rock::check(base::Section& s) const {
 }
 
 bool Mechanics::Rock::is_uniformly_elastic() const {
-  const auto entries = entries_of(*this);
-  return std::all_of(entries.begin(), entries.end(), [](const auto& entry) { return entry.is_uniform(); });
+  const auto is_uniform = [](const auto* value) { return !*value || (*value)->is_constant(); };
+  return std::ranges::all_of(std::array{&E, &nu, &G, &lambda, &K}, is_uniform);
 }
 
 laws::Elasticity Mechanics::Rock::elasticity(const std::array<Real, 3>& x) const {
-  for (const auto& entry : entries_of(*this)) entry.check(x);
-  const auto at = [&](const std::optional<base::Expression>& value) {
-    return value ? std::make_optional((*value)(x, 0)) : std::nullopt;
+  const auto at = [&](const char* name, const std::optional<base::Expression>& value, const base::Bounds& bounds) {
+    return value ? std::make_optional(value_at(name, *value, bounds, x)) : std::nullopt;
   };
-  return laws::lame_constants({at(E), at(nu), at(G), at(lambda), at(K)});
+  return laws::lame_constants({.E = at("Young's modulus", E, base::positive()),
+                               .nu = at("Poisson's ratio", nu, bounds_of_nu()),
+                               .G = at("shear modulus", G, base::positive()),
+                               .lambda = at("Lame's first parameter", lambda, base::any()),
+                               .K = at("bulk modulus", K, base::positive())});
+}
+
+Real Mechanics::Rock::density_at(const std::array<Real, 3>& x) const {
+  return value_at(density_name, *density, base::at_least(0), x);
 }
 
 /// Of all kinds where it is not known which the material has.
@@ -89,11 +89,10 @@ void Mechanics::Fracture::describe(base::Section& s) {
   s.entry(
       fluid_pressure, "fluid pressure", "Pa", base::any(),
       "p, a value or an expression of x, y, z, t: it pushes the sides apart; the traction on the rock is lambda - p n");
-  s.entry(
-      plastic_jump, "plastic jump", "m", base::any(),
+  entry_of_place(
+      s, plastic_jump, "plastic jump", "m", base::any(),
       "tangential plastic jump at the start, in the frame of the face: t in 2D, t1, t2 in 3D; values or expressions "
       "of x, y, z");
-  for (const auto& component : plastic_jump) check_constant_in_time(s, "plastic jump", component);
 }
 
 void Mechanics::BoundaryCondition::describe(base::Section& s) {

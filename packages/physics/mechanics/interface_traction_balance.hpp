@@ -4,6 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/loads.hpp"
+#include "physics/properties.hpp"
 
 #include <memory>
 #include <vector>
@@ -11,10 +12,9 @@
 namespace sprekk::physics {
 
 struct InterfaceTractionBalanceParameters {
-  std::vector<laws::Elasticity> elasticity;  ///< all of these the same as the bulk's: bubbles test every load
-  BodyForce body_force;
+  Properties<laws::Elasticity> elasticity;  ///< all of these the same as the bulk's: bubbles test every load
+  BodyForce body_force = {};
   InitialStress initial_stress = {};
-  std::vector<int> elasticity_of_cell = {};
   FluidPressure fluid_pressure = {};
 };
 

@@ -86,13 +86,8 @@ Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, con
                          int side, Real t) {
   const auto& p = fluid.value[face.fracture];
   if (p.is_constant()) return p({}, t);
-  Real sum = 0, total = 0;
-  assembly::for_each_face_point<shape>(mesh, face.cell[side], face.local_face[side],
-                                       [&](const auto&, Real area, const auto& x) {
-                                         sum += area * p(x, t);
-                                         total += area;
-                                       });
-  return sum / total;
+  return assembly::face_mean<shape>(mesh, face.cell[side], face.local_face[side],
+                                    [&](const auto&, const auto& x) { return p(x, t); });
 }
 
 /// Mean of sigma_0 n over a fracture face, n from minus to plus, as the cell on `side` sees it; global components, Pa.

@@ -1,14 +1,12 @@
 #include "physics/mechanics/mechanics.hpp"
 
-#include "base/any_rank.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
 #include "physics/mechanics/modules.hpp"
 #include "physics/mechanics/uniqueness.hpp"
-#include "physics/ranged_entry.hpp"
+#include "physics/entry_of_place.hpp"
 #include "physics/scene.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 
@@ -18,15 +16,10 @@ namespace {
 
 /// Mean over a fracture face whose cell on side minus is local.
 Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const base::Expression& value) {
-  Real sum = 0, total = 0;
-  mesh::for_shape(mesh.shape, [&](auto shape) {
-    assembly::for_each_face_point<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                           [&](const auto&, Real area, const auto& x) {
-                                             sum += area * value(x, 0);
-                                             total += area;
-                                           });
+  return mesh::for_shape(mesh.shape, [&](auto shape) {
+    return assembly::face_mean<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                        [&](const auto&, const auto& x) { return value(x, 0); });
   });
-  return sum / total;
 }
 
 /// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
@@ -63,9 +56,10 @@ Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
 BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
   if (force.gravity.empty()) return force;
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
-    force.density_of_cell.push_back(
-        (*scene.material_of(mesh.region_names[mesh.cell_region[cell]]).density)(mesh::cell_centre(mesh, cell), 0));
+  const auto density = by_cell(
+      scene, mesh, [](const Material& rock) { return rock.density->is_constant(); },
+      [](const Material& rock, const auto& x) { return rock.density_at(x); });
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) force.density_of_cell.push_back(density.of_cell(mesh, cell));
   return force;
 }
 
@@ -87,19 +81,22 @@ FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>&
 
 MechanicsParameters parameters_of(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
-  const auto rock = elasticity(scene, mesh);
-  BulkMomentumParameters bulk{
-      rock.values, body_force(scene, mesh), {}, initial_stress(scene, mesh.region_names), rock.number};
+  BulkMomentumParameters bulk{.elasticity = elasticity(scene, mesh),
+                              .body_force = body_force(scene, mesh),
+                              .initial_stress = initial_stress(scene, mesh.region_names)};
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
                                 condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  if (mesh.fracture_names.empty()) return {bulk};
-  const auto joint = joints(scene, mesh);
+  if (mesh.fracture_names.empty()) return {.bulk = bulk};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
-  return {bulk,  joint.values,      joint.number, unknown ? FluidPressure() : fluid, unknown ? fluid : FluidPressure(),
-          start, scene.augmentation};
+  return {.bulk = bulk,
+          .joints = joints(scene, mesh),
+          .fluid_pressure = unknown ? FluidPressure() : fluid,
+          .initial_pressure = unknown ? fluid : FluidPressure(),
+          .start = start,
+          .augmentation = scene.augmentation};
 }
 
 std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
@@ -130,26 +127,19 @@ bool has_tips(const mesh::Mesh& mesh) {
 bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.flow && scene.flow->rigid_rock); }
 
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<laws::Elasticity>(
-      static_cast<int>(mesh.region_names.size()), mesh.cell_region,
-      [&](int region) { return material(region).is_uniformly_elastic(); },
-      [&](int region, int cell) {
-        const auto& rock = material(region);
-        return at_place(scene, rock,
-                        [&] { return rock.elasticity(cell < 0 ? mesh::Vector{} : mesh::cell_centre(mesh, cell)); });
-      });
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.is_uniformly_elastic(); },
+      [](const Material& rock, const auto& x) { return rock.elasticity(x); });
 }
 
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
-  Real here = 0, modulus = 0;
+  Real here = 0;
   for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
     const auto& material = scene.material_of(mesh.region_names[mesh.cell_region[cell]]);
     if (cell > 0 && material.is_uniformly_elastic() && mesh.cell_region[cell] == mesh.cell_region[cell - 1]) continue;
     here = std::max(here, material.elasticity(mesh::cell_centre(mesh, cell)).youngs_modulus());
   }
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, 1, &here, &modulus);
-  return modulus;
+  return base::max_over_ranks(*mesh.comm, here);
 }
 
 InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names) {

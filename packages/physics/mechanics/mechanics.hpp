@@ -31,6 +31,7 @@ struct Mechanics : Physics<Mechanics> {
     bool is_uniformly_elastic() const;  ///< no value depends on the place
     /// The law at a point. Throws an Error that names the entry, the value and the point where it is out of range.
     laws::Elasticity elasticity(const std::array<Real, 3>& x) const;
+    Real density_at(const std::array<Real, 3>& x) const;  ///< likewise; it must be given
   };
 
   struct Joint : Physics::Joint, JointMaterial {

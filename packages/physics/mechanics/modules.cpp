@@ -1,9 +1,8 @@
 #include "physics/mechanics/modules.hpp"
 
+#include "base/over_ranks.hpp"
 #include "physics/mechanics/interface_traction_balance.hpp"
 #include "physics/mechanics/tip_enrichment.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 
@@ -13,10 +12,9 @@ namespace {
 
 /// How many numbers joints keep of a face, at most. Collective.
 int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
-  int here = 0, all = 0;
+  int here = 0;
   for (const auto& joint : joints) here = std::max(here, joint.law.n_history());
-  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_MAX, here, Teuchos::outArg(all));
-  return all;
+  return base::max_over_ranks(*mesh.comm, here);
 }
 
 }  // namespace
@@ -24,15 +22,15 @@ int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
   const auto& bulk = parameters.bulk;
   const auto& fluid = parameters.initial_pressure.empty() ? parameters.fluid_pressure : parameters.initial_pressure;
-  return {parameters.joints,
-          bulk.elasticity,
-          bulk.initial_stress,
-          bulk.elasticity_of_cell,
-          parameters.joint_of_face,
-          parameters.augmentation,
-          fluid,
-          parameters.start,
-          most_kept(mesh, parameters.joints)};
+  return {.joints = parameters.joints.values,
+          .elasticity = bulk.elasticity.values,
+          .initial_stress = bulk.initial_stress,
+          .elasticity_of_cell = bulk.elasticity.number,
+          .joint_of_face = parameters.joints.number,
+          .augmentation = parameters.augmentation,
+          .fluid_pressure = fluid,
+          .start = parameters.start,
+          .n_kept = most_kept(mesh, parameters.joints.values)};
 }
 
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
@@ -42,8 +40,10 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(make_bulk_momentum(mesh.shape, bulk));
   if (mesh.fracture_names.empty()) return modules;
-  modules.push_back(make_interface_traction_balance(
-      mesh.shape, {bulk.elasticity, bulk.body_force, bulk.initial_stress, bulk.elasticity_of_cell, fluid}));
+  modules.push_back(make_interface_traction_balance(mesh.shape, {.elasticity = bulk.elasticity,
+                                                                 .body_force = bulk.body_force,
+                                                                 .initial_stress = bulk.initial_stress,
+                                                                 .fluid_pressure = fluid}));
   modules.push_back(make_elastic_plastic_jump(mesh, jump_parameters(mesh, parameters)));
   if (mesh.n_global_enriched > 0) modules.push_back(make_tip_enrichment(mesh.shape, bulk, fluid));
   return modules;

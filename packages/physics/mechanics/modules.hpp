@@ -8,8 +8,7 @@ namespace sprekk::physics {
 
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
-  std::vector<JointParameters> joints = {};  ///< different ones
-  std::vector<int> joint_of_face = {};  ///< [owned fracture face] which joint; empty: the number of the face's fracture
+  Properties<JointParameters> joints = {};  ///< of owned fracture faces, in groups by fractures
   FluidPressure fluid_pressure = {};
   FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
   Real start = 0;                       ///< time of the initial state, s

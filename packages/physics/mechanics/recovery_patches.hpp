@@ -135,12 +135,8 @@ class RecoveryPatches {
   };
 
   /// Collective.
-  RecoveryPatches(RCP<const mesh::Mesh> mesh, std::vector<laws::Elasticity> elasticity,
-                  std::vector<int> elasticity_of_cell)
-      : mesh_(mesh),
-        elasticity_(std::move(elasticity)),
-        elasticity_of_cell_(std::move(elasticity_of_cell)),
-        tip_modes_(*mesh) {
+  RecoveryPatches(RCP<const mesh::Mesh> mesh, Properties<laws::Elasticity> elasticity)
+      : mesh_(mesh), elasticity_(std::move(elasticity)), tip_modes_(*mesh) {
     if constexpr (order == 1)
       for (const LocalIndex cell : assembly::tip_cells(*mesh)) tip_cells_.emplace(cell, Tip(*mesh, cell));
     find_patches();
@@ -154,9 +150,7 @@ class RecoveryPatches {
     const auto found = tip_cells_.find(cell);
     return found == tip_cells_.end() ? nullptr : &found->second;
   }
-  const laws::Elasticity& law(LocalIndex cell) const {
-    return elasticity_[elasticity_of_cell_.empty() ? mesh_->cell_region[cell] : elasticity_of_cell_[cell]];
-  }
+  const laws::Elasticity& law(LocalIndex cell) const { return elasticity_.of_cell(*mesh_, cell); }
   LocalIndex node(LocalIndex cell, int a) const { return mesh_->cells[cell * n_nodes + a]; }
   /// The patch around a corner of a local cell; -1 where no owned cell needs it, and at the other corners of a cell
   /// with a tip.
@@ -387,8 +381,7 @@ class RecoveryPatches {
   static constexpr Real regularisation = order == 1 ? 0.3 : 0.01;
 
   RCP<const mesh::Mesh> mesh_;
-  std::vector<laws::Elasticity> elasticity_;
-  std::vector<int> elasticity_of_cell_;
+  Properties<laws::Elasticity> elasticity_;
   TipModes<dim, order> tip_modes_;
   std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with functions around tips
   std::vector<Patch> patches_;                     // around the corners of owned cells

@@ -1,10 +1,10 @@
 #include "physics/mechanics/stress_recovery.hpp"
 
+#include "base/over_ranks.hpp"
 #include "physics/mechanics/bubble_stiffness.hpp"
 #include "physics/mechanics/recovery_patches.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -27,8 +27,8 @@ class Recovery final : public StressRecovery {
                        n_corners = Patches::n_corners;
 
   Recovery(RCP<const mesh::Mesh> mesh, const ByField<const fields::Layout*>& layouts,
-           std::vector<laws::Elasticity> elasticity, std::vector<int> elasticity_of_cell)
-      : mesh_(mesh), layouts_(layouts), patches_(mesh, std::move(elasticity), std::move(elasticity_of_cell)) {
+           Properties<laws::Elasticity> elasticity)
+      : mesh_(mesh), layouts_(layouts), patches_(mesh, std::move(elasticity)) {
     if (layouts[bubble]) find_bubbles();
   }
 
@@ -45,7 +45,7 @@ class Recovery final : public StressRecovery {
       to[k] = forces[k].getLocalViewHost(Tpetra::Access::ReadWrite);
     }
     StressError result;
-    Real squares[2] = {}, all[2];
+    std::array<Real, 2> squares{};
     const auto fit = fitted(u);
     Fits moments(fit.size());
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
@@ -59,7 +59,7 @@ class Recovery final : public StressRecovery {
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_recovered(c, moments, to);
     u = {};
     to = {};  // no view may outlive what it lets change
-    Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_SUM, 2, squares, all);
+    const auto all = base::sum_over_ranks(*mesh_->comm, squares);
     result.error = std::sqrt(all[0]);
     result.stress = std::sqrt(all[1]);
     for (std::size_t k = 0; k < layouts_.size(); ++k) {
@@ -243,11 +243,10 @@ class Recovery final : public StressRecovery {
 
 std::unique_ptr<StressRecovery> make_stress_recovery(RCP<const mesh::Mesh> mesh,
                                                      const ByField<const fields::Layout*>& layouts,
-                                                     std::vector<laws::Elasticity> elasticity,
-                                                     std::vector<int> elasticity_of_cell) {
+                                                     Properties<laws::Elasticity> elasticity) {
   const Shape shape = mesh->shape;
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<StressRecovery> {
-    return std::make_unique<Recovery<s()>>(mesh, layouts, std::move(elasticity), std::move(elasticity_of_cell));
+    return std::make_unique<Recovery<s()>>(mesh, layouts, std::move(elasticity));
   });
 }
 

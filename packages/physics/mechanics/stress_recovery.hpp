@@ -3,6 +3,7 @@
 
 #include "fields/layout.hpp"
 #include "laws/elasticity.hpp"
+#include "physics/properties.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -43,10 +44,9 @@ class StressRecovery {
   virtual StressError operator()(const ByField<RCP<const fields::Vector>>& displacement) const = 0;
 };
 
-/// `elasticity_of_cell` as in BulkMomentumParameters. Refers to the layouts. Collective.
+/// Refers to the layouts. Collective.
 std::unique_ptr<StressRecovery> make_stress_recovery(RCP<const mesh::Mesh> mesh,
                                                      const ByField<const fields::Layout*>& layouts,
-                                                     std::vector<laws::Elasticity> elasticity,
-                                                     std::vector<int> elasticity_of_cell);
+                                                     Properties<laws::Elasticity> elasticity);
 
 }  // namespace sprekk::physics

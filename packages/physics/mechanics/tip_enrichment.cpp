@@ -1,8 +1,10 @@
 #include "physics/mechanics/tip_enrichment.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
+#include "physics/mechanics/balanced_side.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,49 +52,6 @@ struct EnrichedCell {
   }
 };
 
-/// What one side of a fracture face adds in a cell with a tip.
-///
-/// | symbol   | shape                                   | unit     |                                            |
-/// | x        | q [node, dim], beta [dim], lambda [dim] | m, m, Pa | unknowns                                   |
-/// | r        | q rows [node, dim], side bubble rows [dim] | N     | forces                                     |
-/// | coupling | [side, dim, node dim]                   | N/m      | integral sigma(psi_a e_j) : grad(b e_i)    |
-/// | push     | [side, node]                            | m^2      | s |f| mean(psi_a)                          |
-/// | frame    | [side, dim, dim]                        | -        | rows n, t1[, t2]                           |
-template <Shape shape>
-struct EnrichedSide {
-  using Cell = assembly::ReferenceCell<shape>;
-  static constexpr int dim = Cell::dim, n = Cell::n_nodes, beta = n * dim, lambda = beta + dim;
-  using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
-  using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
-  static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
-
-  View<Real***> coupling, frame;
-  View<Real**> push;
-
-  KOKKOS_INLINE_FUNCTION void residual(int side, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const {
-    for (Real& value : r) value = 0;
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i)
-        for (int k = 0; k < dim; ++k) {
-          r[a * dim + i] +=
-              push(side, a) * frame(side, k, i) * x[lambda + k] + coupling(side, k, a * dim + i) * x[beta + k];
-          r[beta + k] += coupling(side, k, a * dim + i) * x[a * dim + i];
-        }
-  }
-
-  KOKKOS_INLINE_FUNCTION void jacobian(int side, const Real (&)[Columns::size],
-                                       Real (&J)[Rows::size][Columns::size]) const {
-    for (auto& row : J)
-      for (Real& value : row) value = 0;
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i)
-        for (int k = 0; k < dim; ++k) {
-          J[a * dim + i][lambda + k] = push(side, a) * frame(side, k, i);
-          J[a * dim + i][beta + k] = J[beta + k][a * dim + i] = coupling(side, k, a * dim + i);
-        }
-  }
-};
-
 template <Shape shape>
 class TipEnrichment final : public assembly::Module {
  public:
@@ -130,7 +89,7 @@ class TipEnrichment final : public assembly::Module {
     cells_ = std::make_unique<Cells>(context, Loop::tip_cells, Fields{u, q_}, Fields{u, q_}, Cells::Positions::once);
     sides_ = std::make_unique<Sides>(context, Loop::tip_sides, Fields{q_, beta}, Fields{q_, beta, lambda},
                                      Sides::Positions::once);
-    load_ = View<Real*>("load", context.layout(q_).n_owned());
+    load_ = assembly::Load(context.layout(q_).n_owned());
     build_cells();
     build_sides();
   }
@@ -138,10 +97,7 @@ class TipEnrichment final : public assembly::Module {
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     cells_->add_residual(cell_, state, r);
     sides_->add_residual(side_, state, r);
-    const auto rows = r[q_];
-    const auto load = load_;
-    Kokkos::parallel_for(
-        "load", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= load(i); });
+    load_.add_to(r[q_], -1);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
@@ -158,26 +114,18 @@ class TipEnrichment final : public assembly::Module {
 
   void set_time(Real t, const assembly::Scales&) override {
     if (loaded_ && constant_load()) return;
-    const auto load = Kokkos::create_mirror_view(load_);
-    Kokkos::deep_copy(load, 0.0);
-    for (LocalIndex cell : cell_of_) add_volume_loads(cell, t, load);
-    for (const auto& face : mesh_->boundary_faces)
-      if (assembly::has_tip(*mesh_, face.cell)) add_tractions(face, t, load);
-    const auto selected = assembly::tip_sides(*mesh_);
-    const auto all = assembly::fracture_sides(*mesh_);
-    const auto push = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), side_.push);
-    for (std::size_t s = 0; s < selected.size(); ++s) {
-      const auto [f, side] = all[selected[s]];
-      if (!parameters_.initial_stress.empty()) add_deviation(f, side, load);
-      if (!fluid_.empty()) add_pressure(f, side, t, Kokkos::subview(push, s, Kokkos::ALL), load);
-    }
-    Kokkos::deep_copy(load_, load);
+    load_.set([&](const auto& rows) {
+      for (LocalIndex cell : cell_of_) add_volume_loads(cell, t, rows);
+      for (const auto& face : mesh_->boundary_faces)
+        if (assembly::has_tip(*mesh_, face.cell)) add_tractions(face, t, rows);
+      add_loads_of_sides(t, rows);
+    });
     loaded_ = true;
   }
 
  private:
   using Cells = assembly::Assembler<EnrichedCell<shape>>;
-  using Sides = assembly::Assembler<EnrichedSide<shape>>;
+  using Sides = assembly::Assembler<BalancedSide<shape>>;
 
   /// The unknowns at all nodes, zero where there are none.
   std::vector<Real> shown(const assembly::State& state) const {
@@ -189,10 +137,7 @@ class TipEnrichment final : public assembly::Module {
     return values;
   }
 
-  const laws::Elasticity& law(LocalIndex cell) const {
-    return parameters_.elasticity[parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell]
-                                                                         : parameters_.elasticity_of_cell[cell]];
-  }
+  const laws::Elasticity& law(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }
 
   Tip tip(LocalIndex cell) const { return {*mesh_, cell, rules_}; }
 
@@ -240,8 +185,7 @@ class TipEnrichment final : public assembly::Module {
   void build_sides() {
     const auto selected = assembly::tip_sides(*mesh_);
     const auto all = assembly::fracture_sides(*mesh_);
-    side_ = {View<Real***>("coupling", selected.size(), dim, n * dim),
-             View<Real***>("frame", selected.size(), dim, dim), View<Real**>("push", selected.size(), n)};
+    side_ = BalancedSide<shape>(selected.size());
     const auto coupling = Kokkos::create_mirror_view(side_.coupling), frame = Kokkos::create_mirror_view(side_.frame);
     const auto push = Kokkos::create_mirror_view(side_.push);
     for (std::size_t s = 0; s < selected.size(); ++s) {
@@ -300,6 +244,18 @@ class TipEnrichment final : public assembly::Module {
   }
 
   template <class Host>
+  void add_loads_of_sides(Real t, const Host& load) const {
+    const auto selected = assembly::tip_sides(*mesh_);
+    const auto all = assembly::fracture_sides(*mesh_);
+    const auto push = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), side_.push);
+    for (std::size_t s = 0; s < selected.size(); ++s) {
+      const auto [f, side] = all[selected[s]];
+      if (!parameters_.initial_stress.empty()) add_deviation(f, side, load);
+      if (!fluid_.empty()) add_pressure(f, side, t, Kokkos::subview(push, s, Kokkos::ALL), load);
+    }
+  }
+
+  template <class Host>
   void add_tractions(const mesh::Mesh::BoundaryFace& face, Real t, const Host& load) const {
     for (const auto& traction : parameters_.tractions) {
       if (face.boundary != traction.boundary ||
@@ -350,10 +306,10 @@ class TipEnrichment final : public assembly::Module {
   std::vector<LocalIndex> cell_of_;  // [entity of tip_cells]
   std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   EnrichedCell<shape> cell_;
-  EnrichedSide<shape> side_;
+  BalancedSide<shape> side_{0};  // its bubbles balance in InterfaceTractionBalance
   std::unique_ptr<Cells> cells_;
   std::unique_ptr<Sides> sides_;
-  View<Real*> load_;  // [owned row], N
+  assembly::Load load_;  // N
 };
 
 }  // namespace

@@ -70,7 +70,7 @@ class Given final : public GivenPressure {
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const auto biot = [&](LocalIndex cell) { return parameters_.biot[cell]; };
+    const auto biot = [&](LocalIndex cell) { return parameters_.biot.of_cell(*mesh_, cell); };
     const auto sides = assembly::fracture_sides(*mesh_);
     std::vector<LocalIndex> cells, faces, cells_of_sides, faces_of_tips;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) cells.push_back(c);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/system.hpp"
+#include "physics/properties.hpp"
 
 #include <memory>
 #include <vector>
@@ -9,8 +10,8 @@
 namespace sprekk::physics {
 
 struct GivenPressureParameters {
-  std::vector<Real> biot;  ///< [local cell] Biot's coefficient
-  Real initial = 0;        ///< pressure of the initial state, Pa
+  Properties<Real> biot;  ///< of cells, Biot's coefficient
+  Real initial = 0;       ///< pressure of the initial state, Pa
 };
 
 /// Adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, V_K and W_f as PoroelasticCoupling has them: p is

@@ -81,45 +81,10 @@ struct Opening {
   }
 };
 
-/// The flow of a pressure's rate of change against oscillation: T(beta)/dt (p - p_j - (p_0 - p_0j)), see make_.
-///
-/// | symbol  | shape        | unit    |                                                                      |
-/// | x       | 1 + faces    | Pa      | pressure of the cell, pressures on faces                             |
-/// | r       | 1 + faces    | m^3/s   | sum q, -q (2D: m^2/s)                                                |
-/// | T       | [cell, faces * faces] | m^3/Pa | of beta, zero in rows of fractures (2D: m^2/Pa)             |
-/// | drop    | [cell, faces] | Pa     | p_0 - p_0j; empty: zero                                              |
-/// | rate    |              | 1/s     | of assembly::State                                                   |
+/// The flow of a pressure's rate of change against oscillation: T(beta)/dt (p - p_j - (p_0 - p_0j)), see make_. T is of
+/// beta, zero in rows of fractures.
 template <Shape shape>
-struct StabilisedCell {
-  static constexpr int n = mesh::n_faces(shape);
-  using Columns = assembly::Slots<Slot<1, 1>, Slot<n, 1>>;
-  using Rows = Columns;
-  View<Real**> T, drop;
-  Real rate = 0;
-
-  KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
-    r[0] = 0;
-    for (int i = 0; i < n; ++i) {
-      Real q = 0;
-      for (int j = 0; j < n; ++j)
-        q += T(cell, i * n + j) * (x[0] - x[1 + j] - (drop.extent(0) > 0 ? drop(cell, j) : 0));
-      r[0] += rate * q;
-      r[1 + i] = -rate * q;
-    }
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&)[1 + n], Real (&J)[1 + n][1 + n]) const {
-    J[0][0] = 0;
-    for (int i = 0; i < n; ++i) {
-      J[0][1 + i] = 0;
-      for (int j = 0; j < n; ++j) {
-        J[1 + i][1 + j] = rate * T(cell, i * n + j);
-        J[0][1 + i] -= J[1 + i][1 + j];
-      }
-      J[1 + i][0] = J[0][1 + i];
-      J[0][0] -= J[0][1 + i];
-    }
-  }
-};
+using StabilisedCell = KeptFlow<mesh::n_faces(shape), assembly::Slots<Slot<1, 1>, Slot<mesh::n_faces(shape), 1>>>;
 
 template <Shape shape>
 class PoroelasticCoupling final : public assembly::Module {
@@ -250,16 +215,21 @@ class PoroelasticCoupling final : public assembly::Module {
     for_each_rate(*this, [&](const auto& part) { part.assembler->add_residual(part.at(rate), state, r); });
   }
 
-  const PoroelasticCouplingParameters::Rock& rock(LocalIndex cell) const {
-    return parameters_
-        .rock[parameters_.rock_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.rock_of_cell[cell]];
+  Real initial(const mesh::Vector& x) const { return parameters_.initial(x, 0); }
+  Real mean_initial(LocalIndex cell) const {
+    return assembly::cell_mean<shape>(*mesh_, cell, [&](const auto& x) { return initial(x); })[1];
+  }
+  Real biot(LocalIndex cell) const { return parameters_.biot.of_cell(*mesh_, cell); }
+  /// alpha^2/(lambda + 2G)
+  Real softness(LocalIndex cell) const {
+    const auto& law = parameters_.elasticity.of_cell(*mesh_, cell);
+    return biot(cell) * biot(cell) / (law.lambda + 2 * law.G);
   }
 
   void build_cells();
   void build_stabilisation();
   void build_sides();
   void build_tips();
-  Real mean_initial(LocalIndex cell) const;
 
   PoroelasticCouplingParameters parameters_;
   bool fractures_, tips_;  // the mesh has some; enriched ones
@@ -305,7 +275,7 @@ void PoroelasticCoupling<shape>::initial(const assembly::Rows& x) const {
   constexpr int n_ridges = mesh::n_face_corners(shape);
   const auto p = Kokkos::create_mirror_view(x[pressures_[0]]), trace = Kokkos::create_mirror_view(x[pressures_[1]]);
   const auto put = [&](LocalIndex facet, const mesh::Vector& place) {
-    if (facet < mesh_->facets->n_owned) trace(facet) = parameters_.initial(place, 0);
+    if (facet < mesh_->facets->n_owned) trace(facet) = this->initial(place);
   };
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     if (c < mesh_->n_owned_cells) p(c) = mean_initial(c);
@@ -319,27 +289,13 @@ void PoroelasticCoupling<shape>::initial(const assembly::Rows& x) const {
 }
 
 template <Shape shape>
-Real PoroelasticCoupling<shape>::mean_initial(LocalIndex cell) const {
-  Real sum = 0, volume = 0;
-  assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const auto&, Real part, const auto& x) {
-    sum += part * parameters_.initial(x, 0);
-    volume += part;
-  });
-  return sum / volume;
-}
-
-template <Shape shape>
 void PoroelasticCoupling<shape>::build_cells() {
-  const auto biot = [&](LocalIndex cell) { return rock(cell).biot; };
-  cells_.op.volume = cell_volumes<shape>(*mesh_, biot);
+  cells_.op.volume = cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   std::vector<Real> reference, schur;
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    reference.push_back(mean_initial(c));
-    if (c >= mesh_->n_owned_cells) continue;
-    Real size = 0;
-    assembly::for_each_cell_point<shape>(*mesh_, c, [&](const auto&, Real part, const auto&) { size += part; });
-    const auto& [biot, law] = rock(c);
-    schur.push_back(biot * biot * size / (law.lambda + 2 * law.G));
+    const auto [volume, mean] = assembly::cell_mean<shape>(*mesh_, c, [&](const auto& x) { return initial(x); });
+    reference.push_back(mean);
+    if (c < mesh_->n_owned_cells) schur.push_back(softness(c) * volume);
   }
   cells_.op.reference = assembly::to_device(reference, "initial pressure");
   schur_ = assembly::to_device(schur, "schur");
@@ -354,24 +310,20 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
     const auto& face = mesh_->fracture_faces[f];
     closed[face.cell[side] * n_faces + face.local_face[side]] = 1;
   }
-  auto& op = stabilised_.op;
-  op.T = View<Real**>("T", mesh_->n_cells(), n_faces * n_faces);
-  const auto T = Kokkos::create_mirror_view(op.T);
   const bool falls = !parameters_.initial.is_constant();
-  op.drop = View<Real**>("drop", falls ? mesh_->n_cells() : 0, n_faces);
-  const auto drop = Kokkos::create_mirror_view(op.drop);
+  const View<Real**> T_device("T", mesh_->n_cells(), n_faces * n_faces),
+      lift_device("lift", falls ? mesh_->n_cells() : 0, n_faces);
+  const auto T = Kokkos::create_mirror_view(T_device), lift = Kokkos::create_mirror_view(lift_device);
   Real X[n][dim];
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     assembly::gather_host<shape>(*mesh_, c, X);
     const CellFaces<shape> faces(X);
-    const auto& [biot, law] = rock(c);
-    if (biot == 0) continue;
+    if (biot(c) == 0) continue;
     laws::Mobility beta;
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
         for (int k = 0; k < n_corners; ++k)
-          beta.value[i][j] +=
-              biot * biot / (law.lambda + 2 * law.G) * faces.corners[k][i] * faces.corners[k][j] / n_corners;
+          beta.value[i][j] += softness(c) * faces.corners[k][i] * faces.corners[k][j] / n_corners;
     FlowMatrix<shape> matrix(faces, beta, parameters_.scheme);
     for (int e = 0; e < n_faces; ++e)
       if (closed[c * n_faces + e]) matrix.close(e);
@@ -379,21 +331,18 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
       for (int j = 0; j < n_faces; ++j) T(c, i * n_faces + j) = matrix.T[i][j];
     const Real mean = falls ? mean_initial(c) : 0;
     for (int j = 0; j < n_faces && falls; ++j) {
-      Real sum = 0, area = 0;
-      assembly::for_each_face_point<shape>(*mesh_, c, j, [&](const auto&, Real part, const auto& x) {
-        sum += part * parameters_.initial(x, 0);
-        area += part;
-      });
-      drop(c, j) = mean - sum / area;
+      lift(c, j) =
+          assembly::face_mean<shape>(*mesh_, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
     }
   }
-  Kokkos::deep_copy(op.T, T);
-  Kokkos::deep_copy(op.drop, drop);
+  Kokkos::deep_copy(T_device, T);
+  Kokkos::deep_copy(lift_device, lift);
+  stabilised_.op = {.T = T_device, .lift = lift_device};
 }
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::build_sides() {
-  bubbles_.op.volume = bubble_volumes<shape>(*mesh_, [&](LocalIndex cell) { return rock(cell).biot; });
+  bubbles_.op.volume = bubble_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   sides_.op.volume = side_volumes<shape>(*mesh_);
   std::vector<Real> reference, halves;
   for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
@@ -406,7 +355,7 @@ void PoroelasticCoupling<shape>::build_sides() {
 
 template <Shape shape>
 void PoroelasticCoupling<shape>::build_tips() {
-  tip_cells_.op.volume = tip_cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return rock(cell).biot; });
+  tip_cells_.op.volume = tip_cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   tip_sides_.op.volume = tip_side_volumes<shape>(*mesh_);
   std::vector<Real> reference;
   for (const LocalIndex cell : assembly::tip_cells(*mesh_)) reference.push_back(mean_initial(cell));

@@ -12,20 +12,17 @@
 namespace sprekk::physics {
 
 struct PoroelasticCouplingParameters {
-  /// Of rock, Biot (1941): total stress is sigma(u) + sigma_0 - biot (p - p_0) I.
-  struct Rock {
-    Real biot = 1;                ///< alpha in [0, 1]
-    laws::Elasticity elasticity;  ///< drained
-  };
-  std::vector<Rock> rock;               ///< different ones
-  std::vector<int> rock_of_cell;        ///< [local cell] which of them; empty: the number of the cell's region
-  base::Expression initial = 0;         ///< p_0, Pa
-  FluxScheme scheme = FluxScheme::rt0;  ///< as in the rock
+  /// Of cells, Biot (1941): total stress is sigma(u) + sigma_0 - biot (p - p_0) I.
+  Properties<Real> biot;                    ///< alpha in [0, 1]
+  Properties<laws::Elasticity> elasticity;  ///< drained
+  base::Expression initial = 0;             ///< p_0, Pa
+  FluxScheme scheme = FluxScheme::rt0;      ///< as in the rock
 };
 
 /// Couples "displacement" (with "side bubble" and "tip displacement" where there are) to "pressure" and "face pressure"
-/// of DarcyFlow, and declares the unknown "widening" b (fracture faces, m): the aperture (15) less that of the initial
-/// state. With V_K(u) = integral of alpha div u over a cell K and W_f(u) = |f| n . mean([[u]]) of a fracture face:
+/// of HybridDiffusion, and declares the unknown "widening" b (fracture faces, m): the aperture (15) less that of the
+/// initial state. With V_K(u) = integral of alpha div u over a cell K and W_f(u) = |f| n . mean([[u]]) of a fracture
+/// face:
 ///   momentum rows           -(p_K - p_0) dV_K/du - p_f dW_f/du     the effective traction lambda - p_f n, Wollmann
 ///                                                                  (2024), (6)(7), acts on the sides of a fracture
 ///   rows of "widening"      |f| b - W_f(u)

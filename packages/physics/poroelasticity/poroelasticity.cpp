@@ -1,5 +1,8 @@
 #include "physics/poroelasticity/poroelasticity.hpp"
 
+#include "base/over_ranks.hpp"
+#include "mesh/facets.hpp"
+#include "physics/entry_of_place.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 
@@ -7,38 +10,36 @@ namespace sprekk::physics {
 
 namespace {
 
+constexpr const char* biot_name = "Biot coefficient";
+
+/// Biot's coefficient of cells.
+Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.biot.is_constant(); },
+      [](const Material& rock, const auto& x) { return value_at(biot_name, rock.biot, base::between(0, 1), x); });
+}
+
 std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto rock = elasticity(scene, mesh);
-  const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
-  PoroelasticCouplingParameters coupling;
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
-    const int region = mesh.cell_region[cell];
-    coupling.rock.push_back({biot[region], rock.values[rock.number.empty() ? region : rock.number[cell]]});
-    coupling.rock_of_cell.push_back(cell);
-  }
   const Properties<laws::Mobility> any{
-      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1)), {}};
-  const auto flow = scene.flow ? mobility(scene, mesh) : any;
-  coupling.initial = initial_pressure(scene);
-  coupling.scheme =
-      flux_scheme("Flow", scene.flow ? scene.flow->scheme : "auto", mesh, flow.values, flow.number).scheme;
-  return make_poroelastic_coupling(mesh, std::move(coupling));
+      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1))};
+  const auto scheme = flux_scheme(scheme_entry(scene), mesh, scene.flow ? mobility(scene, mesh) : any).scheme;
+  return make_poroelastic_coupling(mesh, {.biot = biot(scene, mesh),
+                                          .elasticity = elasticity(scene, mesh),
+                                          .initial = initial_pressure(scene),
+                                          .scheme = scheme});
 }
 
 /// The pressure that a host gives.
 std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto biot = by_region(scene, mesh, [](const Material& m) { return m.biot; });
-  GivenPressureParameters given{{}, scene.host_fluid->initial_pressure};
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) given.biot.push_back(biot[mesh.cell_region[cell]]);
-  return make_given_pressure(mesh, std::move(given));
+  return make_given_pressure(mesh, {.biot = biot(scene, mesh), .initial = scene.host_fluid->initial_pressure});
 }
 
 }  // namespace
 
 void Poroelasticity::Rock::describe(base::Section& s) {
-  s.entry(biot, "Biot coefficient", "-", base::between(0, 1),
-          "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and pores "
-          "grow by alpha div u");
+  entry_of_place(s, biot, biot_name, "-", base::between(0, 1),
+                 "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and "
+                 "pores grow by alpha div u");
 }
 
 bool Poroelasticity::is_in(const Scene& scene) { return Mechanics::is_in(scene) && has_fluid(scene); }
@@ -50,15 +51,26 @@ void Poroelasticity::add_modules(const Setting& setting, Modules& modules) {
 }
 
 std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {
-  const auto& scene = setting.scene;
+  const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all;
   if (!is_in(scene) || scene.host_fluid) return all;
-  for (const auto& [name, material] : scene.materials)
-    if (material.type == "elastic" && material.biot < material.porosity)
+  for (const auto& [name, material] : scene.materials) {
+    const auto is_low = [&, &rock = material](LocalIndex cell) {
+      const auto x = mesh::cell_centre(mesh, cell);
+      return &scene.material_of(mesh.region_names[mesh.cell_region[cell]]) == &rock &&
+             rock.biot(x, 0) < rock.porosity(x, 0);
+    };
+    const auto any_low = [&] {
+      for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell)
+        if (is_low(cell)) return true;
+      return false;
+    };
+    if (base::any_rank(*mesh.comm, any_low))
       all.push_back(fmt::format(
           "{}: Sprekk > Materials > {} > \"Biot coefficient\": is {}, below the porosity {}; rock whose grains are "
           "stiffer than its skeleton has more",
-          scene.origin, name, material.biot, material.porosity));
+          scene.origin, name, material.biot.text(), material.porosity.text()));
+  }
   return all;
 }
 

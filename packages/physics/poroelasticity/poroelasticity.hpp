@@ -8,7 +8,7 @@ namespace sprekk::physics {
 
 struct Poroelasticity : Physics<Poroelasticity> {
   struct Rock : Physics::Rock {
-    Real biot = 1;  ///< Biot's coefficient
+    base::Expression biot = 1;  ///< Biot's coefficient
     void describe(base::Section& section);
   };
 

@@ -261,7 +261,7 @@ TEST(Xml, files_that_cannot_be_read_are_an_error_on_all_ranks) {
 
 ParameterList overridden(const std::string& text) {
   ParameterList list("Sprekk");
-  list.sublist("Time").set("end", 2.0).set("steps", 5).set("scheme", "1");
+  list.sublist("Time").set("end", 2.0).set("steps", 5).set("scheme", "1").set("start", "3 h");
   list.sublist("Time").sublist("Adaptive steps").set("max. growth", 2.0);
   list.set("vector", array<double>({1, 2})).set("names", array<std::string>({"a"})).set("flag", true);
   apply_override(list, text);
@@ -280,6 +280,13 @@ TEST(Override, keeps_the_type_of_the_entry) {
                 .sublist("Adaptive steps")
                 .get<double>("max. growth"),
             4.0);
+}
+
+/// A text with a unit, which stands for a number, gives way to a number, and stays a text for another one.
+TEST(Override, puts_a_number_in_place_of_a_text_with_a_unit) {
+  EXPECT_EQ(overridden("Time.start=7").sublist("Time").get<int>("start"), 7);
+  EXPECT_EQ(overridden("Time.start=7.5").sublist("Time").get<double>("start"), 7.5);
+  EXPECT_EQ(overridden("Time.start=2*t").sublist("Time").get<std::string>("start"), "2*t");
 }
 
 TEST(Override, guesses_the_type_of_what_is_new) {

@@ -71,8 +71,9 @@ inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}
                       const std::vector<assembly::DirichletCondition>& conditions = {}) {
   global.region_names = {"soft", "stiff"};
   Rock rock{global, mesh::make_distributed(global, comm), {soft, stiff}, joint, nullptr};
-  const MechanicsParameters mechanics{{rock.elasticity, BodyForce{loads.body_force}, loads.tractions},
-                                      std::vector<JointParameters>(global.fracture_names.size(), joint)};
+  const MechanicsParameters mechanics{
+      .bulk = {.elasticity = {rock.elasticity}, .body_force = {loads.body_force}, .tractions = loads.tractions},
+      .joints = {std::vector<JointParameters>(global.fracture_names.size(), joint)}};
   rock.system = std::make_unique<assembly::System>(rock.mesh, make_mechanics(*rock.mesh, mechanics), conditions,
                                                    rcp(new base::Timers));
   rock.system->set_time(1, 1);

@@ -81,6 +81,31 @@ TEST(Heat, ConstantGradientIsExact) {
   }
 }
 
+/// A capacity that is an expression of the place, and the same by regions.
+TEST(Heat, CapacityMayDependOnThePlace) {
+  for (const std::string cell : all_cells) {
+    std::vector<std::vector<Real>> found;
+    for (const bool by_regions : {false, true}) {
+      auto scene = box(cell, 4);
+      hold(scene, "west", "t");
+      auto& rock = scene.materials.at("rock");
+      rock.heat_capacity = by_regions ? base::Expression(3) : base::Expression("x < 0.5 ? 3 : 6");
+      if (by_regions) {
+        auto upper = scene.mesh.upper_corner, lower = scene.mesh.lower_corner;
+        lower[0] = 0.5;
+        scene.mesh.regions["east"] = {lower, upper};
+        scene.materials["dense"] = rock;
+        scene.materials["dense"].heat_capacity = 6;
+        scene.regions["east"].material = "dense";
+      }
+      model::Model model(scene, Tpetra::getDefaultComm());
+      for (const Real t : {0.1, 0.3}) ASSERT_TRUE(model.step_to(t).converged) << cell;
+      found.push_back(model.output("temperature").values);
+    }
+    for (std::size_t c = 0; c < found[0].size(); ++c) EXPECT_NEAR(found[0][c], found[1][c], 1e-13) << cell;
+  }
+}
+
 /// From 5 K in the west, h = 1, through rock of conductivity 2 to 1 K in the east, h = 4: q = 4/(1 + 1/2 + 1/4).
 TEST(Heat, TransferIsAResistanceInSeries) {
   const Real q = 4 / 1.75;

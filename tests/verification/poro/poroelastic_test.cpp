@@ -79,6 +79,35 @@ TEST(Poroelasticity, ADrainedBoxFollowsTheEffectiveStress) {
       }
 }
 
+/// Porosity and Biot's coefficient that are expressions of the place, and the same by regions.
+TEST(Poroelasticity, PropertiesMayDependOnThePlace) {
+  for (const std::string cell : {"quadrilateral", "tetrahedron"}) {
+    std::vector<std::vector<Real>> found;
+    for (const bool by_regions : {false, true}) {
+      auto scene = deforming_box(cell, true);
+      press(scene, 3);
+      hold(scene, "west", "1");
+      scene.flow->compressibility = 0.3;
+      auto& rock = scene.materials.at("rock");
+      rock.porosity = by_regions ? base::Expression(0.1) : base::Expression("x < 0.5 ? 0.1 : 0.4");
+      rock.biot = by_regions ? base::Expression(0.5) : base::Expression("x < 0.5 ? 0.5 : 0.9");
+      if (by_regions) {
+        auto upper = scene.mesh.upper_corner, lower = scene.mesh.lower_corner;
+        lower[0] = 0.5;
+        scene.mesh.regions["east"] = {lower, upper};
+        scene.materials["porous"] = rock;
+        scene.materials["porous"].porosity = 0.4;
+        scene.materials["porous"].biot = 0.9;
+        scene.regions["east"].material = "porous";
+      }
+      model::Model model(scene, Tpetra::getDefaultComm());
+      for (const Real t : {0.01, 0.03}) ASSERT_TRUE(model.step_to(t).converged) << cell;
+      found.push_back(model.output("pressure").values);
+    }
+    for (std::size_t c = 0; c < found[0].size(); ++c) EXPECT_NEAR(found[0][c], found[1][c], 1e-11) << cell;
+  }
+}
+
 /// In a closed box the fluid bears its part of the load, Skempton's: p = P_0 alpha M/(K + alpha^2 M), 1/M the storage
 /// at constant strain. With constant time steps, or a first one of almost nothing.
 TEST(Poroelasticity, AClosedBoxIsUndrained) {

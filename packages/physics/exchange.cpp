@@ -1,4 +1,4 @@
-#include "physics/flow/exchange.hpp"
+#include "physics/exchange.hpp"
 
 namespace sprekk::physics {
 

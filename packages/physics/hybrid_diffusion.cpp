@@ -1,0 +1,211 @@
+#include "physics/hybrid_diffusion.hpp"
+
+#include "base/over_ranks.hpp"
+#include "mesh/extents.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+
+namespace {
+
+template <Shape shape>
+class HybridDiffusion final : public assembly::Module {
+ public:
+  using Op = HybridCell<shape>;
+  static constexpr int dim = Op::dim, n_faces = Op::n;
+
+  explicit HybridDiffusion(HybridDiffusionParameters parameters)
+      : parameters_(std::move(parameters)), outflow_(parameters_.conditions, parameters_.outflow) {}
+
+  std::string name() const override {
+    return parameters_.name + ", " + name_of(parameters_.scheme) +
+           (parameters_.reason.empty() ? "" : " (" + parameters_.reason + ")");
+  }
+
+  void set_fields(const std::set<std::string>& fields) override { coupled_ = fields.count(parameters_.coupled_by) > 0; }
+
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
+    assembly::Declaration d;
+    const auto& [field, on_facets] = names_;
+    const Real conductance = largest_mobility(mesh) / mesh::largest_extent(mesh) * mesh::typical_face_area(mesh);
+    assembly::Unknown cells{{field, fields::Entity::cell, 1, parameters_.unit}, field, {{field, conductance}}};
+    cells.balance = true;
+    cells.reactions = {parameters_.outflow.inflows, "", "region_" + parameters_.outflow.inflows};
+    auto facets = cells;
+    facets.field = {on_facets, fields::Entity::facet, 1, parameters_.unit};
+    facets.near_null_space = assembly::NearNullSpace::constants;
+    const bool stay = parameters_.in_regions || coupled_;
+    (stay ? cells.condensed_into : cells.local_group) = stay ? on_facets : field + " in cells";
+    d.unknowns = {cells, facets};
+    d.scales = {{field, 1e-12}};
+    for (const auto& row : names_) d.couplings.push_back({Loop::cells, row, {field, on_facets}});
+    d.outputs = {{{field, parameters_.unit, fields::Entity::cell, 1}, [this](const auto& s) { return values(s); }},
+                 {{parameters_.flux, parameters_.flux_unit, fields::Entity::cell, 3},
+                  [this](const auto& s) { return fluxes(s); }}};
+    d.linear = is_linear();
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    size_ = mesh::largest_extent(*mesh_);
+    const auto& [gx, gy, gz] = parameters_.weight;
+    op_ = std::make_unique<Op>(Op{.geometry = context.geometry(),
+                                  .mobility = assembly::to_device(parameters_.mobility.values, "mobility"),
+                                  .number = assembly::material_numbers(context.geometry(), parameters_.mobility.number),
+                                  .weight = {gx, gy, gz},
+                                  .scheme = parameters_.scheme,
+                                  .fluid = parameters_.fluid});
+    set_resistance();
+    blocks_ = {context.field(names_[0]), context.field(names_[1])};
+    assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_,
+                                             is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
+    for (int k = 0; k < 2; ++k) load_[k] = assembly::Load(context.layout(blocks_[k]).n_owned());
+    add_conditions();
+    outflow_.bind(context, blocks_[1], parameters_.fluid);
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_->add_residual(*op_, state, r);
+    outflow_.add_residual(state, r);
+    for (int k = 0; k < 2; ++k) load_[k].add_to(r[blocks_[k]]);
+  }
+
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    assembler_->add_jacobian(*op_, state, J);
+    outflow_.add_jacobian(state, J);
+  }
+  bool symmetric(const assembly::State&) const override { return is_linear(); }
+
+  bool constant_load() const override {
+    return outflow_.constant_in_time() && (parameters_.source.empty() || parameters_.source[0].constant_in_time());
+  }
+
+  void set_time(Real t, const assembly::Scales&) override {
+    if (loaded_ && constant_load()) return;
+    load_[0].set([&](const auto& rows) {
+      for_each_source(t, [&](LocalIndex cell, Real volume, Real source) { rows(cell) -= volume * source; });
+    });
+    load_[1].set([&](const auto& rows) { outflow_.set_time(t, rows); });
+    loaded_ = true;
+  }
+
+  /// What prescribed flow and gravity make of u over the size of the domain.
+  assembly::Scales loads(Real t) const override {
+    Real flux = outflow_.largest(t, false), weight = 0, mobility = 0;
+    for_each_source(t, [&](LocalIndex, Real, Real source) { flux = std::max(flux, size_ * std::abs(source)); });
+    for (Real component : parameters_.weight) weight += component * component;
+    for (const auto& each : parameters_.mobility.values)
+      mobility = std::max(mobility, each.template trace<dim>() / dim);
+    return {{parameters_.field, std::max(outflow_.largest(t, true), size_ * (std::sqrt(weight) + flux / mobility))}};
+  }
+
+  void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
+    outflow_.totals(state, *mesh_, totals);
+  }
+
+ private:
+  using Assembler = assembly::Assembler<Op>;
+
+  std::vector<Real> values(const assembly::State& state) const {
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
+    return {u.data(), u.data() + mesh_->n_owned_cells};
+  }
+
+  std::vector<Real> fluxes(const assembly::State& state) const {
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
+    const auto trace = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    std::vector<Real> values;
+    Real X[mesh::n_nodes(shape)][dim], x[1 + n_faces], q[n_faces];
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
+      assembly::gather_host<shape>(*mesh_, c, X);
+      const CellFaces<shape> faces(X);
+      x[0] = u(c);
+      for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
+      op_->at(c, faces).flow(x, q);
+      const Real scale = 1 / (parameters_.fluid.density(x[0]) * faces.volume);
+      for (int i = 0; i < 3; ++i) {
+        Real v = 0;
+        for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] * scale;
+        values.push_back(v);
+      }
+    }
+    return values;
+  }
+
+  /// The largest component on the diagonal. Collective.
+  Real largest_mobility(const mesh::Mesh& mesh) const {
+    Real here = 0;
+    for (const auto& one : parameters_.mobility.values)
+      for (int i = 0; i < dim; ++i) here = std::max(here, one.value[i][i]);
+    return base::max_over_ranks(*mesh.comm, here);
+  }
+
+  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
+
+  void set_resistance() {
+    const auto& exchange = parameters_.exchange;
+    if (std::all_of(exchange.begin(), exchange.end(), [](Real e) { return std::isinf(e); })) return;
+    std::vector<int> beside(mesh_->n_cells(), -1);
+    int n = 0;
+    const auto sides = assembly::fracture_sides(*mesh_);
+    for (const auto& [f, side] : sides)
+      if (int& row = beside[mesh_->fracture_faces[f].cell[side]]; row < 0) row = n++;
+    View<Real**> resistance("resistance", n, n_faces);
+    const auto host = Kokkos::create_mirror_view(resistance);
+    for (const auto& [f, side] : sides) {
+      const auto& face = mesh_->fracture_faces[f];
+      host(beside[face.cell[side]], face.local_face[side]) = 1 / (exchange[f] * face.area);
+    }
+    Kokkos::deep_copy(resistance, host);
+    op_->beside = assembly::to_device(beside, "beside");
+    op_->resistance = resistance;
+  }
+
+  /// The quadrature points of all boundary faces with a condition.
+  void add_conditions() {
+    for (std::size_t k = 0; k < outflow_.conditions().size(); ++k)
+      for (const auto& face : mesh_->boundary_faces) {
+        const auto& one = outflow_.conditions()[k];
+        if (face.boundary != one.boundary || (one.region >= 0 && mesh_->cell_region[face.cell] != one.region)) continue;
+        const LocalIndex facet = mesh_->facets->of_cell[face.cell * n_faces + face.local_face];
+        assembly::for_each_face_point<shape>(
+            *mesh_, face.cell, face.local_face,
+            [&](const auto&, Real area, const auto& x) { outflow_.add(k, facet, area, x); });
+      }
+  }
+
+  /// Calls visit(cell, volume, source) at the quadrature points of owned cells.
+  template <class Visit>
+  void for_each_source(Real t, const Visit& visit) const {
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells && !parameters_.source.empty(); ++c)
+      assembly::for_each_cell_point<shape>(
+          *mesh_, c, [&](const auto&, Real volume, const auto& x) { visit(c, volume, parameters_.source[0](x, t)); });
+  }
+
+  HybridDiffusionParameters parameters_;
+  std::array<std::string, 2> names_{parameters_.field, "face " + parameters_.field};
+  bool coupled_ = false;
+  RCP<const mesh::Mesh> mesh_;
+  std::vector<int> blocks_;  // u of cells, of facets
+  Real size_ = 0;            // largest extent of the domain, m
+  bool loaded_ = false;
+  std::unique_ptr<Op> op_;
+  std::unique_ptr<Assembler> assembler_;
+  Outflow outflow_;
+  std::array<assembly::Load, 2> load_;  // Q per time
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffusionParameters parameters) {
+  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<HybridDiffusion<s()>>(std::move(parameters));
+  });
+}
+
+}  // namespace sprekk::physics

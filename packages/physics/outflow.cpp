@@ -1,0 +1,67 @@
+#include "physics/outflow.hpp"
+
+#include "physics/entry_of_place.hpp"
+#include "physics/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::physics {
+
+std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
+                                           bool of_fractures) {
+  std::vector<FluxCondition> conditions;
+  for (const auto& [name, one] : scene.boundary_conditions) {
+    const auto& flux = one.*entries.flux;
+    const auto& coefficient = one.*entries.coefficient;
+    if (one.fracture.has_value() != of_fractures || !(flux || coefficient)) continue;
+    conditions.push_back({.boundary = index_of(mesh.boundary_names, one.boundary),
+                          .value = flux ? *flux : *(one.*entries.beyond),
+                          .coefficient = coefficient,
+                          .region = one.region ? index_of(mesh.region_names, *one.region) : -1,
+                          .fracture = one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
+  }
+  return conditions;
+}
+
+bool Outflow::constant_in_time() const {
+  return std::all_of(conditions_.begin(), conditions_.end(),
+                     [](const auto& condition) { return condition.value.constant_in_time(); });
+}
+
+void Outflow::add(std::size_t condition, LocalIndex row, Real area, const std::array<Real, 3>& x) {
+  points_.push_back({condition, row, area, x});
+  const auto& coefficient = conditions_[condition].coefficient;
+  if (!coefficient) return;
+  exchange_.add(row, area * value_at(names_.coefficient, *coefficient, base::at_least(0), x));
+}
+
+void Outflow::bind(const assembly::Context& context, int block, const laws::Fluid& fluid) {
+  block_ = block;
+  n_owned_ = context.layout(block).n_owned();
+  fluid_ = fluid;
+  exchange_.bind(context, block, fluid);
+}
+
+Real Outflow::largest(Real t, bool beyond) const {
+  Real largest = 0;
+  for (const auto& point : points_)
+    if (const auto& condition = conditions_[point.condition]; condition.coefficient.has_value() == beyond)
+      largest = std::max(largest, std::abs(condition.value(point.x, t)));
+  return largest;
+}
+
+void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const {
+  const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+  const std::size_t first = totals.size();
+  for (const auto& one : conditions_) totals.push_back({{names_.inflows, mesh.boundary_names[one.boundary]}, 0});
+  for (const auto& [number, row, area, x] : points_) {
+    if (row >= n_owned_) continue;
+    const auto& [boundary, value, coefficient, region, fracture] = conditions_[number];
+    const Real beyond = value(x, state.t);
+    totals[first + number].value -=
+        area * (coefficient ? (*coefficient)(x, 0) * fluid_.drop(u(row), beyond, 0) : beyond);
+  }
+}
+
+}  // namespace sprekk::physics
