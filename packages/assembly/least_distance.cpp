@@ -32,8 +32,9 @@ Row least_squares(const std::vector<const Row*>& columns, const Row& f) {
   return s;
 }
 
-/// s >= 0 with |sum_k s_k columns[k] - f| least; returns sum_k s_k columns[k] - f.
-Row nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
+/// s >= 0 with |sum_k s_k columns[k] - f| least; returns sum_k s_k columns[k] - f. Nothing, if rounding keeps it from
+/// an end.
+std::optional<Row> nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
   const std::size_t n = columns.size();
   Row s(n, 0), residual(f);
   std::vector<char> passive(n, 0), refused(n, 0);
@@ -42,7 +43,8 @@ Row nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t i = 0; i < f.size() && s[k] > 0; ++i) residual[i] -= s[k] * columns[k][i];
   };
-  for (std::size_t iteration = 0; iteration < 10 * (n + f.size()); ++iteration) {
+  for (std::size_t iteration = 0;; ++iteration) {
+    if (iteration == 10 * (n + f.size())) return {};
     std::size_t best = n;
     Real largest = 1e-13;
     for (std::size_t k = 0; k < n; ++k)
@@ -52,7 +54,7 @@ Row nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
       }
     if (best == n) break;
     passive[best] = 1;
-    for (bool first = true;; first = false) {
+    for (bool first = true;; first = false) {  // each pass but the last makes one passive less
       std::vector<const Row*> chosen;
       std::vector<std::size_t> index;
       for (std::size_t k = 0; k < n; ++k)
@@ -68,11 +70,16 @@ Row nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
         break;
       }
       Real step = 1;
+      std::size_t first_to_vanish = 0;
       for (std::size_t k = 0; k < index.size(); ++k)
-        if (z[k] <= 0) step = std::min(step, s[index[k]] / (s[index[k]] - z[k]));
+        if (const Real here = s[index[k]] / (s[index[k]] - z[k]); z[k] <= 0 && here < step) {
+          step = here;
+          first_to_vanish = k;
+        }
       for (std::size_t k = 0; k < index.size(); ++k) {
         s[index[k]] += step * (z[k] - s[index[k]]);
-        if (step < 1 && z[k] <= 0 && s[index[k]] <= 1e-14) passive[index[k]] = s[index[k]] = 0;
+        if (step < 1 && z[k] <= 0 && (s[index[k]] <= 1e-14 || k == first_to_vanish))
+          passive[index[k]] = s[index[k]] = 0;
       }
       if (step == 1) {
         std::fill(refused.begin(), refused.end(), 0);
@@ -95,10 +102,10 @@ std::optional<std::vector<Real>> least_distance(std::vector<std::vector<Real>> G
   }
   Row f(n + 1, 0);
   f[n] = 1;
-  const Row r = nonnegative_least_squares(G, f);
-  if (!(-r[n] > 1e-10)) return {};
+  const auto r = nonnegative_least_squares(G, f);
+  if (!r || !(-(*r)[n] > 1e-10)) return {};
   Row y(n);
-  for (int i = 0; i < n; ++i) y[i] = -r[i] / r[n];
+  for (int i = 0; i < n; ++i) y[i] = -(*r)[i] / (*r)[n];
   return y;
 }
 

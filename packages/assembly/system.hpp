@@ -166,6 +166,7 @@ class System : public fields::BlockProblem {
   RCP<fields::Vector> committed_;       // displacement; null: not needed
   RCP<fields::Vector> deformation_;     // ghosted displacement without rigid motions; null: not needed
   LoosePieces::Motion driven_;          // where forces out of balance move what is loose, if they do
+  bool nearest_known_ = true;           // the last settle() knew where what is loose comes to lie
   int displacement_ = -1;               // its block, where pieces are watched
   int contact_ = -1;                    // the block of tractions of contact; none
   fields::BlockMatrix linear_;          // what the linear modules write

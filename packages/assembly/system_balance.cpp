@@ -23,7 +23,8 @@ RCP<const fields::Vector> System::proximal(int block) const {
 
 std::string System::loose() const {
   if (!watches_pieces() || !loose_->any()) return "";
-  return loose_->describe(driven_.q.empty() ? loose_->first() : driven_);
+  return loose_->describe(driven_.q.empty() ? loose_->first() : driven_) +
+         (nearest_known_ ? "" : " (the place nearest to the last one was not found)");
 }
 
 void System::find_loose() {

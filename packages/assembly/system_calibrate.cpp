@@ -16,10 +16,11 @@ using fields::BlockVector;
 
 namespace {
 
-constexpr Real usual = 3;      ///< stiffness of the rock, measured as below, over the constant
-constexpr Real near = 10;      ///< factor within which the constant is left alone
-constexpr int n_classes = 25;  ///< decades of stiffness that are told apart
-enum Sum { worked, of_constant, moved, loaded, area, n_sums };
+constexpr Real usual = 3;          ///< stiffness of the rock, measured as below, over the constant
+constexpr Real near = 10;          ///< factor within which the constant is left alone
+constexpr Real noticeable = 1e-4;  ///< share of the scales by which jumps and tractions must have changed
+constexpr int n_classes = 25;      ///< decades of stiffness that are told apart
+enum Sum { worked, of_constant, moved, loaded, noticed, area, n_sums };
 
 bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>{}; }
 
@@ -35,7 +36,8 @@ int System::calibration_class(const Grip& grip) const {
 /// The rock answers a change of traction by a change of jump. From one balanced iterate to the next its stiffness is
 ///   - sum |f| dlambda . dw / sum |f| |dw|^2
 /// over faces of one class that stay closed, weighted by how far each deformation has moved. Measured once: stiffness
-/// does not change, but between later iterates pieces that part move far, which says nothing of it.
+/// does not change, but between later iterates pieces that part move far, which says nothing of it. Where sides come
+/// nearer to each other under a given load no traction changes, and what rounding leaves of it is no stiffness.
 bool System::calibrate(const BlockVector& x, bool first) {
   if (contact_ < 0) return false;
   calibration_.resize(n_classes, 0);
@@ -43,12 +45,14 @@ bool System::calibrate(const BlockVector& x, bool first) {
   refresh_ghosts(x, false);
   const auto before = std::exchange(grips_, grips());
   if (first) return false;
+  const Real stress = blocks_[contact_].kinematic_scale, length = scales_.at(unknowns_[contact_].augmented_by);
   std::array<std::array<Real, n_sums>, n_classes> here{}, all{};
   for (std::size_t f = 0; f < grips_.size(); ++f) {
     const auto& now = grips_[f];
     auto& sums = here[calibration_class(now)];
     const Real size = mesh_->fracture_faces[f].area;
     sums[area] += size;
+    sums[noticed] += size * std::pow(noticeable * std::min(stress, now.modulus * length / extent_), 2);
     if (is_open(now) || is_open(before[f])) continue;
     for (int i = 0; i < 3; ++i) {
       const Real jump = now.jump[i] - before[f].jump[i];
@@ -60,15 +64,14 @@ bool System::calibrate(const BlockVector& x, bool first) {
     }
   }
   Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, n_classes * n_sums, here[0].data(), all[0].data());
-  const Real noticeable =
-      1e-4 * scales_.at(unknowns_[contact_].augmented_by);  // without friction no work is done on closed faces
   bool corrected = false;
   for (int k = 0; k < n_classes; ++k) {
     const auto& sums = all[k];
     if (sums[area] == 0) calibration_[k] = 1;
-    if (calibration_[k] != 0 || !(sums[moved] > noticeable * noticeable * sums[area]) ||
-        !(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded])))
+    if (calibration_[k] != 0 || !(sums[moved] > std::pow(noticeable * length, 2) * sums[area]) ||
+        !(sums[loaded] > sums[noticed]))
       continue;
+    if (!(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded]))) continue;  // no work without friction
     const Real ratio = sums[worked] / sums[of_constant] / usual;
     const bool stays = ratio > 1 / near && ratio < near;
     calibration_[k] = stays ? 1 : ratio;

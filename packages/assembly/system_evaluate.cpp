@@ -130,6 +130,7 @@ void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
   t_ = t;
   dt_ = dt;
+  nearest_known_ = true;
   rates_ = dt > 0 ? Rates::of(scheme_, dt, committed_dt_) : Rates{};  // 0: before the first step
   sized_ = false;
   update_scales(t);

@@ -100,6 +100,7 @@ std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
 
 bool System::settle(BlockVector& x) {
   if (!watches_pieces()) return false;
+  nearest_known_ = true;
   refresh_ghosts(x, false);
   const Real length = blocks_[displacement_].kinematic_scale;
   const Real least = loaded * (contact_ < 0 ? 0 : blocks_[contact_].kinematic_scale);
@@ -116,6 +117,7 @@ bool System::settle(BlockVector& x) {
   if (!loose_->any()) return false;
   auto motion = way_back(x, slides, apart);
   if (!motion) motion = way_back(x, slides, touching);  // it fits in between without room to spare
+  nearest_known_ = motion.has_value();
   if (!motion) return false;
   auto moved = fields::Vector(*x[displacement_], Teuchos::Copy);
   loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *x[displacement_]);

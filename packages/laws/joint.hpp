@@ -90,6 +90,7 @@ struct JointLaw {
   Elastic elastic = {};
   Friction friction = {};
   Gap gap = {};
+  Real sliding_compliance = 0;  ///< mu tan(theta)/K_t, m/Pa: less slip, and so less dilation, under more compression
 
   template <class T>
   KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
@@ -121,15 +122,20 @@ struct JointLaw {
 
 using Joint = JointLaw<>;
 
-/// The constants of the projection for an augmentation c, Pa/m: 1/c_t = 1/c + 1/K_t, 1/c_n = 1/c + 1/K_n. They steer
-/// the iteration; the solution does not depend on them.
+/// The constants of the projection for an augmentation c, Pa/m:
+///   1/c_t = 1/c + 1/K_t,  1/c_n = 1/c + 1/K_n + 2 mu tan(theta)/K_t
+/// The last term is twice what a sliding face gives in along its normal. A face without traction that has moved by p
+/// and dilates overlaps by tan(theta) |p|: with it |z| = c_t |p| exceeds b = mu c_n tan(theta) |p| wherever mu
+/// tan(theta) < 1, so that it slides and does not spring back to p = 0. The constants steer the iteration; the solution
+/// does not depend on them.
 struct Augmentation {
   Real normal, tangential;
 };
 
 template <class Law>
 KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
-  return {1 / (1 / c + law.gap.closure.initial_compliance()), 1 / (1 / c + law.elastic.initial_compliance())};
+  return {1 / (1 / c + law.gap.closure.initial_compliance() + 2 * law.sliding_compliance),
+          1 / (1 / c + law.elastic.initial_compliance())};
 }
 
 /// The contact of normal traction lambda_n after the plastic tangential jump p, of size |p| or what stands for it.

@@ -30,11 +30,16 @@ void start_from_bulk(const CondensedBlock& condensed) {
   if (condensed.bulk.is_null()) return;
   const auto from = condensed.bulk->numbers();
   const auto column = condensed.bulk_column;
-  Kokkos::parallel_for(
-      "copy bulk", Policy(0, from.n_rows()), KOKKOS_LAMBDA(LocalIndex row) {
+  int n_missing = 0;
+  Kokkos::parallel_reduce(
+      "copy bulk", Policy(0, from.n_rows()),
+      KOKKOS_LAMBDA(LocalIndex row, int& missing) {
         RowWalk walk(to, row);
         from.for_row(row, [&](LocalIndex c, std::size_t k) { to.value(walk.find(column(c))) = from.value(k); });
-      });
+        missing += walk.n_missing;
+      },
+      n_missing);
+  check_found(n_missing);
 }
 
 View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
@@ -68,13 +73,18 @@ void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& gro
     const auto coupling = group.coupling[r];
     const auto column_start = group.response[r].column_start;
     const auto column = group.column[r * n_remaining + r];
-    Kokkos::parallel_for(
-        "condensed numbers", rows, KOKKOS_LAMBDA(LocalIndex row) {
+    int n_missing = 0;
+    Kokkos::parallel_reduce(
+        "condensed numbers", rows,
+        KOKKOS_LAMBDA(LocalIndex row, int& missing) {
           RowWalk walk(numbers, row);
           for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair)
             for (auto c = column_start(coupling.slot(pair)); c < column_start(coupling.slot(pair) + 1); ++c)
               marks.set(row, walk.find(column(c)) - walk.row.begin);
-        });
+          missing += walk.n_missing;
+        },
+        n_missing);
+    check_found(n_missing);
   }
   condensed.kept->keep(marks);
   condensed.rows = condensed.kept->rows();

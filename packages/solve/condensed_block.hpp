@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "base/check.hpp"
 #include "solve/elimination_plan.hpp"
 
 namespace sprekk::solve {
@@ -26,7 +27,7 @@ struct OwnColumn {
 };
 
 /// Where columns stand in a row, which has all that are looked for, and none twice: fast for those that come in its
-/// order, or nearly so.
+/// order, or nearly so. Those that it has not are counted, and said to stand where it begins.
 struct RowWalk {
   const fields::NodeRows& numbers;
   const fields::NodeRows::Row row;
@@ -34,6 +35,7 @@ struct RowWalk {
   LocalIndex next = -1;
   std::size_t place_of_next = 0;  // if it is an unknown of the same node
   int n_left = 0;                 // of these
+  int n_missing = 0;
 
   KOKKOS_FORCEINLINE_FUNCTION RowWalk(const fields::NodeRows& of, LocalIndex i) : numbers(of), row(of.row(i)) {}
   KOKKOS_FORCEINLINE_FUNCTION std::size_t find(LocalIndex column) {
@@ -43,20 +45,27 @@ struct RowWalk {
       return place_of_next++;
     }
     const int width = numbers.width;
-    LocalIndex component = 0;
-    std::size_t here = 0;
-    do {
-      here = at;
+    for (std::size_t n_seen = 0; n_seen < row.n_nodes; ++n_seen) {
+      const std::size_t here = at;
       at = at + 1 < row.n_nodes ? at + 1 : 0;
-      component = column - numbers.column(row.first_node + here) * width;
-    } while (component < 0 || component >= width);
-    const std::size_t found = row.begin + here * width + component;
-    next = column + 1;
-    place_of_next = found + 1;
-    n_left = width - 1 - component;
-    return found;
+      const LocalIndex component = column - numbers.column(row.first_node + here) * width;
+      if (component < 0 || component >= width) continue;
+      const std::size_t found = row.begin + here * width + component;
+      next = column + 1;
+      place_of_next = found + 1;
+      n_left = width - 1 - component;
+      return found;
+    }
+    ++n_missing;
+    return row.begin;
   }
 };
+
+/// Throws an Error that says how many columns walks have not found.
+inline void check_found(int n_missing) {
+  SPREKK_CHECK(n_missing == 0, "elimination: {} numbers have no place in the rows of the matrix that must have them",
+               n_missing);
+}
 
 /// J_ab <- A_ab. Local.
 void start_from_bulk(const CondensedBlock& condensed);

@@ -115,14 +115,14 @@ class DirectSolver : public LinearSolver {
   const Teuchos::ParameterList& parameters() const override { return parameters_; }
 
  private:
-  /// Relative residual that rounding leaves where there are balances of rates, which may differ by many orders of
-  /// magnitude: each is known to the rounding of its diagonal times the unknown.
+  /// Relative residual that rounding leaves: each row is known to the rounding of its diagonal times the unknown, which
+  /// may be large next to b, where bodies are all but free or balances of rates differ by many orders of magnitude.
   Real noise(const Vector& b, const Vector& x) const {
-    if (!balances_) return 0;
     Vector Dx(x.getMap());
     matrix_->getLocalDiagCopy(Dx);
     Dx.elementWiseMultiply(1, x, Dx, 0);
-    return std::min(64 * std::numeric_limits<Real>::epsilon() * Dx.norm2() / b.norm2(), most_noise);
+    return std::min(64 * std::numeric_limits<Real>::epsilon() * Dx.norm2() / b.norm2(),
+                    balances_ ? most_noise_of_rates : most_noise);
   }
 
   int run(Job job) {
@@ -262,7 +262,7 @@ class DirectSolver : public LinearSolver {
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false, balances_ = false;
   bool gathers_ = false;  // rank 0 gets all of the matrix
-  static constexpr Real most_noise = 0.5;
+  static constexpr Real most_noise = 1e-2, most_noise_of_rates = 0.5;
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
   std::vector<int> counts_, starts_;    // of the ranks' values

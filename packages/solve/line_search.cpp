@@ -16,7 +16,7 @@ constexpr Real smallest_step = 1.0 / 64, least_damping = 0.1, most_damping = 10;
 constexpr std::size_t memory = 3, patience = 5, trial_period = 10, short_steps = 4;
 constexpr Real least_way = 0.5;
 constexpr Real swing_damping = 0.3;
-constexpr int most_unbalanced = 3;
+constexpr int most_unbalanced = 3, most_begun = 3;
 
 BlockVector blocks_of(const NOX::Abstract::Vector& v) {
   return solve::blocks_of(dynamic_cast<const NOX::Thyra::Vector&>(v).getThyraVector());
@@ -42,6 +42,8 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     report_.failure = "no equilibrium: " + unresisted + ", and meets no resistance";
     return false;
   }
+  const auto first = dx->clone();
+  const bool first_solved = solved;
   std::optional<Trial> found;
   const auto attempt = [&] { return picard_.lags() ? full(group, from, *dx) : search(group, from, *dx); };
   if (solved) found = attempt();
@@ -52,6 +54,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     if (solved) found = attempt();
   }
   if (!found && solved && goes_back(group, from)) return true;
+  if (!found && first_solved) found = begin_anew(group, from, *first);
   if (!found) {
     if (solved) report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
     group = from;
@@ -73,7 +76,20 @@ std::optional<LineSearch::Trial> LineSearch::full(NOX::Abstract::Group& group, c
   return Trial{1, merit};
 }
 
-/// Merits of f that lagged say nothing of f itself.
+/// Merits of states that are far apart may differ by many orders of magnitude: the full step is taken if it leads to
+/// others.
+std::optional<LineSearch::Trial> LineSearch::begin_anew(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                                                        const NOX::Abstract::Vector& dx) {
+  if (picard_.possible() || n_begun_ == most_begun) return {};
+  const auto taken = full(group, from, dx);
+  if (!taken || problem_.state_hash(problem_.states(solution_of(group))) == pattern_) return {};
+  ++n_begun_;
+  damping_ = 0;
+  begin_search();
+  return taken;
+}
+
+/// The next step is full. Merits before it say nothing: f was another function, or the iterate is far from the others.
 void LineSearch::begin_search() {
   since_ = merits_.size();
   monotone_ = false;
@@ -133,11 +149,11 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
     group.setX(group.getX());
     group.computeF();
     merit = problem_.merit(x, residual_of(group));
-    merits_.clear();
-    since_ = 0;
-    visited_.clear();
+    merits_.assign(1, merit);
+    begin_search();
+  } else {
+    merits_.push_back(merit);
   }
-  merits_.push_back(merit);
   compare(problem_.states(x), merit);
   problem_.damp(damping_, swinging_);
   steps_.push_back(step);

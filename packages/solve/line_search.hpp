@@ -26,11 +26,13 @@ struct SearchReport {
 };
 
 /// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
-/// if none is, the step is taken anew with damping 0.1, 1, 10. Before that the step's share of motions that nothing
-/// resists is balanced. When a discrete state comes back and the merit is no better than then, iterates would go round
-/// in circles: from there on only the last merit counts. Entities whose state changes, and did in one of the two
-/// iterates before, are damped, by 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when
-/// there is a search, and which steps are taken back.
+/// if none is, the step is taken anew with damping 0.1, 1, 10. Where that does not help, but the full first step leads
+/// to other discrete states, it is taken as it is, and the search begins anew, three times in a solve; so it does after
+/// calibrate() has changed f. Before a step is taken its share of motions that nothing resists is balanced. When a
+/// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
+/// only the last merit counts. Entities whose state changes, and did in one of the two iterates before, are damped, by
+/// 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when there is a search, and which steps
+/// are taken back.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
@@ -50,6 +52,8 @@ class LineSearch : public NOX::LineSearch::Generic {
   std::optional<Trial> full(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                             const NOX::Abstract::Vector& dx) const;
   void begin_search();
+  std::optional<Trial> begin_anew(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
+                                  const NOX::Abstract::Vector& dx);
   bool goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from);
   bool takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken);
   Real limit() const;
@@ -62,6 +66,7 @@ class LineSearch : public NOX::LineSearch::Generic {
   Picard& picard_;
   SearchReport& report_;
   int n_unbalanced_ = 0;
+  int n_begun_ = 0;  // how often the search began anew since no step was found
   Real damping_ = 0;
   std::vector<char> states_;             // of the last iterate
   std::vector<Real> swinging_;           // [as states()] damping of entities that go to and fro

@@ -174,9 +174,11 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const auto column = group.column[r * n_remaining() + s];
   const auto numbers = block(r, s).matrix->numbers();
   const auto values_of_component = values_of_components(group, r);
+  int n_missing = 0;
   in_widest_instructions([&] {
-    Kokkos::parallel_for(
-        "condense", Policy(0, coupling.row_start.extent(0) - 1), KOKKOS_LAMBDA(LocalIndex row) {
+    Kokkos::parallel_reduce(
+        "condense", Policy(0, coupling.row_start.extent(0) - 1),
+        KOKKOS_LAMBDA(LocalIndex row, int& missing) {
           constexpr int strip = Response::strip;
           Real factor[max_small_size];
           RowWalk walk(numbers, row);
@@ -201,8 +203,11 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
                 numbers.value(walk.find(column(first + begin + k))) -= sums[k];
             }
           }
-        });
+          missing += walk.n_missing;
+        },
+        n_missing);
   });
+  check_found(n_missing);
 }
 
 /// [component of an entity] the values of A_rz, null where there is none.

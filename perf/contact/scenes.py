@@ -123,6 +123,8 @@ def blocks():
         yield Scene(f"on one face {dim}D", f"contact/one_face_{dim}d.xml", exact=exact.hanging, quick=dim == 2)
     yield Scene("layers 2D", "contact/layers_2d.xml", quick=True)
     yield Scene("layers 2D 1e-3", "contact/layers_2d.xml", layers(0.001))
+    yield Scene("layers 2D 1e-5", "contact/layers_2d.xml", layers(1e-5) + ("Mesh.cells={20, 5}",))
+    yield Scene("masonry soft 2D", "contact/masonry_soft_2d.xml", newton=20)
     yield Scene("sliver 2D", "contact/sliver_2d.xml", quick=True)
     yield Scene("sliver 3D", "contact/sliver_3d.xml")
 

@@ -313,6 +313,10 @@ JointParameters JointMaterial::joint(const Point& x) const {
   set_part(joint.law.gap.dilation, laws::DilationKinds(), dilation, *this, x);
   set_part(joint.law.gap.closure, laws::ClosureKinds(), closure, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
+  const Real zero = 0;  // all that laws have kept
+  const Real dilates = dilation_slope(joint.law, {0, 0, {}, {}, {&zero, 0}});
+  joint.law.sliding_compliance =
+      std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
   joint.initial_aperture = initial_aperture(x, 0);
   return joint;
 }

@@ -139,6 +139,23 @@ TEST(JointLaw, AugmentationIsInSeriesWithTheJoint) {
   EXPECT_DOUBLE_EQ(augmentation(law, 4.0).tangential, 4);
 }
 
+/// A face without traction that has moved, and dilates: it slides, however soft the joint is, where mu tan(theta) < 1.
+TEST(JointLaw, AFaceThatOverlapsByItsDilationSlides) {
+  for (const Real compliance : {1e-3, 1.0, 1e3, 1e6})
+    for (const Real mu : {0.1, 0.9}) {
+      SimpleJoint law;
+      law.friction.coefficient = mu;
+      law.gap.dilation.tangent = 0.9;
+      law.elastic.inverse_stiffness = compliance;
+      law.sliding_compliance = mu * 0.9 * compliance;
+      const Real w[] = {0, 0.6, -0.8}, lambda[] = {0, 0, 0}, old[] = {0, 0};
+      Real R[3];
+      EXPECT_EQ(static_cast<int>(contact_residual<3>(law, augmentation(law, 2.0), w, lambda, old, R)),
+                static_cast<int>(ContactState::slip))
+          << compliance << " " << mu;
+    }
+}
+
 /// At a point that is no solution: the bound comes from the projected normal traction y, not from lambda_n.
 TEST(JointLaw, ResidualIsThatOfTheProjections) {
   const SimpleJoint law = reference_joint();

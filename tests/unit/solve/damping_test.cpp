@@ -126,6 +126,24 @@ TEST(Damping, SaysWhereNothingHelps) {
   for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_EQ(x[0]->getData()[i], 0.5);  // the last iterate
 }
 
+/// From 0 to the solution 5 the way leads over 3, where the merit is four thousand times as large; it is taken where
+/// the state is another one there.
+TEST(Damping, SearchBeginsAnewInOtherStates) {
+  const auto region = [](Real x) { return x < -1 ? 0 : x < 1e-4 ? 1 : 2; };
+  for (const bool states : {true, false}) {
+    ScalarProblem problem(
+        Tpetra::getDefaultComm(), 5,
+        [=](Real x, Real, Real) { return region(x) == 2 ? 100 * (x - 5) : x - 3 * region(x); },
+        [=](Real x, Real, Real) { return region(x) == 2 ? 100 : 1; });
+    if (states) problem.state_of = [=](Real x) { return static_cast<char>(region(x)); };
+    Newton newton(problem, {});
+    auto x = problem.constant(-10);
+    const auto report = newton.solve(x);
+    EXPECT_EQ(report.converged, states) << report.reason;
+    for (const Real found : x[0]->getData()) EXPECT_NEAR(found, states ? 5 : 0, 1e-12);
+  }
+}
+
 /// exp(-x) falls for ever: each step is one further.
 TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
   ScalarProblem problem(

@@ -3,6 +3,7 @@
 #include <Tpetra_Core.hpp>
 
 #include "dense.hpp"
+#include "solve/condensed_block.hpp"
 #include "solve/condensed_solve.hpp"
 #include "solve/small_lu.hpp"
 
@@ -17,6 +18,26 @@ std::vector<Real> some_values(std::size_t n) {
   std::vector<Real> values(n);
   for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(3.7 * i + 1);
   return values;
+}
+
+/// A row with the unknowns 8, 9, 2, 3, in this order.
+TEST(RowWalk, FindsWhatARowHasAndCountsWhatItHasNot) {
+  fields::NodeRows numbers{.height = 1, .width = 2};
+  numbers.start = View<std::size_t*>("start", 2);
+  numbers.start(1) = 2;
+  numbers.column = View<LocalIndex*>("column", 2);
+  numbers.column(0) = 4;
+  numbers.column(1) = 1;
+  solve::RowWalk walk(numbers, 0);
+  EXPECT_EQ(walk.find(9), 1u);
+  EXPECT_EQ(walk.find(2), 2u);
+  EXPECT_EQ(walk.find(3), 3u);
+  EXPECT_NO_THROW(solve::check_found(walk.n_missing));
+  walk.find(6);
+  walk.find(0);
+  EXPECT_EQ(walk.n_missing, 2);
+  EXPECT_EQ(walk.find(8), 0u);
+  EXPECT_THROW(solve::check_found(walk.n_missing), Error);
 }
 
 /// A state with open and closed faces.

@@ -21,6 +21,26 @@ TEST(Found, SoftJointsThatDilate) {
 /// rock at a fracture hold them fast.
 TEST(Found, ThinLayers) { EXPECT_EQ(failure("contact/thin_layers_2d.xml"), ""); }
 
+/// The joints' own stretch is long: a face that parts has moved far, and dilates; it must slide, not spring back.
+TEST(Found, BricksWithSoftJointsThatDilate) {
+  const auto found = run(read_scene("contact/masonry_soft_2d.xml"));
+  EXPECT_EQ(found.failure, "");
+  for (const int newton : found.newton_iterations) EXPECT_LE(newton, 20);
+}
+
+/// A hundred thousandth as thick as they are long: their motions are long next to what deforms them, and no direct
+/// solve leaves less than the rounding of these motions.
+TEST(Found, VeryThinLayers) {
+  constexpr Real h = 1e-5;
+  std::vector<std::string> entries = {"Mesh.cells={20, 5}", fmt::format("Mesh.upper corner={{1, {:.17g}}}", 5 * h),
+                                      fmt::format("Tables.shear.values={{0, 0, {0}, -{0}}}", 0.05 * h),
+                                      fmt::format("Tables.press.values={{0, {0}, {0}}}", 5e-4 * h)};
+  for (int k = 1; k < 5; ++k)
+    for (const auto& [corner, x] : {std::pair{"lower", 0}, {"upper", 1}})
+      entries.push_back(fmt::format("Mesh.fractures.joint {}.{} corner={{{}, {:.17g}}}", k, corner, x, k * h));
+  EXPECT_EQ(failure("contact/layers_2d.xml", entries), "");
+}
+
 /// The displacement is so large that its rounding is seen in the jumps.
 TEST(Found, StiffRockOnSoft) {
   EXPECT_EQ(failure("contact/soft_foundation_2d.xml", {"Time.end=1", "Time.steps=1"}), "");

@@ -32,6 +32,36 @@ TEST(JointsInSeries, EqualOnesShareTheSlip) {
     }
 }
 
+/// Pressed by a given load, then sheared: joints close while no traction changes, which tells nothing of the stiffness
+/// of the rock. The weakest joint slides, at mu N.
+TEST(JointsInSeries, TheWeakestSlidesUnderAGivenLoad) {
+  constexpr Real N = 0.1, tau = 0.5 * N, G = 1, compliance = 1 / G + 1.0 / 1 + 1.0 / 2 + 1.0 / 4;
+  for (const int dim : {2, 3})
+    for (const auto& cell : cells_of(dim)) {
+      const std::string across = dim == 2 ? "" : ", 0", top = dim == 2 ? "north" : "top";
+      const auto scene =
+          read_scene(fmt::format("verification/stack_{}d.xml", dim),
+                     {"Mesh.cell=" + cell, dim == 2 ? "Mesh.cells={5, 8}" : "Mesh.cells={3, 2, 4}", "Time.steps=4",
+                      "Tables.shear.values={0, 0, 0.5}", "Boundary conditions.load.boundary=" + top,
+                      fmt::format("Boundary conditions.load.traction={{0{}, {}}}", across, -N),
+                      fmt::format("Boundary conditions.moved.displacement={{shear(t){}, free}}", across)});
+      model::Model model(scene, Tpetra::getDefaultComm());
+      for (const Real t : scene.time.times()) {
+        const auto report = model.step_to(t);
+        ASSERT_TRUE(report.converged) << cell << " " << report.reason;
+        const Real slip = t > 1 ? 0.5 * (t - 1) - tau * compliance : 0;
+        const Outputs out(model);
+        for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
+          const auto& name = model.mesh().fracture_names[model.mesh().fracture_faces[f].fracture];
+          const auto traction = out.vector("traction local", f);
+          EXPECT_NEAR(traction[0], -N, 1e-11);
+          EXPECT_NEAR(std::hypot(traction[1], traction[2]), t > 1 ? tau : 0, 1e-11);
+          EXPECT_NEAR(out.scalar("slip", f), name == "middle" ? slip : 0, 1e-10) << cell << " " << t << " " << name;
+        }
+      }
+    }
+}
+
 /// Five layers of this thickness.
 model::Scene layers(Real h) {
   std::vector<std::string> entries = {fmt::format("Mesh.upper corner={{1, {:.17g}}}", 5 * h),
