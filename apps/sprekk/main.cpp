@@ -102,6 +102,8 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   if (command == "point") {
     const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
     if (speaks) model::write_csv(std::cout, states);
+    for (const auto& state : states)
+      if (speaks && !state.remark.empty()) std::cerr << "sprekk: t = " << state.t << ": " << state.remark << '\n';
   }
   if (command == "network") {
     const auto description = model::network_description(*comm, options.scene, options.overrides);

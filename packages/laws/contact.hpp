@@ -19,20 +19,30 @@ struct Numbers {
 using History = Numbers<const Real>;
 
 /// A point of a joint; tension is positive, tangential vectors are (t1[, t2]) in the frame of the face. T carries
-/// derivatives in jump and traction.
+/// derivatives in jump and traction. Where the elastic part of the tangential jump is asked for, u_t^p, the slip of the
+/// step and the separation are not yet known, and 0.
 template <class T>
 struct Contact {
-  T lambda_n = 0;                  ///< normal traction, Pa: for the bound the projected one, which is not positive
-  T plastic_slip = 0;              ///< |u_t^p|, m; not yet known, 0, where the elastic part is asked for
-  T plastic_jump[2] = {0, 0};      ///< u_t^p, m; the same
+  T lambda_n = 0;                  ///< normal traction, Pa: for the bound the projected one
+  T shear = 0;                     ///< |lambda_t|, Pa
+  T plastic_slip = 0;              ///< |u_t^p|, m
+  T slip_of_step = 0;              ///< |u_t^p - last_plastic_jump|, m
+  T separation = 0;                ///< w_n - g, m, by which the faces are apart; bonds alone may ask for it
+  T friction_left = 1;             ///< what damage leaves of friction; for laws that apply it themselves
+  T dilation_left = 1;             ///< the same of dilation
+  T plastic_jump[2] = {0, 0};      ///< u_t^p, m
+  T wear = 1;                      ///< k, by which slip counts in damage; damage alone may ask for it
   Real last_plastic_jump[2] = {};  ///< u_t^p at the end of the last step, m
+  bool open = false;               ///< bears no traction; known at the end of a step alone
   History history = {};            ///< the numbers of the law that is asked
 
-  /// The same for a law whose numbers begin later by `offset`.
-  KOKKOS_INLINE_FUNCTION Contact after(int offset) const {
+  /// Calls use(contact) with the numbers of a law that begin later by `offset`.
+  template <class Use>
+  KOKKOS_INLINE_FUNCTION auto after(int offset, const Use& use) const {
+    if (offset == 0) return use(*this);
     Contact other = *this;
     other.history = history.from(offset);
-    return other;
+    return use(other);
   }
 };
 

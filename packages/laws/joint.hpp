@@ -69,55 +69,136 @@ struct Closure : ClosureKinds {
     return visit([](const auto& law) { return law.initial_compliance(); });
   }
 };
+struct Bond : BondKinds {
+  using BondKinds::BondKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return law.cohesion(at); });
+  }
+};
+struct Driver : DriverKinds {
+  using DriverKinds::DriverKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T wear(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return T(law.wear(at)); });
+  }
+};
+struct Damage : DamageKinds {
+  using DamageKinds::DamageKinds;
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
+    return visit([&](const auto& law) { return law.left(at); });
+  }
+};
 
-/// The gap (14) below which the faces touch, m: g = g0 + dilation + closure, the latter negative under compression.
+/// What the gap (14) consists of.
 template <class Dilation = laws::Dilation, class Closure = laws::Closure>
 struct NormalGap {
   Real initial = 0;  ///< g0, m
   Dilation dilation = {};
   Closure closure = {};
-
-  template <class T>
-  KOKKOS_INLINE_FUNCTION T operator()(const Contact<T>& at) const {
-    return initial + dilation.opening(at) + closure.opening(at.after(n_history(dilation)));
-  }
 };
 
-/// A joint: how it deforms elastically, what bounds its friction, where its faces touch. Each part is a law of its role
-/// or one of several. The numbers that they keep of a face follow each other: dilation, closure, friction, elasticity.
+/// A joint: how it deforms elastically, what bounds its friction, where its faces touch, what bonds them, and what slip
+/// wears. Each part is a law of its role or one of several. The numbers that they keep of a face follow each other:
+/// dilation, closure, friction, elasticity, bond, damage.
 template <class Elastic = Shear, class Friction = laws::Friction, class Gap = NormalGap<>>
 struct JointLaw {
   Elastic elastic = {};
   Friction friction = {};
   Gap gap = {};
+  Bond bond = {};
+  Damage damage = {};
+  Driver driver = {};
   Real sliding_compliance = 0;  ///< mu tan(theta)/K_t, m/Pa: less slip, and so less dilation, under more compression
 
+  /// The gap (14) below which the faces touch, m: g = g0 + dilation + closure, the latter negative under compression.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T normal_gap(const Contact<T>& at) const {
+    T opens = gap.dilation.opening(at);
+    if (wears()) opens *= left(at).dilation;
+    return gap.initial + opens + closure(at);
+  }
+  /// What compression takes from the gap.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T closure(const Contact<T>& at) const {
+    return at.after(laws::n_history(gap.dilation), [&](const auto& own) { return gap.closure.opening(own); });
+  }
+  /// The bound on |lambda_t|, Pa.
   template <class T>
   KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
-    return friction.bound(at.after(of_gap()));
+    const T b = friction_bound(at);
+    return is_bonded() ? with_cohesion(at, b, cohesion(at)) : b;
+  }
+  /// That of friction alone.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T friction_bound(const Contact<T>& at) const {
+    return wears() ? worn_friction(at) : unworn_friction(at);
+  }
+  /// Friction's bound b and what a bond adds to it; under tension never below 0.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T with_cohesion(const Contact<T>& at, const T& b, const Cohesion<T>& cohesion) const {
+    const T sum = b + cohesion.shear;
+    return at.lambda_n > 0 && sum < 0 ? T(0) : sum;
+  }
+  KOKKOS_INLINE_FUNCTION bool is_bonded() const {
+    return bond.visit([](const auto& law) { return !std::is_same_v<std::decay_t<decltype(law)>, NoBond>; });
   }
   template <class T>
   KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
-    return elastic.compliance(at.after(of_gap() + laws::n_history(friction)));
+    return at.after(of_gap() + laws::n_history(friction), [&](const auto& own) { return elastic.compliance(own); });
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
+    return at.after(before_bond(), [&](const auto& own) { return bond.cohesion(own); });
+  }
+  /// What damage leaves of friction and dilation.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
+    if (!wears()) return {};
+    Contact<T> worn = at;
+    worn.wear = driver.wear(at);
+    return worn.after(before_bond() + laws::n_history(bond), [&](const auto& own) { return damage.left(own); });
   }
   KOKKOS_INLINE_FUNCTION int n_history() const {
-    return of_gap() + laws::n_history(friction) + laws::n_history(elastic);
+    return before_bond() + laws::n_history(bond) + laws::n_history(damage);
   }
   /// Moves the numbers of a face to the end of a step; `at` is its end, with the numbers of its beginning.
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+  KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& kept) const {
     int offset = 0;
     const auto move = [&](const auto& law) {
-      laws::commit(law, at.after(offset), kept.from(offset));
+      if (laws::n_history(law) == 0) return;
+      at.after(offset, [&](const auto& own) { return laws::commit(law, own, kept.from(offset)), 0; });
       offset += laws::n_history(law);
     };
+    at.wear = driver.wear(at);
     move(gap.dilation);
     move(gap.closure);
     move(friction);
     move(elastic);
+    move(bond);
+    move(damage);
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION bool wears() const { return laws::n_history(damage) > 0; }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T unworn_friction(const Contact<T>& at) const {
+    return at.after(of_gap(), [&](const auto& own) { return friction.bound(own); });
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T worn_friction(const Contact<T>& at) const {
+    const auto rest = left(at);
+    if (!laws::takes_damage(friction)) return rest.friction * unworn_friction(at);
+    Contact<T> worn = at;
+    worn.friction_left = rest.friction;
+    worn.dilation_left = rest.dilation;
+    return unworn_friction(worn);
+  }
   KOKKOS_INLINE_FUNCTION int of_gap() const { return laws::n_history(gap.dilation) + laws::n_history(gap.closure); }
+  KOKKOS_INLINE_FUNCTION int before_bond() const {
+    return of_gap() + laws::n_history(friction) + laws::n_history(elastic);
+  }
 };
 
 using Joint = JointLaw<>;
@@ -153,72 +234,127 @@ KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, cons
   return at;
 }
 
+/// A converged contact of the jump w and the traction lambda after the plastic tangential jump p.
+template <int dim, class Law>
+KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState state, const Real (&w)[dim],
+                                               const Real (&lambda)[dim], const Real (&p)[dim - 1],
+                                               const Real (&p_old)[dim - 1], const History& history) {
+  auto at = contact<dim>(lambda[0], norm(p), p, p_old, history);
+  Real step[dim - 1], shear[dim - 1];
+  for (int i = 0; i < dim - 1; ++i) {
+    step[i] = p[i] - p_old[i];
+    shear[i] = lambda[i + 1];
+  }
+  at.slip_of_step = norm(step);
+  at.shear = norm(shear);
+  at.separation = w[0] - law.normal_gap(at);
+  at.open = state == ContactState::open;
+  return at;
+}
+
+/// |v| for the direction z/size: where v is zero to rounding, c|v| <= 1e-13 size, its own direction is noise; |v| then
+/// grows along z.
+template <int n, class T>
+KOKKOS_INLINE_FUNCTION T length_along(const T (&v)[n], const T (&z)[n], const T& size, Real c) {
+  T length = norm(v);
+  if (size > 0 && c * length <= 1e-13 * size) {
+    length = 0;
+    for (int i = 0; i < n; ++i) length += v[i] * z[i] / size;
+  }
+  return length;
+}
+
+/// If v.z < 0 <= old.z, gives the length the derivatives that it has where v is along z.
+template <int n, class T>
+KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], const T (&z)[n], const T& size,
+                                       T& length) {
+  T along = 0;
+  Real old_along = 0;
+  for (int i = 0; i < n; ++i) {
+    along += v[i] * (value_of(z[i]) / value_of(size));
+    old_along += old[i] * value_of(z[i]);
+  }
+  if (!(along < 0 && old_along >= 0)) return false;
+  length = along + (value_of(length) - value_of(along));
+  return true;
+}
+
 /// Contact and elastic-plastic split (9)-(14) as one residual R(w, lambda) = 0 of projections, Pa:
 ///   p = w_t - u_t^e(lambda), e.g. w_t - lambda_t/K_t         plastic tangential jump
-///   y = lambda_n + c_n (w_n - g),  q = min(y, 0)             R_n = lambda_n - q
-///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t           open,  y > 0
-///                                                            R_t = lambda_t - z       stick, |z| <= b
+///   o = w_n - g,  y = lambda_n + c_n o,  T = strength        R_n = -c_n o             touching, y <= T: q = y
+///                                                            R_n = lambda_n - t(o)    parted but bonded: q = t(o)
+///                                                            R = lambda               open
+///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Faces that just touch (y = 0) are closed and stick; so do those that a step finds on the limit, |z| = b to 1e-10,
-/// until they move, c_t |p - p_old| > 1e-10 b: else rounding would say which of them slip. p_old is the plastic jump at
-/// the end of the last step. Where p is zero to rounding its direction is noise; |p| then grows along z, as it does
-/// when sliding begins.
+/// Without a bond T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and
+/// stick; so do those that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b:
+/// else rounding would say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p -
+/// p_old is zero to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
 ///
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
-/// it is where p is along z.
+/// it is where p is along z. The same holds for p - p_old, which is along z in solutions.
 ///
-/// `history` holds what the laws have kept of the face. A bound b(0) > 0 holds as long as the faces touch: an open face
-/// bears no traction. A tensile strength would need q = min(y, strength) while a number of the history says that the
-/// face is whole, here and in split_jump().
+/// `history` holds what the laws have kept of the face.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1], T (&R)[dim],
                                                      const History& history = {}) {
   T p[dim - 1] = {}, step[dim - 1], z[dim - 1];
-  const T compliance = law.compliance(contact<dim>(lambda[0], T(0), p, p_old, history));
+  auto at = contact<dim>(lambda[0], T(0), p, p_old, history);
+  const T compliance = law.compliance(at);
   for (int i = 0; i < dim - 1; ++i) {
-    p[i] = w[i + 1] - compliance * lambda[i + 1];
-    step[i] = c.tangential * (p[i] - p_old[i]);
-    z[i] = lambda[i + 1] + step[i];
+    at.plastic_jump[i] = p[i] = w[i + 1] - compliance * lambda[i + 1];
+    step[i] = p[i] - p_old[i];
+    z[i] = lambda[i + 1] + c.tangential * step[i];
   }
   const T size = norm(z);
-  T distance = norm(p);
-  if (size > 0 && c.tangential * distance <= 1e-13 * size) {
-    distance = 0;
-    for (int i = 0; i < dim - 1; ++i) distance += p[i] * z[i] / size;
+  at.plastic_slip = length_along(p, z, size, c.tangential);
+  const bool bonded = law.is_bonded(), remembers = law.n_history() > 0;
+  if (remembers) {  // then laws may ask for these
+    T shear[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) shear[i] = lambda[i + 1];
+    at.shear = norm(shear);
+    at.slip_of_step = length_along(step, z, size, c.tangential);
   }
-  T penetration = c.normal * (w[0] - law.gap(contact<dim>(lambda[0], distance, p, p_old, history)));
-  T y = lambda[0] + penetration;
-  if (y > 0) {
+  T b = 0;
+  Cohesion<T> cohesion;
+  // the normal component: its residual, and the bound that goes with it
+  const auto is_open = [&] {
+    at.lambda_n = lambda[0];
+    at.separation = w[0] - law.normal_gap(at);
+    const T pushed = c.normal * at.separation, y = lambda[0] + pushed;
+    if (bonded) cohesion = law.cohesion(at);
+    const bool parted = y > cohesion.strength;
+    if (parted && cohesion.lost) return true;
+    if (parted) {
+      R[0] = lambda[0] - cohesion.tension;
+      at.lambda_n = cohesion.tension;
+    } else {
+      R[0] = -pushed;
+      at.lambda_n = y;
+    }
+    b = law.friction_bound(at);
+    if (bonded) b = law.with_cohesion(at, b, cohesion);
+    return false;
+  };
+  if (is_open()) {
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
-  R[0] = -penetration;
-  T b = law.bound(contact<dim>(y, distance, p, p_old, history));
-  if (size <= b || (size <= (1 + 1e-10) * b && norm(step) <= 1e-10 * b)) {
-    for (int i = 0; i < dim - 1; ++i) R[i + 1] = -step[i];
+  if (size <= b || (size <= (1 + 1e-10) * b && c.tangential * norm(step) <= 1e-10 * b)) {
+    for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
   }
-  T along = 0;
-  Real old_along = 0;
-  for (int i = 0; i < dim - 1; ++i) {
-    along += p[i] * (value_of(z[i]) / value_of(size));
-    old_along += p_old[i] * value_of(z[i]);
-  }
-  if (along < 0 && old_along >= 0) {
-    distance = along + (value_of(distance) - value_of(along));
-    penetration = c.normal * (w[0] - law.gap(contact<dim>(lambda[0], distance, p, p_old, history)));
-    y = lambda[0] + penetration;
-    b = law.bound(contact<dim>(y, distance, p, p_old, history));
-    R[0] = -penetration;
-  }
+  const Real none[dim - 1] = {};
+  const bool back = turn_along(p, p_old, z, size, at.plastic_slip);
+  if ((remembers && turn_along(step, none, z, size, at.slip_of_step)) || back) is_open();
   for (int i = 0; i < dim - 1; ++i) R[i + 1] = lambda[i + 1] - b * z[i] / size;
   return ContactState::slip;
 }
 
-/// The parts of the jump of a converged state (9): u^e = (B(lambda_n), lambda_t/K_t) where the faces touch, zero where
-/// they are open; u^p = w - u^e.
+/// The parts of the jump of a converged state (9): u^e = (B(lambda_n) - B(0), lambda_t/K_t) where the faces bear
+/// traction, zero where they are open; u^p = w - u^e. B(0) is closure that unloading does not recover.
 template <int dim, class Law>
 KOKKOS_INLINE_FUNCTION void split_jump(const Law& law, ContactState state, const Real (&w)[dim],
                                        const Real (&lambda)[dim], const Real (&p_old)[dim - 1], Real (&elastic)[dim],
@@ -230,8 +366,8 @@ KOKKOS_INLINE_FUNCTION void split_jump(const Law& law, ContactState state, const
     elastic[i] = open ? 0 : compliance * lambda[i];
     plastic[i] = p[i - 1] = w[i] - elastic[i];
   }
-  const auto at = contact<dim>(lambda[0], norm(p), p, p_old, history);
-  elastic[0] = open ? 0 : law.gap.closure.opening(at.after(n_history(law.gap.dilation)));
+  const auto closure = [&](Real normal) { return law.closure(contact<dim>(normal, norm(p), p, p_old, history)); };
+  elastic[0] = open ? 0 : closure(lambda[0]) - closure(0);
   plastic[0] = w[0] - elastic[0];
 }
 

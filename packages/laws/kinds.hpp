@@ -48,6 +48,19 @@ constexpr int history_size = 0;
 template <class K>
 constexpr int history_size<K, std::void_t<decltype(K::n_history)>> = K::n_history;
 
+/// Whether a friction law applies itself what damage leaves: its static takes_damage. Else its bound is multiplied by
+/// it.
+template <class K, class = void>
+constexpr bool applies_damage = false;
+template <class K>
+constexpr bool applies_damage<K, std::void_t<decltype(K::takes_damage)>> = K::takes_damage;
+
+/// Whether K is a Kinds below, or derived from one.
+template <class K, class = void>
+constexpr bool is_one_of_several = false;
+template <class K>
+constexpr bool is_one_of_several<K, std::void_t<typename K::OneOfSeveral>> = true;
+
 /// Storage for one of several laws, which are copied as bytes.
 template <class K, class... More>
 union OneOf {
@@ -94,6 +107,7 @@ class Kinds {
   static_assert((std::is_trivially_copyable_v<Ks> && ...), "laws are copied to the device as bytes");
 
  public:
+  using OneOfSeveral = Kinds;
   Kinds() = default;
   template <class K, class = std::enable_if_t<(std::is_same_v<K, Ks> || ...)>>
   KOKKOS_INLINE_FUNCTION Kinds(const K& law) {
@@ -106,13 +120,7 @@ class Kinds {
     return visit(use, std::index_sequence_for<Ks...>());
   }
 
-  KOKKOS_INLINE_FUNCTION int n_history() const {
-    if constexpr ((history_size<Ks> + ... + 0) == 0) {
-      return 0;
-    } else {
-      return visit([](const auto& law) { return history_size<std::decay_t<decltype(law)>>; });
-    }
-  }
+  KOKKOS_INLINE_FUNCTION int n_history() const { return n_history_; }
 
  private:
   template <class K, std::size_t... i>
@@ -121,6 +129,7 @@ class Kinds {
       constexpr std::size_t k = decltype(index)::value;
       if constexpr (std::is_same_v<K, std::decay_t<decltype(law_.template get<k>())>>) {
         kind_ = static_cast<int>(k);
+        n_history_ = history_size<K>;
         law_.template get<k>() = law;
       }
     };
@@ -134,31 +143,41 @@ class Kinds {
   }
 
   int kind_ = 0;
+  int n_history_ = history_size<std::decay_t<decltype(std::declval<OneOf<Ks...>>().first)>>;
   OneOf<Ks...> law_;
 };
 
 /// How many numbers a law keeps of a face; of several kinds, the one that it is.
 template <class K>
-KOKKOS_INLINE_FUNCTION int n_history(const K&) {
-  return history_size<K>;
+KOKKOS_INLINE_FUNCTION int n_history(const K& law) {
+  if constexpr (is_one_of_several<K>) {
+    return law.n_history();
+  } else {
+    return history_size<K>;
+  }
 }
-template <class... Ks>
-KOKKOS_INLINE_FUNCTION int n_history(const Kinds<Ks...>& law) {
-  return law.n_history();
+
+/// Whether a friction law, or of several kinds the one that it is, applies itself what damage leaves.
+template <class K>
+KOKKOS_INLINE_FUNCTION bool takes_damage(const K& law) {
+  if constexpr (is_one_of_several<K>) {
+    return law.visit([](const auto& one) { return applies_damage<std::decay_t<decltype(one)>>; });
+  } else {
+    return applies_damage<K>;
+  }
 }
 
 /// Moves the numbers that a law keeps to the end of a step: law.commit(contact, numbers), if it keeps any.
 template <class K, class At, class Kept>
 KOKKOS_INLINE_FUNCTION void commit(const K& law, const At& at, const Kept& kept) {
-  if constexpr (history_size<K> != 0) law.commit(at, kept);
-}
-template <class At, class Kept, class... Ks>
-KOKKOS_INLINE_FUNCTION void commit(const Kinds<Ks...>& law, const At& at, const Kept& kept) {
-  if constexpr ((history_size<Ks> + ... + 0) != 0)
+  if constexpr (is_one_of_several<K>) {
     law.visit([&](const auto& one) {
       commit(one, at, kept);
       return 0;
     });
+  } else if constexpr (history_size<K> != 0) {
+    law.commit(at, kept);
+  }
 }
 
 }  // namespace sprekk::laws

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "base/xml.hpp"
 #include "physics/material_library.hpp"
+#include "physics/mechanics/joint_material.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -29,6 +30,7 @@ class PointDriver {
       : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
+    if (!point_.initial_traction.empty()) press();
   }
 
   PointState step(Real t) {
@@ -39,7 +41,7 @@ class PointDriver {
     for (Start start : {Start{false, false}, {true, false}, {true, true}}) {
       for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
         for (int i = 0; i < 2 * dim; ++i)
-          x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? d_[i] : 0;
+          x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
         const std::string failure = solve(factor, start.damped);
         if (failure.empty()) return accept(t);
         if (reason.empty()) reason = failure;
@@ -52,6 +54,23 @@ class PointDriver {
   }
 
  private:
+  /// Starts from the initial traction, and the jump that the joint has under it.
+  void press() {
+    auto at = laws::contact<dim>(point_.initial_traction[0], laws::norm(p_old_), p_old_, p_old_, {kept_.data()});
+    SPREKK_CHECK(at.lambda_n <= 0, "point: the initial traction is {} along the normal; it must press, or be 0",
+                 at.lambda_n);
+    std::copy_n(point_.initial_traction.begin(), dim, base_);
+    Real shear[dim - 1];
+    std::copy_n(base_ + 1, dim - 1, shear);
+    at.shear = laws::norm(shear);
+    SPREKK_CHECK(at.shear <= law_.bound(at), "point: the initial traction shears by {}; the joint bears {}", at.shear,
+                 law_.bound(at));
+    rest_[0] = law_.normal_gap(at);
+    for (int i = 1; i < dim; ++i) rest_[i] = p_old_[i - 1] + law_.compliance(at) * base_[i];
+    std::copy_n(rest_, dim, x_);
+    std::copy_n(base_, dim, x_ + dim);
+  }
+
   /// Where Newton's method starts, the last state or one without traction, and whether its steps are damped. These and
   /// the factor on the typical stiffness steer the iteration, not the solution.
   struct Start {
@@ -92,7 +111,7 @@ class PointDriver {
     const Real c = typical_stiffness();
     c_ = laws::augmentation(law_, c * factor);
     for (int i = 0; i < dim; ++i) {
-      if (control(i) == "jump") x_[i] = d_[i];
+      if (control(i) == "jump") x_[i] = rest_[i] + d_[i];
       if (control(i) == "traction") x_[dim + i] = d_[i];
     }
     Real f[2 * dim], J[4 * dim * dim], scale[2 * dim];
@@ -153,9 +172,10 @@ class PointDriver {
     }
     const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R, {kept_.data()});
     for (int i = 0; i < dim; ++i) {
-      const Fad controlled = control(i) == "jump"       ? Fad(w[i] - d_[i])
+      const Fad moved = w[i] - rest_[i];
+      const Fad controlled = control(i) == "jump"       ? Fad(moved - d_[i])
                              : control(i) == "traction" ? Fad(lambda[i] - d_[i])
-                                                        : Fad(lambda[i] - stiffness_[i] * (d_[i] - w[i]));
+                                                        : Fad(lambda[i] - base_[i] - stiffness_[i] * (d_[i] - moved));
       f[i] = R[i].val();
       f[dim + i] = controlled.val();
       for (int j = 0; j < 2 * dim; ++j) {
@@ -178,9 +198,28 @@ class PointDriver {
     }
     Real now[dim - 1];
     std::copy_n(plastic + 1, dim - 1, now);
-    law_.commit(laws::contact<dim>(lambda[0], laws::norm(now), now, p_old_, {kept_.data()}), {kept_.data()});
+    const auto at = laws::converged<dim>(law_, state, w, lambda, now, p_old_, {kept_.data()});
+    const std::string remark = state == laws::ContactState::slip ? runaway(at) : "";
+    law_.commit(at, {kept_.data()});
     std::copy_n(now, dim - 1, p_old_);
-    return {t, state, {w, w + dim}, {elastic, elastic + dim}, {plastic, plastic + dim}, {lambda, lambda + dim}};
+    laws::split_jump<dim>(law_, state, w, lambda, p_old_, elastic, plastic, {kept_.data()});
+    std::copy_n(now, dim - 1, plastic + 1);
+    return {t, state, {w, w + dim}, {elastic, elastic + dim}, {plastic, plastic + dim}, {lambda, lambda + dim}, remark};
+  }
+
+  /// Says so if slip weakens the joint faster than column and joint unload, where the slip of the step begins.
+  std::string runaway(const laws::Contact<Real>& end) const {
+    auto begin = end;
+    begin.slip_of_step = 0;
+    begin.plastic_slip = laws::norm(p_old_);
+    std::copy_n(p_old_, dim - 1, begin.plastic_jump);
+    const Real falls = physics::weakening(law_, begin);
+    const Real compliance = law_.compliance(end) + (control(1) == "column" ? 1 / stiffness_[1] : 0);
+    if (!(falls * compliance > 1)) return "";
+    return fmt::format(
+        "slip of {:.4g} at once: its bound falls by {:.4g} Pa/m at first, and what shears the joint unloads by "
+        "{:.4g} Pa/m; this state obeys the law, others between may do so",
+        end.slip_of_step, falls, 1 / compliance);
   }
 
   const PointPath& point_;
@@ -188,6 +227,7 @@ class PointDriver {
   laws::Augmentation c_;
   std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // what the laws keep of the point
   Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
+  Real base_[dim] = {}, rest_[dim] = {};  // the initial traction, and the jump under it
 };
 
 template <int dim>
@@ -214,12 +254,16 @@ void PointPath::describe(base::Section& s) {
           "k of a column in lambda_t = k (d_t - w_t)");
   s.entry(plastic_jump, "plastic jump", "m", base::any(),
           "tangential plastic jump at the start, per tangential component");
+  s.entry(initial_traction, "initial traction", "Pa", base::any(),
+          "per component n, t[, t2], at the start: jumps and displacements then count from the jump under it");
   if (!s.complete()) return;
   if (control.size() < 2 || control.size() > 3) s.fail("control", "needs 2 components (2D) or 3 (3D)");
   if (path.size() != control.size())
     s.fail("path", fmt::format("has {} components, \"control\" has {}", path.size(), control.size()));
   if (!plastic_jump.empty() && plastic_jump.size() + 1 != control.size())
     s.fail("plastic jump", fmt::format("has {} components, must have {}", plastic_jump.size(), control.size() - 1));
+  if (!initial_traction.empty() && initial_traction.size() != control.size())
+    s.fail("initial traction", fmt::format("has {} components, must have {}", initial_traction.size(), control.size()));
   for (std::size_t i = 0; i < control.size(); ++i) {
     if (control[i] != "jump" && control[i] != "traction" && control[i] != "column")
       s.fail("control", fmt::format("is \"{}\" for component {}, must be jump, traction or column", control[i], i));
@@ -240,6 +284,9 @@ void PointScene::describe(base::Section& s) {
   physics::add_library_materials(materials, {point.material});
   const std::string wrong = physics::wrong_material(point.material, "joint", materials);
   if (!wrong.empty()) s.fail_inside("Point > \"material\": " + wrong);
+  if (!wrong.empty() || point.control.size() != 3) return;
+  for (const auto& [entry, what] : materials.at(point.material).only_in_2d())
+    s.fail_inside(fmt::format("Materials > {} > \"{}\": {}", point.material, entry, what));
 }
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {

@@ -79,7 +79,8 @@ class Input:
     def _joint(self, name):
         def number(entry, default):
             return self.number("Materials", name, entry, default=default)
-        for role, kind in (("friction", "Coulomb"), ("closure", "Barton-Bandis")):
+        for role, kind in (("friction", "Coulomb"), ("closure", "Barton-Bandis"), ("dilation", "constant angle"),
+                           ("tangential elasticity", "linear"), ("bond", "none"), ("damage", "none")):
             if self.text("Materials", name, role) not in (None, kind):
                 raise ValueError(f"joint {name}: only {role} {kind} is known here")
         angle = number("friction angle", None)

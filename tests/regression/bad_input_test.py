@@ -291,7 +291,7 @@ class Scenes(BadInput):
 
     def test_names_of_other_programs_are_known(self):
         for name, told in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
-                           ("K_s", 'Did you mean "tangential stiffness"?'), ("Cohesion", "A joint has neither cohesion nor tensile strength"),
+                           ("K_s", 'Did you mean "tangential stiffness"?'), ("Cohesion", 'It belongs to bond "constant cohesion", "linear softening"; here it is "none"'),
                            ("JRC", 'Did you mean "joint roughness coefficient"? It belongs to friction "Barton-Choubey"'),
                            ("JCS", 'Did you mean "joint wall strength"?'), ("mu", 'Did you mean "friction coefficient"?\n'),
                            ("phi", 'Did you mean "friction angle"?\n'), ("psi", 'Did you mean "dilation angle"?\n')):
@@ -306,16 +306,25 @@ class Scenes(BadInput):
             self.assertEqual(err.count("\n"), 1, err)
         refuse(['rough joint > "friction": is "Barton", must be one of "Coulomb", "Barton-Choubey"'], joint + "friction=Barton")
         refuse(['rough joint > "closure": is "Linear", must be one of', 'Did you mean "linear"?'], joint + "closure=Linear")
-        refuse(['rough joint > "friction angle": unknown. It belongs to friction "Coulomb"; here it is "Barton-Choubey"'],
+        refuse(['rough joint > "friction angle": unknown. It belongs to friction "Coulomb", "slip weakening"; here it is "Barton-Choubey"'],
                joint + "friction angle=30")
-        refuse(['planar joint > "joint wall strength": unknown. It belongs to friction "Barton-Choubey"; here it is "Coulomb"'],
+        refuse(['planar joint > "joint wall strength": unknown. It belongs to friction "Barton-Choubey", "mobilised Barton-Choubey"; '
+                'dilation "mobilised"; closure "Bandis"; here they are "Coulomb", "constant angle", "Barton-Bandis"'],
                "Materials.planar joint.joint wall strength=1e8")
-        refuse(['rough joint > "maximum closure": unknown. It belongs to closure "Barton-Bandis"; here it is "linear"'],
+        refuse(['rough joint > "maximum closure": unknown. It belongs to closure "Barton-Bandis", "Barton-Bandis with memory"; here it is "linear"'],
                joint + "maximum closure=1e-3")
         refuse(['rough joint: "largest friction angle" must not be below "residual friction angle"'], joint + "largest friction angle=20")
         refuse(['rough joint > "joint wall strength": is 0, must be positive'], joint + "joint wall strength=0")
         refuse(['joint > "normal stiffness": missing; it is required with closure "linear"'], "Materials.joint.type=joint",
                "Materials.joint.friction angle=30", "Materials.joint.closure=linear", "Fractures.planar.material=joint")
+        refuse(['rough joint > "fracture energy": missing; it is required with a "tensile strength" above 0'], joint + "bond=linear softening",
+               joint + "cohesion=0", joint + "tensile strength=1e6")
+        refuse(['rough joint: give either "peak slip" or "joint length"'], joint + "friction=mobilised Barton-Choubey")
+        refuse(['planar joint: residual friction must not be above the friction at peak'],
+               *(f"Materials.planar joint.{entry}" for entry in ("friction=slip weakening", "residual friction coefficient=0.9",
+                                                                 "weakening distance=1")))
+        self.refuse(['planar joint > "damage": is "anisotropic", which there is in 2D alone'], "check",
+                    self.scene("verification/joint_kinds_3d.xml"), "--set", "Materials.planar joint.damage=anisotropic")
         text = self.scene("verification/joint_kinds_2d.xml").read_text()
         line = '      <Parameter name="joint roughness coefficient" type="double" value="8"/>\n'
         (self.folder / "a.xml").write_text(text.replace(line, ""))

@@ -18,6 +18,9 @@ N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
 CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
 MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
+HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
+           "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
+           "Materials.joint.irrecoverable part of closure=0.3"]
 QUIET = "Output.vtu=false"
 EVERY_STEP = "Output.checkpoints.steps=1"
 
@@ -72,7 +75,7 @@ class Restart(ProgramTest):
         past_the_largest_load = "1, 2, 4", ", 4.5"
         for scene, ranks, (first, then), options in (
                 (CYCLIC, 1, past_the_largest_load, []), (CYCLIC, 2, ("1, 2, 3", ", 4, 5"), []),
-                (CROSSING, 2, ("1, 2", ", 3"), []), (CROSSING, 3, ("1, 2", ", 3"), []),
+                (CROSSING, 2, ("1, 2", ", 3"), HISTORY), (CROSSING, 3, ("1, 2", ", 3"), []),
                 (MASONRY, 2, ("1, 2", ", 3, 4"), ["Materials.other.Young's modulus=1e-6"]),
                 (FLOATING, 1, ("1, 2, 3", ", 4, 5"), []),
                 (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "laws/contact.hpp"
-#include "laws/kinds.hpp"
+#include "laws/roughness.hpp"
 
 #include <cmath>
 
@@ -16,25 +16,28 @@ struct BartonChoubeyFriction {
   Real wall_strength = 1;    ///< JCS, Pa
   Real residual_angle = 30;  ///< phi_r, degree
   Real steepest = 70;        ///< degree
+  Real length = 0;           ///< of the joint, m; 0: JRC and JCS are those of the joint
+  Real sample = 0.1;         ///< length of the samples that JRC and JCS are of otherwise, m
 
   static constexpr const char *name = "Barton-Choubey", *meaning = "peak strength of a rough joint, by JRC and JCS";
   static std::vector<Parameter<BartonChoubeyFriction>> parameters() {
     using Law = BartonChoubeyFriction;
-    return {{&Law::roughness, Entry{"joint roughness coefficient", "-", base::at_least(0),
-                                    "JRC: by so many degrees the angle falls with every decade of the compression"}
-                                  .also_called({"JRC", "roughness"})},
-            {&Law::wall_strength, Entry{"joint wall strength", "Pa", base::positive(),
-                                        "JCS, the compression at which the roughness has no part any more"}
-                                      .also_called({"JCS", "wall strength"})},
+    return {{&Law::roughness, roughness_entry()},
+            {&Law::wall_strength, wall_strength_entry()},
             {&Law::residual_angle,
              Entry{"residual friction angle", "degree", base::at_least(0).below(90), "phi_r, of the smooth joint"}
                  .also_called({"phi_r", "residual angle"})},
             {&Law::steepest, Entry{"largest friction angle", "degree", base::greater_than(0).below(90),
                                    "that the roughness leads to under small compression"}
-                                 .or_else(70)}};
+                                 .or_else(70)},
+            {&Law::length, length_entry()},
+            {&Law::sample, sample_entry()}};
   }
   std::string defect() const {
     return steepest < residual_angle ? "\"largest friction angle\" must not be below \"residual friction angle\"" : "";
+  }
+  void complete() {
+    if (length > 0) scale_roughness(roughness, wall_strength, length, sample);
   }
 
   template <class T>

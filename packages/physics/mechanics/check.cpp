@@ -50,6 +50,8 @@ void compare_fractures(Comparison& c) {
       const std::string place = "Materials > " + fracture.material;
       for (const auto& [entry, what] : joint->missing())
         c.fail(entry.empty() ? place : fmt::format("{} > \"{}\"", place, entry), what);
+      if (c.names().dim && *c.names().dim == 3)
+        for (const auto& [entry, what] : joint->only_in_2d()) c.fail(fmt::format("{} > \"{}\"", place, entry), what);
     }
   }
 }

@@ -274,7 +274,7 @@ void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
         if (op.kept.extent(1) == 0) return;
         Real now[dim - 1];
         for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
-        law.commit(laws::contact<dim>(point.traction[0], laws::norm(now), now, point.p_old, op.history(f)),
+        law.commit(laws::converged<dim>(law, point.state, point.w, point.traction, now, point.p_old, op.history(f)),
                    op.kept_of(f));
       });
 }
@@ -321,7 +321,7 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
     }
     grips[f].augmentation += point.constant;
     grips[f].modulus = modulus_[f];
-    grips[f].gap += point.w[0] - law.gap(contact(0, slipped));
+    grips[f].gap += point.w[0] - law.normal_gap(contact(0, slipped));
     grips[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {
@@ -366,12 +366,21 @@ void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, co
   Kokkos::deep_copy(diagonals[pressure_], rows);
 }
 
-/// Sliding is the only source of non-symmetry.
+/// Sliding, and an elasticity that depends on the normal traction, make a face's matrix non-symmetric; a bond that
+/// softens makes it indefinite.
 template <Shape shape, bool tips>
 bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) const {
-  bool slips = false;
-  for_each_face(state, [&](LocalIndex, const Point& point) { slips = slips || point.state == ContactState::slip; });
-  return !slips;
+  bool symmetric = true;
+  const auto kept = kept_on_host(state);
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    if (point.state == ContactState::open) return;
+    const auto& law = parameters_.joints[joint_of(f)].law;
+    const Real p[dim - 1] = {};
+    const auto at = laws::contact<dim>(point.traction[0], Real(0), p, point.p_old, kept(f));
+    const bool pulled = point.traction[0] > 0 && law.bond.n_history() > 0;
+    if (point.state == ContactState::slip || pulled || compliance_slope(law, at) != 0) symmetric = false;
+  });
+  return symmetric;
 }
 
 /// What is shown of a face. One that slid in the step lies on the limit of friction for the plastic jump that it has
@@ -384,19 +393,15 @@ struct ElasticPlasticJump<shape, tips>::Shown {
 
   Shown(const Point& point, const JointParameters& joint, bool slid, const laws::History& kept)
       : point(point), state(slid ? ContactState::slip : ContactState::stick) {
-    const bool open = point.state == ContactState::open;
-    if (open) state = ContactState::open;
-    laws::split_jump<dim>(joint.law, point.state, point.w, point.traction, point.p_old, elastic, plastic, kept);
-    Real tangential[dim - 1], shear[dim - 1];
-    for (int i = 0; i < dim - 1; ++i) {
-      tangential[i] = plastic[i + 1];
-      shear[i] = point.traction[i + 1];
-    }
+    if (point.state == ContactState::open) state = ContactState::open;
+    laws::split_jump<dim>(joint.law, state, point.w, point.traction, point.p_old, elastic, plastic, kept);
+    Real tangential[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) tangential[i] = plastic[i + 1];
     slip = laws::norm(tangential);
     aperture = joint.initial_aperture + point.w[0];
-    const auto contact = laws::contact<dim>(point.traction[0], slip, tangential, point.p_old, kept);
-    const Real bound = joint.law.bound(contact), size = laws::norm(shear);
-    if (!open && size > 0) slip_tendency = size / std::max(bound, size * 1e-16);
+    const auto at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
+    const Real bound = joint.law.bound(at);
+    if (!at.open && at.shear > 0) slip_tendency = at.shear / std::max(bound, at.shear * 1e-16);
   }
 };
 
@@ -449,11 +454,11 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
     const auto& [law, aperture, plastic] = parameters.joints[joint_of(parameters, mesh, f)];
     const Real pressed = jumps[f][0];
     const Real zero = 0;  // all that laws have kept of faces
-    laws::Contact<Real> at{std::min(pressed, Real(0)), 0, {}, {}, {&zero, 0}};
+    laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .history = {&zero, 0}};
     const Real compliance = law.compliance(at);
     at.plastic_slip = std::hypot(plastic[0], plastic[1]);
     for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = plastic[k];
-    jumps[f][0] = law.gap(at);
+    jumps[f][0] = law.normal_gap(at);
     for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] = plastic[k - 1] + compliance * jumps[f][k];
   }
   return jumps;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace sprekk::physics {
 
@@ -19,13 +20,19 @@ using laws::Entry;
 /// What a kind says about itself. Entries of the same number are alternatives.
 struct Kind {
   std::string name, meaning;
+  bool flat;  // for two dimensions alone
   std::vector<Entry> entries;
   std::vector<int> number;  // of each entry
 };
 
+template <class K, class = void>
+constexpr bool is_flat = false;
+template <class K>
+constexpr bool is_flat<K, std::void_t<decltype(K::flat)>> = K::flat;
+
 template <class K>
 Kind kind() {
-  Kind result{K::name, K::meaning, {}, {}};
+  Kind result{K::name, K::meaning, is_flat<K>, {}, {}};
   const auto parameters = K::parameters();
   for (const auto& parameter : parameters) {
     const auto same = [&](const auto& other) { return other.number == parameter.number; };
@@ -91,7 +98,10 @@ const std::vector<Role>& roles() {
        kinds(laws::ShearKinds())},
       {"friction", "law of the bound on the shear traction", &JointMaterial::friction, kinds(laws::FrictionKinds())},
       {"dilation", "law of the opening by slip", &JointMaterial::dilation, kinds(laws::DilationKinds())},
-      {"closure", "law of the closing under compression", &JointMaterial::closure, kinds(laws::ClosureKinds())}};
+      {"closure", "law of the closing under compression", &JointMaterial::closure, kinds(laws::ClosureKinds())},
+      {"bond", "law of the strength that faces have beside friction", &JointMaterial::bond, kinds(laws::BondKinds())},
+      {"damage", "law of the wear of friction and dilation", &JointMaterial::damage, kinds(laws::DamageKinds())},
+      {"damage driver", "what slip counts in damage", &JointMaterial::damage_driver, kinds(laws::DriverKinds())}};
   return all;
 }
 
@@ -145,15 +155,26 @@ std::string give_one_of(const std::vector<std::string>& names) {
   return text;
 }
 
+/// `friction "Barton-Choubey", required`, `dilation "mobilised"` and so on: whose entry it is, but for roles all of
+/// whose kinds have it.
+std::string owners_of(const std::string& entry, bool tell_required) {
+  std::string text;
+  for (const auto& role : roles()) {
+    const auto with = role.kinds_with(entry), needed = role.kinds_that_need(entry);
+    if (with.empty() || with.size() == role.kinds.size()) continue;
+    text += fmt::format("{}{} {}{}", text.empty() ? "" : "; ", role.name, base::quoted_list(with),
+                        tell_required && needed == with ? ", required" : "");
+  }
+  return text;
+}
+
 /// The meaning in the reference tells whose entry it is.
 void describe_entry(base::Section& s, const Role& role, const Entry& entry, std::optional<Value>& value, bool of_all) {
-  const auto with = role.kinds_with(entry.name);
   if (of_all && !value && entry.otherwise) value = *entry.otherwise;
-  const auto needed = role.kinds_that_need(entry.name);
+  const auto with = role.kinds_with(entry.name), needed = role.kinds_that_need(entry.name);
   std::string meaning = entry.meaning;
-  if (of_all && with.size() < role.kinds.size())
-    meaning =
-        fmt::format("{} {}{}: {}", role.name, base::quoted_list(with), needed == with ? ", required" : "", meaning);
+  if (const auto owners = owners_of(entry.name, true); of_all && !owners.empty())
+    meaning = fmt::format("{}: {}", owners, meaning);
   if (of_all && needed != with && !needed.empty())
     meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
   s.entry(value, entry.name, entry.unit, entry.bounds, meaning);
@@ -161,24 +182,36 @@ void describe_entry(base::Section& s, const Role& role, const Entry& entry, std:
     s.fail(entry.name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
 }
 
-void describe_role(base::Section& s, JointMaterial& material, const Role& role, bool of_all) {
+/// `It belongs to friction "Coulomb"; here it is "Barton-Choubey"`
+std::string not_here(const JointMaterial& material, const std::string& entry) {
+  std::vector<std::string> here;
+  for (const auto& role : roles())
+    if (!role.kinds_with(entry).empty()) here.push_back(material.*role.chosen);
+  return fmt::format("It belongs to {}; here {} {}", owners_of(entry, false), here.size() == 1 ? "it is" : "they are",
+                     base::quoted_list(here));
+}
+
+/// The entries of a role that no role before it has `described`: several may have entries in common.
+void describe_role(base::Section& s, JointMaterial& material, const Role& role, bool of_all,
+                   std::set<std::string>& described) {
   s.choice(material.*role.chosen, role.name, role.names(), meaning_of(role));
   of_all = of_all || !s.is_sound();
   const auto* chosen = role.kind_of(material);
   for (const auto& entry : role.entries()) {
+    if (described.count(entry.name) > 0) continue;
     const auto* own = chosen ? entry_of(*chosen, entry.name) : nullptr;
     auto& value = material.entry(entry.name);
     if (own && !value && own->otherwise) value = *own->otherwise;
     // those of other kinds that a host has set are written, so that they are refused when they are read
     const bool is_set = value && !(entry.otherwise && value->text() == Value(*entry.otherwise).text());
-    if (own || of_all || is_set)
+    if (own || of_all || is_set) {
       describe_entry(s, role, own ? *own : entry, value, of_all);
-    else
-      s.hint({entry.name}, fmt::format("It belongs to {} {}; here it is \"{}\"", role.name,
-                                       base::quoted_list(role.kinds_with(entry.name)), material.*role.chosen));
-    const std::string of =
-        own ? "" : fmt::format(" It belongs to {} {}", role.name, base::quoted_list(role.kinds_with(entry.name)));
-    s.hint(entry.others, fmt::format("Did you mean \"{}\"?{}", entry.name, of));
+      described.insert(entry.name);
+    } else {
+      s.hint({entry.name}, not_here(material, entry.name));
+    }
+    const std::string owners = own ? "" : " It belongs to " + owners_of(entry.name, false);
+    s.hint(entry.others, fmt::format("Did you mean \"{}\"?{}", entry.name, owners));
   }
 }
 
@@ -198,6 +231,11 @@ std::optional<Value> JointMaterial::*member_of(const std::string& entry) {
 }
 
 template <class K, class = void>
+constexpr bool can_complete = false;
+template <class K>
+constexpr bool can_complete<K, std::void_t<decltype(std::declval<K>().complete())>> = true;
+
+template <class K, class = void>
 constexpr bool has_defect = false;
 template <class K>
 constexpr bool has_defect<K, std::void_t<decltype(std::declval<K>().defect())>> = true;
@@ -212,6 +250,7 @@ K law_at(const JointMaterial& material, const JointMaterial::Point& x) {
     const Real v = value ? (*value)(x, 0) : *entry.otherwise;
     law.*number = entry.number_of ? entry.number_of(v) : v;
   }
+  if constexpr (can_complete<K>) law.complete();
   if constexpr (has_defect<K>) {
     const std::string defect = law.defect();
     SPREKK_CHECK(defect.empty(), "{}", defect);
@@ -244,15 +283,15 @@ const std::optional<Value>& JointMaterial::entry(const std::string& name) const 
 }
 
 void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
+  std::set<std::string> described;
   for (const auto& role : roles()) {
     if (role.name == "closure") s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
-    describe_role(s, *this, role, of_all_kinds);
+    describe_role(s, *this, role, of_all_kinds, described);
   }
   s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
     if (!value->constant_in_time())
       s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
-  s.hint({"cohesion", "tensile strength"}, "A joint has neither cohesion nor tensile strength, friction alone");
 }
 
 void JointMaterial::compare_entries(base::Section& s) const {
@@ -291,6 +330,14 @@ std::vector<std::array<std::string, 2>> JointMaterial::missing() const {
   return all;
 }
 
+std::vector<std::array<std::string, 2>> JointMaterial::only_in_2d() const {
+  std::vector<std::array<std::string, 2>> all;
+  for (const auto& role : roles())
+    if (const auto* chosen = role.kind_of(*this); chosen && chosen->flat)
+      all.push_back({role.name, fmt::format("is \"{}\", which there is in 2D alone", chosen->name)});
+  return all;
+}
+
 void JointMaterial::check(const Point& x) const {
   const auto check_value = [&](const std::string& name, const Value& value, const base::Bounds& bounds) {
     if (value.is_constant()) return;  // checked when it was read
@@ -312,9 +359,14 @@ JointParameters JointMaterial::joint(const Point& x) const {
   set_part(joint.law.friction, laws::FrictionKinds(), friction, *this, x);
   set_part(joint.law.gap.dilation, laws::DilationKinds(), dilation, *this, x);
   set_part(joint.law.gap.closure, laws::ClosureKinds(), closure, *this, x);
+  set_part(joint.law.bond, laws::BondKinds(), bond, *this, x);
+  set_part(joint.law.damage, laws::DamageKinds(), damage, *this, x);
+  set_part(joint.law.driver, laws::DriverKinds(), damage_driver, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
   const Real zero = 0;  // all that laws have kept
-  const Real dilates = dilation_slope(joint.law, {0, 0, {}, {}, {&zero, 0}});
+  laws::Contact<Real> at_rest;
+  at_rest.history = {&zero, 0};
+  const Real dilates = dilation_slope(joint.law, at_rest);
   joint.law.sliding_compliance =
       std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
   joint.initial_aperture = initial_aperture(x, 0);
@@ -354,17 +406,44 @@ Real bound_slope(const laws::Joint& law, Real compression) {
   return -law.bound(at).dx(0);
 }
 
-Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
-  using Fad = Sacado::Fad::SFad<Real, 1>;
-  laws::Contact<Fad> with;
+namespace {
+
+using Fad1 = Sacado::Fad::SFad<Real, 1>;
+
+/// The contact with derivatives in what `seed` sets.
+template <class Seed>
+laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& seed) {
+  laws::Contact<Fad1> with;
   with.lambda_n = at.lambda_n;
-  with.plastic_slip = Fad(1, 0, at.plastic_slip);
+  with.shear = at.shear;
+  with.plastic_slip = at.plastic_slip;
+  with.slip_of_step = at.slip_of_step;
+  with.separation = at.separation;
   for (int i = 0; i < 2; ++i) {
     with.plastic_jump[i] = at.plastic_jump[i];
     with.last_plastic_jump[i] = at.last_plastic_jump[i];
   }
   with.history = at.history;
-  return law.gap.dilation.opening(with).dx(0);
+  seed(with);
+  return with;
+}
+
+void along_slip(laws::Contact<Fad1>& at) {
+  for (Fad1* size : {&at.plastic_slip, &at.slip_of_step}) *size = Fad1(1, 0, size->val());
+}
+
+}  // namespace
+
+Real weakening(const laws::Joint& law, const laws::Contact<Real>& at) {
+  return -law.bound(differentiated(at, along_slip)).dx(0);
+}
+
+Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
+  return law.compliance(differentiated(at, [](auto& with) { with.lambda_n = Fad1(1, 0, with.lambda_n.val()); })).dx(0);
+}
+
+Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
+  return law.normal_gap(differentiated(at, along_slip)).dx(0);
 }
 
 }  // namespace sprekk::physics

@@ -19,7 +19,8 @@ struct JointMaterial {
   using Value = base::Expression;
   using Point = std::array<Real, 3>;
 
-  std::string tangential_elasticity, friction, dilation, closure;  ///< kinds; at first the first ones of their lists
+  /// Kinds; at first the first ones of their lists.
+  std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver;
 
   std::optional<Value> tangential_stiffness, friction_coefficient, friction_angle, dilation_angle, maximum_closure,
       normal_stiffness;
@@ -37,6 +38,8 @@ struct JointMaterial {
   /// What is missing for a joint of rock that deforms, as pairs (entry, what is wrong), the entry empty if there are
   /// several that would do.
   std::vector<std::array<std::string, 2>> missing() const;
+  /// The laws that it cannot have in 3D, as pairs (entry, what is wrong).
+  std::vector<std::array<std::string, 2>> only_in_2d() const;
   bool is_uniform() const;  ///< no value depends on the place
   /// The laws at a point. Throws an Error that names the entry, the value and the point where a value is out of range.
   JointParameters joint(const Point& x) const;
@@ -54,6 +57,12 @@ struct JointMaterial {
 
 /// -db/dlambda_n of the bound of a joint that has not slipped.
 Real bound_slope(const laws::Joint& law, Real compression);
+
+/// -db/ds, Pa/m, of the bound with further slip of the step at a contact; above 0 where slip weakens the joint.
+Real weakening(const laws::Joint& law, const laws::Contact<Real>& at);
+
+/// Derivative of the tangential compliance in the normal traction, m/Pa^2.
+Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at);
 
 /// How much the joint opens per plastic slip, m/m; `at` has the numbers that the joint keeps.
 Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at);

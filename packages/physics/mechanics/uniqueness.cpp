@@ -46,7 +46,7 @@ std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& 
   for (int k = 0; k <= n; ++k) {
     const Real compression = compressions[0] * std::pow(compressions[1] / compressions[0], Real(k) / n);
     const Real mu = physics::bound_slope(law, compression),
-               opens = physics::dilation_slope(law, {-compression, 0, {}, {}, {&zero, 0}});
+               opens = physics::dilation_slope(law, {.lambda_n = -compression, .history = {&zero, 0}});
     if (mu * opens > slopes[0] * slopes[1]) slopes = {mu, opens};
   }
   return slopes;
@@ -132,6 +132,38 @@ std::string friction_doubt(const Scene& scene) {
                 "than it below {:.2g} Pa",
                 material, steepest.largest, steepest.up_to);
   return what + ": above about 1 equilibrium need not exist, nor be unique";
+}
+
+std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
+  const Real size = mesh::largest_extent(mesh);
+  const auto rock = bounding_rock(scene);
+  if (!rock) return "";
+  const auto [least, most] = compressions(scene);
+  const Real compression = std::sqrt(least * most), zero = 0;  // at which laws are asked
+  std::string weakest;
+  Real lowest = most;  // compression from which on slip runs away
+  for (const auto& [name, fracture] : scene.fractures) {
+    const auto& material = scene.materials.at(fracture.material);
+    if (!material.is_uniform()) continue;
+    auto law = material.joint({}).law;
+    law.bond = laws::Bond();  // whose softening does not grow with the compression
+    const Real unloads = 1 / (size / rock->G + law.elastic.initial_compliance());
+    for (Real slip = 1e-9; slip < 10; slip *= 1.5) {
+      const Real fall = physics::weakening(law, {.lambda_n = -compression,
+                                                 .plastic_slip = slip,
+                                                 .slip_of_step = slip,
+                                                 .plastic_jump = {slip, 0},
+                                                 .history = {&zero, 0}});
+      if (!(fall * lowest > unloads * compression)) continue;
+      lowest = unloads * compression / fall;
+      weakest = fracture.material;
+    }
+  }
+  if (weakest.empty()) return "";
+  return fmt::format(
+      "the bound of \"{}\" falls with slip: under a compression of {:.2g} Pa and more faster than the rock unloads "
+      "({:.4g} m large); there slip may run away, in short steps as well",
+      weakest, lowest, size);
 }
 
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {

@@ -12,6 +12,11 @@ namespace sprekk::physics {
 /// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
 std::string friction_doubt(const Scene& scene);
 
+/// Names the joint whose bound falls most with slip, relative to the compression N, and the N from which on it falls
+/// faster than a block of the domain's extent L unloads, -db/ds > 1/(L/G + 1/K_t): there slip runs away. Bonds are left
+/// out. Empty without such a joint, if that takes more than G/100, or if properties depend on the place. Collective.
+std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh);
+
 /// Names a joint on reversal of whose slip the solution may not be unique, and its largest dilation angle; empty
 /// without such a joint, if properties depend on the place, and of fractures whose opening no rock resists, as where
 /// the load on a block that is free to move gives the normal traction: the bound does not fall then. In a block of

@@ -51,7 +51,7 @@ struct ShearTest {
     const Real p_old[1] = {0};
     Contact<Real> at;
     at.lambda_n = -N;
-    const Fad w[2] = {law.gap(at), s};  // the faces just touch at this traction
+    const Fad w[2] = {law.normal_gap(at), s};  // the faces just touch at this traction
     std::array<Real, 2> lambda = {-N, 0};
     for (int iteration = 0; iteration < 20; ++iteration) {
       const Fad x[2] = {Fad(2, 0, lambda[0]), Fad(2, 1, lambda[1])};

@@ -11,7 +11,8 @@ namespace {
 /// A value that the entry allows, of the size that its unit suggests.
 Real typical(const Entry& entry) {
   if (entry.otherwise && std::isfinite(*entry.otherwise) && *entry.otherwise != 0) return *entry.otherwise;
-  const std::pair<const char*, Real> usual[] = {{"Pa", 4e7}, {"degree", 25}, {"m", 2e-4}, {"Pa/m", 3e10}};
+  const std::pair<const char*, Real> usual[] = {
+      {"Pa", 4e7}, {"degree", 25}, {"m", 2e-4}, {"Pa/m", 3e10}, {"J/m^2", 3e3}};
   for (const auto& [unit, value] : usual)
     if (entry.unit == unit && entry.bounds.contains(value)) return value;
   for (const Real value : {0.7, 8.0, 0.0, -0.5})
@@ -48,7 +49,9 @@ template <class T>
 Contact<T> contact_at(const T& lambda_n, const T& slip, const Real* history) {
   Contact<T> at;
   at.lambda_n = lambda_n;
-  at.plastic_slip = at.plastic_jump[0] = slip;
+  at.plastic_slip = at.slip_of_step = at.plastic_jump[0] = slip;
+  at.shear = T(1e6);
+  at.wear = T(1);
   at.history = {history, 0};  // all numbers are the same
   return at;
 }
@@ -116,6 +119,35 @@ TEST(KindsOfJoints, ElasticityHasItsDerivatives) {
   });
 }
 
+/// In the separation, which takes the place of the normal traction, from overlapping to wide apart.
+TEST(KindsOfJoints, BondsHaveTheirDerivatives) {
+  for_each_kind(BondKinds(), [](const auto& law) {
+    for (const Real separation : {1e-16, 1e-12, 1e-10})  // m per Pa of the tractions
+      for (const auto part : {0, 1, 2})
+        expect_differentiable([&](auto at) {
+          at.separation = separation * at.lambda_n;
+          const auto cohesion = law.cohesion(at);
+          return part == 0 ? cohesion.shear : part == 1 ? cohesion.strength : cohesion.tension;
+        });
+    const auto rest = law.cohesion(unloaded());
+    EXPECT_GE(rest.shear, 0);
+    EXPECT_EQ(rest.strength, rest.tension);
+  });
+}
+
+TEST(KindsOfJoints, DamageHasItsDerivatives) {
+  for_each_kind(DamageKinds(), [](const auto& law) {
+    for (const bool friction : {false, true})
+      expect_differentiable([&](const auto& at) { return friction ? law.left(at).friction : law.left(at).dilation; });
+    EXPECT_EQ(law.left(unloaded()).friction, 1);
+    EXPECT_EQ(law.left(unloaded()).dilation, 1);
+  });
+  for_each_kind(DriverKinds(), [](const auto& law) {
+    expect_differentiable([&](const auto& at) { return law.wear(at); });
+    EXPECT_GE(law.wear(unloaded()), 0);
+  });
+}
+
 /// No two entries of a law, and no two laws of a role, have a name in common; entries of the same name in several laws
 /// measure the same.
 template <class... Ks>
@@ -140,6 +172,9 @@ TEST(KindsOfJoints, HaveNamesOfTheirOwn) {
   expect_distinct(FrictionKinds());
   expect_distinct(DilationKinds());
   expect_distinct(ClosureKinds());
+  expect_distinct(BondKinds());
+  expect_distinct(DamageKinds());
+  expect_distinct(DriverKinds());
 }
 
 /// A joint that closes like a spring up to the largest compression that it has known, and half as far beyond it.
@@ -200,13 +235,13 @@ TEST(JointLaw, LawsKeepNumbersOfAFace) {
     const Real w[] = {-0.02, 0.7}, lambda[] = {-0.4, 0}, old[] = {0.2}, p[] = {0.5};
     const History history{numbers.data(), stride};
     const auto at = contact<2>(Real(-0.4), Real(0.5), p, old, history);
-    EXPECT_DOUBLE_EQ(law.gap(at), -0.02);
+    EXPECT_DOUBLE_EQ(law.normal_gap(at), -0.02);
     EXPECT_DOUBLE_EQ(law.bound(at), 0.2);
     law.commit(at, {numbers.data(), stride});
     EXPECT_DOUBLE_EQ(numbers[0], 0.4);           // compression
     EXPECT_DOUBLE_EQ(numbers[stride], 0.3);      // path
     EXPECT_DOUBLE_EQ(numbers[2 * stride], 1.0);  // steps
-    EXPECT_DOUBLE_EQ(law.gap(at), -0.04);
+    EXPECT_DOUBLE_EQ(law.normal_gap(at), -0.04);
     EXPECT_DOUBLE_EQ(law.bound(at), 0.2 / 1.3);
     Real R[2];
     EXPECT_EQ(contact_residual<2>(law, {1, 1}, w, lambda, old, R, history), ContactState::slip);

@@ -1,0 +1,66 @@
+// A bond that softens linearly, by opening and by slip.
+#pragma once
+
+#include "laws/bond/none.hpp"
+
+namespace sprekk::laws {
+
+/// A bond with the strengths c in shear and T in tension, of which opening and slip leave the part 1 - D:
+///   D = min(1, o_max/o_f + s/s_f),  o_f = 2 G_I/T,  s_f = 2 G_II/c,
+/// o the separation w_n - g and o_max the largest so far, s the length of the path slipped. Faces that have not been
+/// apart stay together up to lambda_n = (1 - D) T. Then the traction falls on a line, with o = o_max, on which opening
+/// alone dissipates G_I; between 0 and o_max it is (1 - D) T o/o_max (secant unloading, without a plastic part). Shear:
+/// (1 - D) c is added to the bound of friction.
+/// o and s count whatever the state of the face was; with T = 0, or c = 0, the one or the other has no part.
+struct SofteningBond {
+  static constexpr int n_history = 2;  ///< o_max, s; m
+  Real shear = 0;                      ///< c, Pa
+  Real tensile = 0;                    ///< T, Pa
+  Real energy = 0;                     ///< G_I, J/m^2
+  Real shear_energy = 0;               ///< G_II, J/m^2
+
+  static constexpr const char *name = "linear softening",
+                              *meaning = "tensile and shear strength that opening and slip use up";
+  static std::vector<Parameter<SofteningBond>> parameters() {
+    using Law = SofteningBond;
+    return {
+        {&Law::shear, Entry{"cohesion", "Pa", base::at_least(0), "c: shear strength of the bond, beside friction"}.with(
+                          "shear fracture energy")},
+        {&Law::tensile,
+         Entry{"tensile strength", "Pa", base::at_least(0), "T, of the whole bond"}.or_else(0).with("fracture energy")},
+        {&Law::energy, Entry{"fracture energy", "J/m^2", base::positive(),
+                             "G_I that opening dissipates per area until the bond is lost"}
+                           .may_be_absent()},
+        {&Law::shear_energy, Entry{"shear fracture energy", "J/m^2", base::positive(),
+                                   "G_II that slip dissipates per area, beside friction, until the bond is lost"}
+                                 .may_be_absent()}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
+    const Real parted = at.history[0];
+    const T widest = at.separation > parted ? at.separation : T(parted);
+    const T left = 1 - widest * use(tensile, energy) - (at.history[1] + at.slip_of_step) * use(shear, shear_energy);
+    if (!(left > 0)) return {};
+    const T tension = tensile * left;
+    if (!(parted > 0)) return {shear * left, tension, tension, !(tensile > 0)};
+    return {shear * left, T(0), at.separation < parted ? T(tension * at.separation / parted) : tension, !(tensile > 0)};
+  }
+
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    const bool apart = kept[0] > 0 || at.open || at.lambda_n >= (1 - rounding) * cohesion(at).strength;
+    const Real parted = at.separation;
+    if (apart && parted * use(tensile, energy) > rounding && parted > kept[0]) kept[0] = parted;
+    kept[1] += at.slip_of_step;
+  }
+
+ private:
+  static constexpr Real rounding = 1e-9;  ///< leaves no more of a traction, or of a separation that is none
+
+  /// What a length uses up of the bond, 1/m: strength/(2 energy).
+  KOKKOS_INLINE_FUNCTION static Real use(Real strength, Real energy) {
+    return energy > 0 ? strength / (2 * energy) : Real(0);
+  }
+};
+
+}  // namespace sprekk::laws

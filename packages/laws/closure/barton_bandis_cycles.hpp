@@ -1,0 +1,41 @@
+// Hyperbolic closure that unloading does not recover whole.
+#pragma once
+
+#include "laws/closure/barton_bandis.hpp"
+
+namespace sprekk::laws {
+
+/// With V the hyperbola of Barton and Bandis, m, under the compression N and the largest one so far, N_max:
+///   B = -(1 - r) V(N) - r V(max(N, N_max)).
+/// First loading follows V; unloading and loading again below N_max are stiffer by 1/(1 - r), and r V(N_max) stays. A
+/// cycle dissipates the area between the branches, never less than 0. With the equation of Bandis et al. (1983) for V,
+/// but a rule of its own for unloading: theirs, a closure that stays by JRC and JCS, was not at hand.
+struct BartonBandisCycles : BartonBandisClosure {
+  static constexpr int n_history = 1;  ///< N_max, Pa
+  Real retained = 0;                   ///< r
+
+  static constexpr const char *name = "Barton-Bandis with memory",
+                              *meaning = "hyperbolic, a part of which unloading does not recover";
+  static std::vector<Parameter<BartonBandisCycles>> parameters() {
+    std::vector<Parameter<BartonBandisCycles>> all;
+    for (const auto& [number, entry] : BartonBandisClosure::parameters()) all.push_back({number, entry});
+    all.push_back(
+        {&BartonBandisCycles::retained, Entry{"irrecoverable part of closure", "-", base::at_least(0).below(1),
+                                              "r: of the closure under the largest compression so far"}});
+    return all;
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    const T now = BartonBandisClosure::opening(at);
+    Contact<Real> largest;
+    largest.lambda_n = -at.history[0];
+    if (!(at.lambda_n > largest.lambda_n)) return now;
+    return (1 - retained) * now + retained * BartonBandisClosure::opening(largest);
+  }
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    if (-at.lambda_n > kept[0]) kept[0] = -at.lambda_n;
+  }
+};
+
+}  // namespace sprekk::laws

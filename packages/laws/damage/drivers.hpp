@@ -1,0 +1,54 @@
+// What a unit of slip counts in the history of damage.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// k = 1
+struct SlipDriver {
+  static constexpr const char *name = "slip", *meaning = "slip counts as it is";
+  static std::vector<Parameter<SlipDriver>> parameters() { return {}; }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T wear(const Contact<T>&) const {
+    return T(1);
+  }
+};
+
+/// k = N/sigma_r, N = -lambda_n: wear in proportion to compression and path (Archard).
+struct CompressionDriver {
+  Real reference = 1e6;  ///< sigma_r, Pa
+
+  static constexpr const char *name = "compression", *meaning = "slip times compression over the reference stress";
+  static std::vector<Parameter<CompressionDriver>> parameters() {
+    return {{&CompressionDriver::reference,
+             Entry{"reference stress", "Pa", base::positive(), "under which a slip counts in damage as it is"}}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T wear(const Contact<T>& at) const {
+    if (at.lambda_n > 0) return T(0);
+    return -at.lambda_n / reference;
+  }
+};
+
+/// k = |lambda_t|/sigma_r: the work of friction. Implicit, since friction depends on what is worn.
+struct WorkDriver {
+  Real reference = 1e6;  ///< sigma_r, Pa
+
+  static constexpr const char *name = "frictional work",
+                              *meaning = "slip times shear traction over the reference stress";
+  static std::vector<Parameter<WorkDriver>> parameters() {
+    return {{&WorkDriver::reference,
+             Entry{"reference stress", "Pa", base::positive(), "under which a slip counts in damage as it is"}}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T wear(const Contact<T>& at) const {
+    return at.shear / reference;
+  }
+};
+
+}  // namespace sprekk::laws

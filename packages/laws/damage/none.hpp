@@ -1,0 +1,25 @@
+// A joint that slip does not wear.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// What damage leaves of friction and of dilation, 1: all.
+template <class T>
+struct Left {
+  T friction = 1, dilation = 1;
+};
+
+struct NoDamage {
+  static constexpr const char *name = "none", *meaning = "friction and dilation do not wear";
+  static std::vector<Parameter<NoDamage>> parameters() { return {}; }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>&) const {
+    return {};
+  }
+};
+
+}  // namespace sprekk::laws

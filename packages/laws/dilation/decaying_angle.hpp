@@ -1,0 +1,37 @@
+// Dilation by an angle that slip wears.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/exponentials.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// Shear dilation, m, whose slope falls exponentially with the distance u = |u_t^p| from tan(theta) to tan(theta_r):
+///   tan(theta_r) u + (tan(theta) - tan(theta_r)) D (1 - exp(-u/D)),
+/// without a residual angle at most D tan(theta). As any function of u it is undone when slip is.
+struct DecayingDilation {
+  Real tangent = 0, residual = 0;  ///< tan(theta), tan(theta_r)
+  Real distance = 1;               ///< D, m
+
+  static constexpr const char *name = "decaying angle", *meaning = "at an angle that falls exponentially with the slip";
+  static std::vector<Parameter<DecayingDilation>> parameters() {
+    using Law = DecayingDilation;
+    return {
+        {&Law::tangent, Entry{"dilation angle", "degree", base::at_least(0).below(90), "theta, without slip"}.converted(
+                            tangent_of_degrees)},
+        {&Law::residual, Entry{"residual dilation angle", "degree", base::at_least(0).below(90), "that slip leaves"}
+                             .or_else(0)
+                             .converted(tangent_of_degrees)},
+        {&Law::distance, Entry{"dilation decay distance", "m", base::positive(),
+                               "D: the slip by which the angle falls to 1/e of the way"}}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    return residual * at.plastic_slip -
+           (tangent - residual) * distance * exponential_less_one(T(-at.plastic_slip / distance));
+  }
+};
+
+}  // namespace sprekk::laws

@@ -1,0 +1,88 @@
+// Dilation of a rough joint as slip mobilises and wears its roughness.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/roughness.hpp"
+
+namespace sprekk::laws {
+
+/// Shear dilation, m, after Barton: slip du away from the start opens the joint by tan(d) du, slip back closes it by as
+/// much, with d = f(s/delta_p) JRC log10(JCS/N)/M degrees after the path s, never negative, under the compression N.
+/// Over a step the mean of tan(d) over the path is taken, with the N of its end: exact at constant N, else of first
+/// order.
+struct MobilisedDilation {
+  static constexpr int n_history = 2;  ///< s, opening so far; m
+  Real roughness = 0;                  ///< JRC, degree
+  Real wall_strength = 1;              ///< JCS, Pa
+  Real damage = 2;                     ///< M
+  Real length = 0, sample = 0.1;       ///< as in friction, m
+  Real peak_slip = 0;                  ///< delta_p, m
+
+  static constexpr const char *name = "mobilised", *meaning = "of a rough joint, by JRC and JCS, as slip mobilises it";
+  static std::vector<Parameter<MobilisedDilation>> parameters() {
+    using Law = MobilisedDilation;
+    return {{&Law::roughness, roughness_entry()},
+            {&Law::wall_strength, wall_strength_entry()},
+            {&Law::damage, Entry{"asperity damage coefficient", "-", base::positive(),
+                                 "M: the part 1/M of the roughness angle dilates; about 1 at low, 2 at high stress"}
+                               .or_else(2)},
+            {&Law::length, length_entry()},
+            {&Law::sample, sample_entry()},
+            {&Law::peak_slip, peak_slip_entry()}};
+  }
+  void complete() {
+    if (length > 0) scale_roughness(roughness, wall_strength, length, sample);
+    if (peak_slip == 0 && length > 0) peak_slip = peak_slip_of(roughness, length);
+  }
+  std::string defect() const { return peak_slip > 0 ? "" : "give either \"peak slip\" or \"joint length\""; }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    using std::log10, std::sqrt;
+    constexpr Real degree = 3.14159265358979323846 / 180;
+    const Real* old = at.last_plastic_jump;
+    const T moved = at.plastic_slip - sqrt(old[0] * old[0] + old[1] * old[1]);
+    T angle = 0;  // d over f, radians
+    const T N = -at.lambda_n;
+    const Real least = 1e-6 * wall_strength;  // below it the angle does not grow further
+    if (N < wall_strength) angle = degree * roughness / damage * (N > least ? T(log10(wall_strength / N)) : T(6));
+    return at.history[1] + moved * mean_tangent(at.history[0] / peak_slip, at.open ? T(0) : at.slip_of_step, angle);
+  }
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    kept[1] = opening(at);
+    if (!at.open) kept[0] += at.slip_of_step;
+  }
+
+ private:
+  /// The mean of tan(f angle) over a slip that begins at s/delta_p = x.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T mean_tangent(Real x, const T& slip, const T& angle) const {
+    const T end = x + slip / peak_slip;
+    if (!(slip > 1e-9 * peak_slip)) return tangent_over(T(angle * table.sharp(end)), T(0));
+    T sum = 0, from = x;
+    for (int k = 0; from < end; ++k) {  // from kink to kink
+      const bool last = k == table.size;
+      if (!last && !(from < table.x[k])) continue;
+      const T to = last || end < table.x[k] ? end : T(table.x[k]);
+      const T a = angle * table.sharp(from), b = angle * table.sharp(to);
+      sum += (to - from) * tangent_over(a, T(b - a));
+      from = to;
+    }
+    return sum / (end - x);
+  }
+  /// The mean of tan between a and a + by.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION static T tangent_over(const T& a, const T& by) {
+    using std::cos, std::log, std::tan;
+    if (by < 0.03 && by > -0.03) {  // there the logarithm loses digits: the series about the middle
+      const T t = tan(a + by / 2), q = t * t, h = by * by;
+      const T second = 2 + 2 * q, fourth = 16 + q * (40 + 24 * q), sixth = 272 + q * (1232 + q * (1680 + 720 * q));
+      return t * (1 + h * (second / 24 + h * (fourth / 1920 + h * sixth / 322560)));
+    }
+    return log(cos(a) / cos(a + by)) / by;
+  }
+
+  static constexpr auto& table = mobilised_roughness;
+};
+
+}  // namespace sprekk::laws

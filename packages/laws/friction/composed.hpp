@@ -1,0 +1,61 @@
+// Friction composed of that of the rock, of riding over asperities, and of shearing through them.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+#include <cmath>
+
+namespace sprekk::laws {
+
+/// Bound on |lambda_t|, Pa, under the compression N = -lambda_n, after Patton (1966) at low and with sheared asperities
+/// at high stress (Ladanyi and Archambault 1970), in the form of PorePy's composed friction:
+///   b = N mu,  mu = (mu_b + tan psi)/(1 - mu_b tan psi) + a mu_a d_f,  tan psi = (1 - a) tan psi_0 d_d,
+///   a = 1 - (1 - N/N_T)^K,  the part of the asperities that is sheared, 1 from N_T on.
+/// d_f and d_d are what damage leaves of friction and dilation; the friction mu_b of the rock is not damaged.
+/// For N < 0 the line of N = 0 goes on.
+struct ComposedFriction {
+  static constexpr bool takes_damage = true;  ///< applies what damage leaves itself
+  Real basic = 0;                             ///< mu_b
+  Real asperity = 0;                          ///< tan psi_0
+  Real sheared = 0;                           ///< mu_a
+  Real transition = 1;                        ///< N_T, Pa
+  Real exponent = 1.5;                        ///< K
+
+  static constexpr const char *name = "composed", *meaning = "of riding over asperities and of shearing through them";
+  static std::vector<Parameter<ComposedFriction>> parameters() {
+    using Law = ComposedFriction;
+    return {{&Law::basic,
+             Entry{"basic friction coefficient", "-", base::at_least(0), "mu_b of the smooth rock; or give the angle"}},
+            {&Law::basic, Entry{"basic friction angle", "degree", base::at_least(0).below(90), "atan(mu_b)"}.converted(
+                              tangent_of_degrees)},
+            {&Law::asperity,
+             Entry{"asperity angle", "degree", base::at_least(0).below(90), "psi_0 by which asperities are inclined"}
+                 .converted(tangent_of_degrees)},
+            {&Law::sheared, Entry{"asperity friction coefficient", "-", base::at_least(0),
+                                  "mu_a that asperities add where they are sheared"}},
+            {&Law::transition, Entry{"transition stress", "Pa", base::positive(),
+                                     "N_T, the compression from which on all asperities are sheared"}},
+            {&Law::exponent, Entry{"transition exponent", "-", base::greater_than(1), "K"}.or_else(1.5)}};
+  }
+  std::string defect() const {
+    return basic * asperity >= 1 ? "basic friction times the tangent of the \"asperity angle\" must be below 1: faces "
+                                   "would lock, whatever the shear traction"
+                                 : "";
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    using std::pow;
+    const T N = -at.lambda_n;
+    T rides = 1;  // 1 - a
+    if (N >= transition)
+      rides = 0;
+    else if (N > 0)
+      rides = pow(1 - N / transition, exponent);
+    const T slope = rides * asperity * at.dilation_left;
+    return N * ((basic + slope) / (1 - basic * slope) + (1 - rides) * sheared * at.friction_left);
+  }
+};
+
+}  // namespace sprekk::laws

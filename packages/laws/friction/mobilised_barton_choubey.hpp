@@ -1,0 +1,52 @@
+// The strength of a rough joint as slip mobilises and wears its roughness.
+#pragma once
+
+#include "laws/friction/barton_choubey.hpp"
+
+namespace sprekk::laws {
+
+/// Bound on |lambda_t|, Pa, after the path s slipped, Barton and Choubey (1977) with Barton's mobilised roughness:
+///   b = N tan(phi_r r(x) + f(x) i(N)),  i = JRC log10(JCS/N) degrees, kept between 0 and steepest - phi_r,  x =
+///   s/delta_p
+/// with f the part of the roughness, r that of the residual friction: roughness.hpp. b = 0 at x = 0: slip begins with
+/// the first shear traction, beside the elastic part of the jump. For N < 0 the line of N = 0 goes on.
+struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
+  static constexpr int n_history = 1;  ///< s, m
+  Real peak_slip = 0;                  ///< delta_p, m
+
+  static constexpr const char *name = "mobilised Barton-Choubey",
+                              *meaning = "of a rough joint, by JRC and JCS, that slip mobilises and wears";
+  static std::vector<Parameter<MobilisedBartonChoubeyFriction>> parameters() {
+    std::vector<Parameter<MobilisedBartonChoubeyFriction>> all;
+    for (const auto& [number, entry] : BartonChoubeyFriction::parameters()) all.push_back({number, entry});
+    all.push_back({&MobilisedBartonChoubeyFriction::peak_slip, peak_slip_entry()});
+    return all;
+  }
+  void complete() {
+    BartonChoubeyFriction::complete();
+    if (peak_slip == 0 && length > 0) peak_slip = peak_slip_of(roughness, length);
+  }
+  std::string defect() const {
+    return peak_slip > 0 ? BartonChoubeyFriction::defect() : "give either \"peak slip\" or \"joint length\"";
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    using std::log10, std::tan;
+    constexpr Real degree = 3.14159265358979323846 / 180;
+    const T N = -at.lambda_n, x = (at.history[0] + at.slip_of_step) / peak_slip;
+    T rough = steepest - residual_angle;  // i
+    if (N >= wall_strength) {
+      rough = 0;
+    } else if (N > 0) {
+      const T uncapped = roughness * log10(wall_strength / N);
+      if (uncapped < rough) rough = uncapped;
+    }
+    return N * tan(degree * (residual_angle * mobilised_friction(x) + rough * mobilised_roughness(x)));
+  }
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    if (!at.open) kept[0] += at.slip_of_step;
+  }
+};
+
+}  // namespace sprekk::laws

@@ -1,0 +1,47 @@
+// Friction that falls with the length of the path slipped.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// Linear slip weakening, Pa: b = -lambda_n (mu_r + (mu_p - mu_r) max(0, 1 - s/D)), s the length of the path that was
+/// slipped while the faces touched. There is no healing. Where the bound falls faster than the rock unloads,
+/// N (mu_p - mu_r)/D > k, slip runs away to a state that is not near.
+struct SlipWeakeningFriction {
+  static constexpr int n_history = 1;  ///< s, m
+  Real peak = 0, residual = 0;         ///< mu_p, mu_r
+  Real distance = 1;                   ///< D, m
+
+  static constexpr const char *name = "slip weakening",
+                              *meaning = "falls linearly with the slip, from peak to residual";
+  static std::vector<Parameter<SlipWeakeningFriction>> parameters() {
+    using Law = SlipWeakeningFriction;
+    return {{&Law::peak, Entry{"friction coefficient", "-", base::at_least(0), "mu at peak; or give the angle"}},
+            {&Law::peak, Entry{"friction angle", "degree", base::at_least(0).below(90), "atan(mu) at peak"}.converted(
+                             tangent_of_degrees)},
+            {&Law::residual, Entry{"residual friction coefficient", "-", base::at_least(0),
+                                   "mu_r that slip leaves; or give the angle"}},
+            {&Law::residual,
+             Entry{"residual friction angle", "degree", base::at_least(0).below(90), "atan(mu_r)"}.converted(
+                 tangent_of_degrees)},
+            {&Law::distance, Entry{"weakening distance", "m", base::positive(),
+                                   "D: the length of the path over which friction falls"}}};
+  }
+  std::string defect() const {
+    return residual > peak ? "residual friction must not be above the friction at peak" : "";
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    const T left = 1 - (at.history[0] + at.slip_of_step) / distance;
+    if (!(left > 0)) return -residual * at.lambda_n;
+    return -(residual + (peak - residual) * left) * at.lambda_n;
+  }
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+    if (!at.open) kept[0] += at.slip_of_step;
+  }
+};
+
+}  // namespace sprekk::laws

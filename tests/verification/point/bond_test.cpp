@@ -1,0 +1,82 @@
+// A bonded joint at one point: linear softening in tension and in shear, and what is left when it is lost.
+#include "point_scenes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+using laws::ContactState;
+
+constexpr Real K = 2e12, strength = 10e6, end = 1e-5;  // the traction is 0 at the opening 2 G/T
+
+Real softening(Real w) { return strength * (end - w) / (end - strength / K); }
+
+/// Pulled along the softening branch, released and pulled again along the secant, pressed without interpenetration
+/// beyond the elastic closure, and apart at 2 G/T.
+TEST(Bond, SoftensInTensionAndUnloadsAlongTheSecant) {
+  const auto states = drive("bond.xml");
+  const Real secant = softening(7e-6) / 7e-6;
+  const Real expected[] = {3e-6 * K, softening(7e-6), secant * 3.5e-6, -1e-6 * K, softening(7e-6), softening(9e-6), 0,
+                           0,        -1e-6 * K};
+  for (int k = 0; k < 9; ++k) EXPECT_NEAR(states[k].traction[0], expected[k], 1e-9 * strength) << k;
+  EXPECT_EQ(states[1].contact, ContactState::stick);
+  EXPECT_EQ(states[6].contact, ContactState::open);
+  EXPECT_EQ(states[7].contact, ContactState::open);
+  EXPECT_NEAR(states[9].traction[1], 0.5 * 2e6, 1e-3);  // friction alone is left
+  EXPECT_NEAR(states[10].traction[1], 0.5 * 2e6, 1e-3);
+}
+
+/// The area under the curve is the fracture energy, also with releases on the way.
+TEST(Bond, DissipatesTheFractureEnergy) {
+  for (const std::string path : {"1.2e-5*t", "1.2e-5*min(1, 1.5*t) - 1.2e-5*max(0, min(t - 0.2, 0.4 - t))"}) {
+    const auto states = drive("bond.xml", {"Point.path={" + path + ", 0}", "Time.end=1", "Time.steps=240"});
+    Real work = 0, w = 0, traction = 0;
+    for (const auto& s : states) {
+      work += (s.traction[0] + traction) / 2 * (s.jump[0] - w);
+      w = s.jump[0];
+      traction = s.traction[0];
+    }
+    EXPECT_NEAR(work, 50, path == "1.2e-5*t" ? 1e-9 * 50 : 0.01 * 50);
+    EXPECT_EQ(states.back().contact, ContactState::open);
+  }
+}
+
+/// Under compression c + mu N is borne, and slip takes c away linearly over 2 G/c: tau = mu N + c (1 - u c/(2 G)) with
+/// the slip u = w - tau/K_t.
+TEST(Bond, LosesItsCohesionBySlip) {
+  const Real c = 20e6, friction = 0.5 * 4e6, length = 2 * 400 / c, K_t = 1e12, peak = friction + c;
+  for (const auto& s : drive("bond.xml", {"Point.control={traction, jump}", "Point.path={-4e6, 1e-6*t}", "Time.end=50",
+                                          "Time.steps=50", "Materials.cemented joint.shear fracture energy=400"})) {
+    const Real w = s.jump[1], softened = (peak - c * w / length) / (1 - c / (length * K_t));
+    const Real tau = K_t * w <= peak ? K_t * w : std::max(softened, friction);
+    EXPECT_NEAR(s.traction[1], tau, 1e-9 * peak) << s.t;
+  }
+}
+
+TEST(Bond, ConstantCohesionStays) {
+  const auto states =
+      drive("cyclic_shear.xml", {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=0.05",
+                                 "Point.control={traction, jump}", "Point.path={-0.3, shear(t)}"});
+  const Real shear[] = {0.2, 0.23, 0.23, -0.17, -0.23, 0.23, 0.23, 0.23};
+  for (int i = 0; i < 8; ++i) EXPECT_NEAR(states[i].traction[1], shear[i], 1e-14) << i;
+  const auto pulled = drive("cyclic_shear.xml",
+                            {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=0.05",
+                             "Point.control={jump, jump}", "Point.path={0.1*t, 0.1}", "Time.end=1", "Time.steps=1"});
+  EXPECT_EQ(pulled[0].contact, ContactState::open);
+  EXPECT_EQ(pulled[0].traction[0], 0);
+}
+
+TEST(Bond, EnergiesAreRequiredWithStrengths) {
+  for (const char* entry : {"fracture energy", "shear fracture energy"}) {
+    try {
+      auto scene =
+          model::read_point_scene(*Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/point/bond.xml",
+                                  {fmt::format("Materials.cemented joint.{}=0", entry)});
+      ADD_FAILURE() << entry;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(entry), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests

@@ -1,0 +1,114 @@
+// Laws with a history on meshes: the block of cyclic_2d.xml and cyclic_3d.xml, N = 0.3 and K_s = 2/3, whose faces all
+// do what one point does. In 3D it is sheared along no axis of the joint's frame.
+#include "verification/uniform/states.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+/// The block whose top is displaced by `top`, e.g. {d(t), -0.1}, where d(k) is the k-th value of the path.
+model::Scene block(int dim, std::vector<std::string> overrides, const std::vector<Real>& path, const std::string& top) {
+  std::vector<Real> times = {0}, from_rest = {0};
+  for (const Real d : path) {
+    times.push_back(times.size());
+    from_rest.push_back(d);
+  }
+  overrides.push_back(fmt::format("Tables.tangential.arguments={{{}}}", fmt::join(times, ", ")));
+  overrides.push_back(values("tangential", from_rest));
+  overrides.push_back(fmt::format("Time.end={}", path.size()));
+  overrides.push_back(fmt::format("Time.steps={}", path.size()));
+  overrides.push_back("Boundary conditions.moved.displacement=" + top);
+  auto scene = read_scene(fmt::format("verification/cyclic_{}d.xml", dim), overrides);
+  tie_sides(scene);
+  return scene;
+}
+
+Vector3 direction(int dim) { return dim == 2 ? Vector3{1, 0, 0} : Vector3{0.6, -0.8, 0}; }
+
+/// Shears the block along the path; after each step the plastic jump is u[k], the rest follows from the column.
+void expect_slip(int dim, const std::vector<std::string>& overrides, const std::vector<Real>& path,
+                 const std::vector<Real>& u, Real digits) {
+  const std::string top = dim == 2 ? "{tangential(t), -0.1}" : "{0.6*tangential(t), -0.8*tangential(t), -0.1}";
+  model::Model model(block(dim, overrides, path, top), Tpetra::getDefaultComm());
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    SCOPED_TRACE(fmt::format("step {}", k + 1));
+    const auto report = model.step_to(k + 1);
+    ASSERT_TRUE(report.converged) << report.reason;
+    auto e = UniformJoint{2.0 / 3 * (path[k] - u[k]), -0.3, u[k], 0, 0, 2}.along(direction(model.mesh().dim()),
+                                                                                 model.mesh().dim());
+    e.tolerance = e.traction_tolerance = digits;
+    expect_joint(model, e);
+  }
+}
+
+TEST(SlipHistory, WeakeningOnEveryMesh) {
+  const std::vector<Real> path = {0.1, 0.2, 0.3, 0.4, 0.6}, u = {0, 0, 3.0 / 55, 0.22, 0.42};
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      expect_slip(
+          dim,
+          d.with({"Materials.joint.friction=slip weakening", "Materials.joint.residual friction coefficient=0.4",
+                  "Materials.joint.weakening distance=0.2"}),
+          path, u, 1e-10);
+    }
+}
+
+/// Values with twelve digits, not from this program; those of the tests at a point.
+TEST(SlipHistory, DamageOnEveryMesh) {
+  const std::vector<Real> path = {0.2, 0.4, 0.6, 0.3, 0, -0.3, -0.6, -0.3};
+  const std::vector<Real> u = {
+      0, 0, 0.299855684813, 0.299855684813, 0.299855684813, -0.024031101387, -0.328698882491, -0.328698882491};
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      expect_slip(dim,
+                  d.with({"Materials.joint.friction coefficient=0.9", "Materials.joint.damage=isotropic",
+                          "Materials.joint.residual part of friction=0.66666666666666667",
+                          "Materials.joint.damage length of friction=0.2"}),
+                  path, u, 1e-9);
+    }
+}
+
+/// Two sides, each with its wear: slip to u wears the one, and slip beyond 0 meets the other one whole, which slips as
+/// far as the first did.
+TEST(SlipHistory, AnisotropicDamageIn2D) {
+  const std::vector<std::string> damage = {
+      "Materials.joint.friction coefficient=0.9", "Materials.joint.damage=anisotropic",
+      "Materials.joint.residual part of friction=0.66666666666666667", "Materials.joint.damage length of friction=0.2"};
+  const Real u = 0.299855684813;  // as above, of first loading
+  expect_slip(2, damage, {0.6, 0, -0.6}, {u, u, -u}, 1e-9);
+}
+
+/// Pulled: the rock of stiffness 3 (plane strain, height 1) is in series with a joint that does not deform, t = 3 (d -
+/// o). With T = 0.06 and o_f = 2 G/T = 0.1 it is whole up to T, softens by t = T (1 - o/o_f), releases along t/t_max =
+/// o/o_max, and is open from o_f on.
+TEST(SlipHistory, BondOnEveryMesh) {
+  const std::vector<Real> pulled = {0.01, 0.03, 0.06, 0.04, 0.02, 0.08, 0.12};
+  const Real T = 0.06, o_f = 0.1;
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      const auto bond = d.with({"Materials.joint.bond=linear softening", "Materials.joint.cohesion=0.05",
+                                "Materials.joint.shear fracture energy=1", "Materials.joint.tensile strength=0.06",
+                                "Materials.joint.fracture energy=0.003"});
+      model::Model model(block(dim, bond, pulled, dim == 2 ? "{0, tangential(t)}" : "{0, 0, tangential(t)}"),
+                         Tpetra::getDefaultComm());
+      Real widest = 0;
+      for (std::size_t k = 0; k < pulled.size(); ++k) {
+        SCOPED_TRACE(k);
+        const auto report = model.step_to(k + 1);
+        ASSERT_TRUE(report.converged) << report.reason;
+        Real o = std::max((pulled[k] - T / 3) / (1 - T / (3 * o_f)), Real(0));  // on the line
+        if (o < widest) o = pulled[k] / (1 + T * (1 - widest / o_f) / (3 * widest));
+        if (o > o_f) o = pulled[k];
+        widest = std::max(widest, o);
+        auto e = UniformJoint{0, 3 * (pulled[k] - o), 0, o, 0, 2}.along({1, 0, 0}, dim);
+        e.tolerance = e.traction_tolerance = 1e-10;
+        expect_joint(model, e);
+      }
+      EXPECT_GT(widest, o_f);
+    }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
