@@ -1,4 +1,4 @@
-// The part of a residual that depends on time alone.
+// The part of a residual that is constant during a step.
 #pragma once
 
 #include "base/types.hpp"

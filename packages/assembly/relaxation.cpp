@@ -6,41 +6,40 @@
 namespace sprekk::assembly {
 namespace {
 
-constexpr int n_fast = 5;  // iterates before it goes carefully
+constexpr int n_unlimited = 4;  // steps before those upwards are limited, too
 constexpr Real steepest = -100, most_down = 2;
-constexpr Real memory = 0.25, longest_memory = 0.8, memory_of_turns = 0.6;
+constexpr Real share = 0.25, largest_share = 0.8, share_of_sign_changes = 0.6;
 constexpr Real shorter = 0.7, longer = 1.2, shortest = 0.02;
 
 }  // namespace
 
-void Relaxation::start(std::vector<Real> y) {
-  y_ = std::move(y);
-  past_.resize(y_.size());
-  before_.clear();
+Real Relaxation::Number::step(Real residual, Real moved, Real change, bool limited) {
+  const bool turned = moved * residual < 0;
+  const Real kept = largest_share - (largest_share - share) * std::pow(share_of_sign_changes, n_sign_changes);
+  const Real remembered = turned ? 2 * slope - 0.5 : kept * slope;
+  slope = std::clamp(std::min(moved != 0 ? change / moved : 0, remembered), steepest, Real(0));
+  const Real step = std::max(residual / (1 - slope), -most_down);
+  if (!limited) return step;
+  n_sign_changes += turned;
+  step_limit = turned ? std::max(shorter * step_limit, shortest) : std::min(longer * step_limit, Real(1));
+  return std::clamp(step, -step_limit, step_limit);
 }
 
-/// How far a number moves whose g is `away`, and was `answered` farther after the last move by `moved`.
-Real Relaxation::step(Past& past, Real away, Real moved, Real answered) const {
-  const bool careful = n_ > n_fast, turned = moved * away < 0;
-  const Real share = longest_memory - (longest_memory - memory) * std::pow(memory_of_turns, past.n_turns);
-  const Real remembered = turned ? 2 * past.slope - 0.5 : share * past.slope;
-  past.slope = std::clamp(std::min(moved != 0 ? answered / moved : 0, remembered), steepest, Real(0));
-  const Real step = std::max(away / (1 - past.slope), -most_down);
-  if (!careful) return step;
-  past.n_turns += turned;
-  past.longest = turned ? std::max(shorter * past.longest, shortest) : std::min(longer * past.longest, Real(1));
-  return std::clamp(step, -past.longest, past.longest);
+void Relaxation::start(std::vector<Real> y) {
+  *this = {};
+  y_ = std::move(y);
+  numbers_.resize(y_.size());
 }
 
 void Relaxation::follow(const std::vector<Real>& g) {
-  ++n_;
+  const bool first = last_y_.empty(), limited = ++n_steps_ > n_unlimited;
   auto next = y_;
   for (std::size_t k = 0; k < g.size(); ++k) {
-    const bool first = before_.empty();
-    next[k] += step(past_[k], g[k] - y_[k], first ? 0 : y_[k] - before_[k], first ? 0 : g[k] - led_to_[k]);
+    const Real moved = first ? 0 : y_[k] - last_y_[k], change = first ? 0 : g[k] - last_g_[k];
+    next[k] += numbers_[k].step(g[k] - y_[k], moved, change, limited);
   }
-  before_ = y_;
-  led_to_ = g;
+  last_y_ = y_;
+  last_g_ = g;
   y_ = next;
 }
 

@@ -7,29 +7,31 @@
 
 namespace sprekk::assembly {
 
-/// y -> g(y) for numbers y whose g fall, steeply in places. Each moves by (g - y)/(1 - s) with the secant's slope s. The
-/// steepest slope is remembered, by a share that falls with each iterate, and made steeper where that went too far, for
-/// numbers act on each other. If the iteration does not settle soon, numbers swing in groups, in which each knows only
-/// of itself: then one that goes to and fro remembers longer, and all move by 1 at most, by less where they turned back.
+/// The fixed-point iteration y -> g(y) for numbers whose g falls with y, steeply in places: a diagonal secant method
+/// with limits on its steps. Each number moves by (g - y)/(1 - s), s being its secant's slope or a share of the
+/// steepest one so far; where the residual g - y changed its sign, s is made steeper, for numbers act on each other.
+/// If that does not converge within a few steps, groups of numbers oscillate together: then that share grows with each
+/// change of sign, from 0.25 to 0.8, and all steps are limited to 1, those of numbers that oscillate to less.
 class Relaxation {
  public:
   bool started() const { return !y_.empty(); }
   const std::vector<Real>& y() const { return y_; }
-  /// Begins at y, without slopes of its past; those of an iteration that is under way are kept.
+  /// Starts anew, at y.
   void start(std::vector<Real> y);
-  /// From y to the next, with the g that y leads to. Nothing falls by more than 2.
+  /// From y to the next, with g(y). Nothing falls by more than 2.
   void follow(const std::vector<Real>& g);
 
  private:
-  struct Past {
-    Real slope = 0, longest = 1;  // longest: the farthest that it moves next
-    int n_turns = 0;
+  struct Number {
+    Real slope = 0, step_limit = 1;
+    int n_sign_changes = 0;  // of the residual
+    /// The next step, with the residual; after the last one, `moved`, g changed by `change`.
+    Real step(Real residual, Real moved, Real change, bool limited);
   };
-  Real step(Past& past, Real away, Real moved, Real answered) const;
 
-  std::vector<Real> y_, before_, led_to_;  // before_, led_to_: the y before and its g; empty: none
-  std::vector<Past> past_;
-  int n_ = 0;
+  std::vector<Real> y_, last_y_, last_g_;  // the latter two empty before the first step
+  std::vector<Number> numbers_;
+  int n_steps_ = 0;
 };
 
 }  // namespace sprekk::assembly

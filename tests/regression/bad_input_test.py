@@ -382,10 +382,10 @@ class Scenes(BadInput):
         refuse(['Materials > rock: give either "compressibility of pores" or "Biot modulus"'],
                "Materials.rock.compressibility of pores=0", "Materials.rock.Biot modulus=1")
         refuse(['Materials > rock > "Biot modulus": is 0, must be positive or infinite'], "Materials.rock.Biot modulus=0")
-        refuse(['Materials > rock > "Biot modulus": is 11 Pa, must not be above 10 Pa, which "porosity" and "compressibility"'],
+        refuse(['Materials > rock: "Biot modulus": is 11 Pa, must not be above 10 Pa, which "porosity" and "compressibility"'],
                "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2", "Flow.compressibility=0.5")
         refuse(['Materials > rock: "porosity" = 0.5-x is -0.', "must be between 0 and 1"], "Materials.rock.porosity=0.5-x")
-        refuse(['is 11 Pa, must not be above 10 Pa'], "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2+0*x",
+        refuse(['Materials > rock: "Biot modulus": is 11 Pa, must not be above 10 Pa at ('], "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2+0*x",
                "Flow.compressibility=0.5")
         refuse(['"scheme"', '"mpfa"', '"mimetic"'], "Flow.scheme=mpfa")
         refuse(['Boundary conditions > west: give either "pressure" or "flux"'], "Boundary conditions.west.flux=1")

@@ -117,7 +117,7 @@ void compare_rock(Comparison& c, const Material& rock) {
     }
   };
   if (rock.porosity.is_constant())
-    try_to(fmt::format("Materials > {} > \"Biot modulus\"", name), [&] { rock.capacity(flow.compressibility, {}); });
+    try_to("Materials > " + name, [&] { rock.capacity(flow.compressibility, {}); });
   if (rock.permeability.empty() && c.is_sound("Materials > " + name))
     c.fail(place, "missing; it is required with \"Flow\"");
   if (rock.permeability.empty() || !c.names().dim) return;

@@ -31,17 +31,17 @@ bool Flow::Rock::flows_uniformly() const { return is_uniform_tensor(permeability
 Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
   const Real room = value_at("porosity", porosity, base::between(0, 1), x), least = room * of_fluid;
   if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
-  SPREKK_CHECK(
-      least * *biot_modulus <= 1 + 1e-12,
-      "is {:.6g} Pa, must not be above {:.6g} Pa, which \"porosity\" and \"compressibility\" of the fluid make "
-      "without any growth of pores",
-      *biot_modulus, 1 / least);
+  const auto here = porosity.is_constant() ? "" : fmt::format(" at ({}, {}, {})", x[0], x[1], x[2]);
+  SPREKK_CHECK(least <= (1 + 1e-12) / *biot_modulus,
+               "\"Biot modulus\": is {:.6g} Pa, must not be above {:.6g} Pa{}, which \"porosity\" and "
+               "\"compressibility\" of the fluid make without any growth of pores",
+               *biot_modulus, 1 / least, here);
   return {.room = room, .growth = std::max(Real(0), 1 / *biot_modulus - least)};
 }
 
 bool Flow::Rock::may_store(Real of_fluid) const {
-  return biot_modulus ? std::isfinite(*biot_modulus) || (of_fluid > 0 && !is_zero(porosity))
-                      : compressibility.value_or(0) > 0 || (of_fluid > 0 && !is_zero(porosity));
+  const bool pores_grow = biot_modulus ? std::isfinite(*biot_modulus) : compressibility.value_or(0) > 0;
+  return pores_grow || (of_fluid > 0 && !is_zero(porosity));
 }
 
 laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const {

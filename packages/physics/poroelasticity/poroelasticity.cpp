@@ -12,11 +12,15 @@ namespace {
 
 constexpr const char* biot_name = "Biot coefficient";
 
-/// Biot's coefficient of cells.
+/// Biot's coefficient of cells. Collective; throws on all ranks.
 Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
-  return by_cell(
-      scene, mesh, [](const Material& rock) { return rock.biot.is_constant(); },
-      [](const Material& rock, const auto& x) { return value_at(biot_name, rock.biot, base::between(0, 1), x); });
+  Properties<Real> values;
+  base::collectively(*mesh.comm, [&] {
+    values = by_cell(
+        scene, mesh, [](const Material& rock) { return rock.biot.is_constant(); },
+        [](const Material& rock, const auto& x) { return value_at(biot_name, rock.biot, base::between(0, 1), x); });
+  });
+  return values;
 }
 
 std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
