@@ -77,6 +77,7 @@ void System::damp(Real everywhere, const std::vector<Real>& here) {
 
 bool System::tether(Real stiffness, const BlockVector& x) {
   tether_ = 0;
+  present_.clear();
   const bool contact = contact_ >= 0;
   if (stiffness == 0 || !contact) return contact;
   refresh_ghosts(x, false);
@@ -133,6 +134,7 @@ void System::set_time(Real t, Real dt) {
   nearest_known_ = true;
   rates_ = dt > 0 ? Rates::of(scheme_, dt, committed_dt_) : Rates{};  // 0: before the first step
   sized_ = false;
+  present_.clear();  // its rounding is not that of where the next attempt starts
   update_scales(t);
   bool changes = !loaded_;
   base::collectively(*comm(), [&] {
