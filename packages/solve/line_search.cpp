@@ -117,18 +117,11 @@ bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gr
   } else if (!merits_.empty()) {
     back = picard_.resume(solution_of(from), taken.a, taken.merit, merits_.back());
   }
+  if (back) group = from;
   if (!back && !lagged) return false;
-  const auto evaluate = [&] {
-    if (back) group = from;
-    group.setX(group.getX());
-    group.computeF();
-    taken.merit = problem_.merit(solution_of(group), residual_of(group));
-  };
-  evaluate();
-  if (back || picard_.lags() || !merits_.empty()) return back;
-  const Real before = problem_.merit(solution_of(from), residual_of(from));
-  back = picard_.widen(solution_of(from), taken.merit, before);
-  if (back) evaluate();
+  group.setX(group.getX());
+  group.computeF();
+  taken.merit = problem_.merit(solution_of(group), residual_of(group));
   return back;
 }
 

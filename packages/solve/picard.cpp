@@ -32,12 +32,6 @@ bool Picard::follow(const BlockVector& x) {
   return false;
 }
 
-bool Picard::widen(const BlockVector& from, Real merit, Real merit_before) {
-  if (merit <= most_growth * merit_before) return false;
-  problem_.lag(Lag::widest, from);
-  return lags_ = true;
-}
-
 bool Picard::resume(const BlockVector& from, Real step, Real merit, Real merit_before) {
   if (step >= least_step && merit <= most_growth * merit_before) return false;
   problem_.lag(Lag::follow, from);

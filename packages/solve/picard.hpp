@@ -30,9 +30,6 @@ class Picard {
 
   /// After a full step of the f that lags, to x. True if the step is to be taken back.
   bool follow(const BlockVector& x);
-  /// After the first step, from `from`, if coefficients agreed after it. True, and f lags as where that goes far, if the
-  /// merit of f itself grew beyond what a search would allow: contact opens only in the step after.
-  bool widen(const BlockVector& from, Real merit, Real merit_before);
   /// After a step of f itself from `from`, of which the search took the part `step`. True if it is to be taken back: f
   /// lags again.
   bool resume(const BlockVector& from, Real step, Real merit, Real merit_before);
