@@ -298,8 +298,10 @@ Real System::rounding(const BlockVector& x, const std::string& scale) const {
 /// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
 /// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
 /// rock. A traction row has jumps times the constant of the face law in it: where soft rock carries stiff rock far,
-/// their rounding is more than the deformation of the stiff one.
+/// their rounding is more than the deformation of the stiff one. But what flies off to displacements whose rounding hides
+/// the loads has not converged.
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
+  constexpr Real most_noise = 1e-5;  // of the loads
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -324,10 +326,10 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real noise = mask(i) ? 0 : rounding_of_block * now(i) + stored,
-                     size_of_row = row(i) < 0 ? -row(i) : row(i);
-          const Real weak = balance ? diagonal(i) * held_scale : free_scale;
+          const Real size_of_row = row(i) < 0 ? -row(i) : row(i), weak = balance ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
+          const Real of_row = rounding_of_block * now(i) + stored,
+                     noise = mask(i) ? 0 : balance || of_row < most_noise * scale ? of_row : most_noise * scale;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
