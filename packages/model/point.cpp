@@ -30,6 +30,7 @@ class PointDriver {
       : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
+    law_.sliding_compliance = 0;  // it steers the iteration on meshes
     if (!point_.initial_traction.empty()) press();
   }
 
@@ -38,10 +39,11 @@ class PointDriver {
     Real old[2 * dim];
     std::copy_n(x_, 2 * dim, old);
     std::string reason;
-    for (Start start : {Start{false, false}, {true, false}, {true, true}}) {
+    for (Start start : {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}}) {
       for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
         for (int i = 0; i < 2 * dim; ++i)
           x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
+        if (start.elastic && !stretch()) break;
         const std::string failure = solve(factor, start.damped);
         if (failure.empty()) return accept(t);
         if (reason.empty()) reason = failure;
@@ -71,11 +73,26 @@ class PointDriver {
     std::copy_n(base_, dim, x_ + dim);
   }
 
-  /// Where Newton's method starts, the last state or one without traction, and whether its steps are damped. These and
-  /// the factor on the typical stiffness steer the iteration, not the solution.
+  /// Where Newton's method starts, the last state, that stretched, or one without traction, and whether its steps are
+  /// damped. These and the factor on the typical stiffness steer the iteration; which solution is found, if there are
+  /// several, depends on them.
   struct Start {
-    bool damped, released;
+    bool damped = false, released = false, elastic = false;
   };
+
+  /// Moves x to where what is prescribed only stretches a joint with a bond: a state that is whole comes before one that
+  /// is broken. False where there is none such to be expected.
+  bool stretch() {
+    bool stretched = false;
+    for (int i = 0; i < dim && law_.is_bonded(); ++i) {
+      const Real compliance = i == 0 ? law_.gap.closure.initial_compliance() : law_.elastic.initial_compliance();
+      if (compliance == 0) continue;
+      if (control(i) == "jump") x_[dim + i] += (rest_[i] + d_[i] - x_[i]) / compliance;
+      if (control(i) == "traction") x_[i] += (d_[i] - x_[dim + i]) * compliance;
+      stretched = true;
+    }
+    return stretched;
+  }
 
   const std::string& control(int i) const { return point_.control[i]; }
 

@@ -95,7 +95,7 @@ laws::Mobility Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) c
 }
 
 void Heat::Region::describe(base::Section& s) {
-  s.entry(temperature, "temperature", "K", base::any(),
+  s.entry(temperature, "temperature", "K", base::at_least(0),
           "of its cells, with \"Heat\": a value or an expression of x, y, z, t");
 }
 
@@ -105,7 +105,7 @@ std::vector<Prescribed> Heat::Region::prescribed() const {
 }
 
 void Heat::BoundaryCondition::describe(base::Section& s) {
-  s.entry(temperature, "temperature", "K", base::any(), "with \"Heat\": a value or an expression of x, y, z, t");
+  s.entry(temperature, "temperature", "K", base::at_least(0), "with \"Heat\": a value or an expression of x, y, z, t");
   s.entry(heat_flux, "heat flux", "W/m^2", base::any(), "heat that leaves per area and time, with \"Heat\"");
   entry_of_place(s, heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
                  "h: the flux is h (T - temperature), the temperature then being that beyond the boundary");

@@ -161,9 +161,35 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   }
   if (weakest.empty()) return "";
   return fmt::format(
-      "the bound of \"{}\" falls with slip: under a compression of {:.2g} Pa and more faster than the rock unloads "
-      "({:.4g} m large); there slip may run away, in short steps as well",
-      weakest, lowest, size);
+      "the bound of \"{}\" falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as the "
+      "domain, {:.4g} m, unloads; there slip may run away, in short steps as well",
+      weakest, lowest / 1e6, size);
+}
+
+std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
+  const Real size = mesh::largest_extent(mesh), zero = 0, little = 1e-9;
+  const auto rock = bounding_rock(scene);
+  if (!rock) return "";
+  for (const auto& [name, fracture] : scene.fractures) {
+    const auto& material = scene.materials.at(fracture.material);
+    if (!material.is_uniform()) continue;
+    const auto law = material.joint({}).law;
+    const laws::Contact<Real> whole{.history = {&zero, 0}};
+    auto apart = whole;
+    apart.separation = little;
+    const Real softens[] = {(law.cohesion(whole).strength - law.cohesion(apart).strength) / little,
+                            physics::weakening(law, whole)};
+    const Real unloads[] = {
+        1 / (size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance()),
+        1 / (size / rock->G + law.elastic.initial_compliance())};
+    for (int k = 0; k < 2; ++k)
+      if (softens[k] > unloads[k])
+        return fmt::format(
+            "the bond of \"{}\" softens by {:.2g} Pa/m with {}, and rock as large as the domain, {:.4g} m, unloads by "
+            "{:.2g} Pa/m: there it may break at once, in short steps as well; more \"{}fracture energy\" avoids this",
+            fracture.material, softens[k], k == 0 ? "opening" : "slip", size, unloads[k], k == 0 ? "" : "shear ");
+  }
+  return "";
 }
 
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {

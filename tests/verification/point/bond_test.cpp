@@ -40,6 +40,23 @@ TEST(Bond, DissipatesTheFractureEnergy) {
   }
 }
 
+/// One that softens faster than the joint unloads has two states below its strength, whole and lost: it is whole, however
+/// long the steps are.
+TEST(Bond, HoldsUpToItsStrengthIfItIsBrittle) {
+  for (const std::string steps : {"1", "2", "5"}) {
+    const auto pulled = [&](const std::string& path) {
+      return drive("bond.xml", {"Materials.cemented joint.fracture energy=10", "Point.path={" + path + ", 0}",
+                                "Time.end=1", "Time.steps=" + steps})
+          .back();
+    };
+    EXPECT_NEAR(pulled("4e-6*t").traction[0], 4e-6 * K, 1e-9 * strength) << steps;
+    EXPECT_EQ(pulled("6e-6*t").contact, ContactState::open) << steps;
+  }
+  const auto sheared = drive("bond.xml", {"Materials.cemented joint.shear fracture energy=20", "Time.end=1",
+                                          "Point.control={traction, jump}", "Point.path={-4e6, 15e-6*t}", "Time.steps=1"});
+  EXPECT_NEAR(sheared[0].traction[1], 15e6, 1e-9 * strength);  // of 2 + 20 MPa
+}
+
 /// Under compression c + mu N is borne, and slip takes c away linearly over 2 G/c: tau = mu N + c (1 - u c/(2 G)) with
 /// the slip u = w - tau/K_t.
 TEST(Bond, LosesItsCohesionBySlip) {
