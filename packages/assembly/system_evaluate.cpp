@@ -318,6 +318,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // some rows let much less through than others
+    const bool bounded = !balance && static_cast<int>(b) != contact_;
     Real stored = 0;                       // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
@@ -329,7 +330,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
           const Real size_of_row = row(i) < 0 ? -row(i) : row(i), weak = balance ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
           const Real of_row = rounding_of_block * now(i) + stored,
-                     noise = mask(i) ? 0 : balance || of_row < most_noise * scale ? of_row : most_noise * scale;
+                     noise = mask(i) ? 0 : bounded && of_row > most_noise * scale ? most_noise * scale : of_row;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
