@@ -39,7 +39,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
   if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
-    report_.failure = "no equilibrium: " + unresisted + ", and meets no resistance";
+    report_.failure = "no resistance to the loads found: " + unresisted + ", and meets none";
     return false;
   }
   const auto first = dx->clone();
