@@ -2,8 +2,8 @@
 #include "assembly/loose_pieces.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
@@ -16,12 +16,6 @@ using mesh::Vector;
 using mesh::operator-;
 
 namespace {
-
-std::vector<Real> sum_over_ranks(const Comm& comm, const std::vector<Real>& here) {
-  std::vector<Real> all(here.size());
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
-  return all;
-}
 
 Real size(const RigidRow& q) { return std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), Real(0))); }
 
@@ -41,7 +35,7 @@ LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) con
       for (int c = 0; c < m; ++c) q[number * m + c] += row[modes[c]] * u(k * dim() + i, 0);
     }
   }
-  q = sum_over_ranks(*mesh_->comm, q);
+  q = base::sum_over_ranks(*mesh_->comm, q);
   Motion motion;
   motion.q.assign(n, {});
   for (const auto& group : groups_) {
@@ -79,7 +73,7 @@ void LoosePieces::remove_rigid(fields::Vector& ghosted) const {
       const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
       for (int c = 0; c < m; ++c) shares[piece_of_[k] * m + c] += row[modes[c]] * u(k * dim() + i, 0);
     }
-  shares = sum_over_ranks(*mesh_->comm, shares);
+  shares = base::sum_over_ranks(*mesh_->comm, shares);
   std::vector<RigidRow> motion(n_pieces, RigidRow{});
   for (int p = 0; p < n_pieces; ++p) {
     if (tied_[p]) continue;
@@ -148,7 +142,7 @@ std::vector<Real> LoosePieces::work(const Motion& motion, const fields::Vector& 
     add(mesh_->cell_piece[face.cell[mesh::plus]], face.centre, force);
     add(mesh_->cell_piece[face.cell[mesh::minus]], face.centre, opposite);
   }
-  return sum_over_ranks(*mesh_->comm, work);
+  return base::sum_over_ranks(*mesh_->comm, work);
 }
 
 LoosePieces::Motion LoosePieces::selected(const Motion& motion, const std::function<bool(int)>& group_is) const {

@@ -2,9 +2,8 @@
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/union_find.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,21 +22,6 @@ namespace {
 
 /// Of the stiffness against deformation; small enough not to be felt, large enough for the arithmetic.
 constexpr Real proximal_share = 1e-4;
-
-template <class T>
-void sum_over_ranks(const Comm& comm, std::vector<T>& values) {
-  std::vector<T> all(values.size());
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(values.size()), values.data(), all.data());
-  values = std::move(all);
-}
-
-void sum_over_ranks(const Comm& comm, std::vector<RigidBlock>& blocks) {
-  std::vector<RigidBlock> all(blocks.size());
-  if (blocks.empty()) return;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(36 * blocks.size()), blocks[0][0].data(),
-                     all[0][0].data());
-  blocks = std::move(all);
-}
 
 void add_block(RigidBlock& sum, const RigidBlock& block) {
   for (int k = 0; k < 6; ++k)
@@ -79,7 +63,7 @@ Vector LoosePieces::node(LocalIndex n) const {
 /// Frames and sizes of pieces; which piece a node is in, and the volume around it.
 void LoosePieces::measure_pieces(const fields::Layout& displacement) {
   const int n = mesh_->nodes_per_cell(), n_pieces = mesh_->n_pieces;
-  std::vector<Real> corner(6 * n_pieces, -std::numeric_limits<Real>::max()), corners(corner.size());
+  std::vector<Real> corner(6 * n_pieces, -std::numeric_limits<Real>::max());
   piece_of_.assign(displacement.n_owned_entities(), 0);
   volume_.assign(displacement.n_owned_entities(), 0);
   n_cells_.assign(n_pieces, 0);
@@ -103,8 +87,8 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
       volume_[owned] += volume / n;
     }
   }
-  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, static_cast<int>(corner.size()), corner.data(), corners.data());
-  sum_over_ranks(*mesh_->comm, n_cells_);
+  const auto corners = base::max_over_ranks(*mesh_->comm, corner);
+  n_cells_ = base::sum_over_ranks(*mesh_->comm, n_cells_);
   for (int p = 0; p < n_pieces; ++p) {
     RigidFrame frame{{}, 0};
     for (int i = 0; i < 3; ++i) {
@@ -119,7 +103,7 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
       const auto row = rigid_row(frames_[piece_of_[k]], node(k), i);
       add_product(inertia_[piece_of_[k]], row, row);
     }
-  sum_over_ranks(*mesh_->comm, inertia_);
+  inertia_ = base::sum_over_ranks(*mesh_->comm, inertia_);
 }
 
 void LoosePieces::find_ties(const fields::Layout& displacement) {
@@ -137,8 +121,7 @@ void LoosePieces::find_ties(const fields::Layout& displacement) {
   }
   std::vector<int> tied(mesh_->n_pieces, 0);
   for (const auto& tie : ties_) tied[tie.a] = tied[tie.b] = 1;
-  tied_.assign(tied.size(), 0);
-  Teuchos::reduceAll(*mesh_->comm, Teuchos::REDUCE_MAX, static_cast<int>(tied.size()), tied.data(), tied_.data());
+  tied_ = base::max_over_ranks(*mesh_->comm, tied);
 }
 
 void LoosePieces::hold(const Constraints& constraints) {
@@ -155,7 +138,7 @@ void LoosePieces::hold(const Constraints& constraints) {
       for (int k = 0; k < 6; ++k) row[k] -= other[k];
       add_product(support_[tie.a], row, row);
     }
-  sum_over_ranks(*mesh_->comm, support_);
+  support_ = base::sum_over_ranks(*mesh_->comm, support_);
 }
 
 /// The pairs of pieces on the two sides of any rank's faces and ties, in the same order everywhere.
@@ -171,13 +154,7 @@ void LoosePieces::pair_up() {
     if (tie.a != tie.b) here.insert({tie.a, tie.b});
   std::vector<int> mine;
   for (const auto& [a, b] : here) mine.insert(mine.end(), {a, b});
-  const Comm& comm = *mesh_->comm;
-  const int n = static_cast<int>(mine.size());
-  int most = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &n, &most);
-  mine.resize(most, -1);
-  std::vector<int> all(most * comm.getSize());
-  if (most > 0) Teuchos::gatherAll(comm, most, mine.data(), static_cast<int>(all.size()), all.data());
+  const auto all = base::gather_over_ranks(*mesh_->comm, mine);
   std::map<std::pair<int, int>, int> number;
   for (std::size_t k = 0; k < all.size(); k += 2)
     if (all[k] >= 0) number[{all[k], all[k + 1]}] = 0;
@@ -208,8 +185,8 @@ void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
       view(k * dim() + i, 0) *= proximal_share * ratio * ratio;
     }
   }
-  sum_over_ranks(*mesh_->comm, modulus);
-  sum_over_ranks(*mesh_->comm, n_nodes);
+  modulus = base::sum_over_ranks(*mesh_->comm, modulus);
+  n_nodes = base::sum_over_ranks(*mesh_->comm, n_nodes);
   for (int p = 0; p < mesh_->n_pieces; ++p) modulus[p] /= n_nodes[p];
   const auto [softest, stiffest] = std::minmax_element(modulus.begin(), modulus.end());
   contrast_ = *stiffest / *softest;
@@ -243,7 +220,7 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
       add(pair_of_[f], row_a, row_b);
     }
   }
-  sum_over_ranks(*mesh_->comm, pairs_sum_);
+  pairs_sum_ = base::sum_over_ranks(*mesh_->comm, pairs_sum_);
 }
 
 /// Candidates that are not held by pieces that are: a piece counts as held once its support and its neighbours that

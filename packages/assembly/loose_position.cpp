@@ -3,8 +3,8 @@
 #include "assembly/loose_pieces.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
@@ -18,26 +18,13 @@ using mesh::operator-;
 
 namespace {
 
-std::vector<Real> sum_over_ranks(const Comm& comm, const std::vector<Real>& here) {
-  std::vector<Real> all(here.size());
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(here.size()), here.data(), all.data());
-  return all;
-}
-
 /// All ranks' rows of a length, those of the first rank first.
 std::vector<std::vector<Real>> gather_rows(const Comm& comm, const std::vector<std::vector<Real>>& here, int length) {
-  const int n = static_cast<int>(here.size()), stride = length + 1;
-  int most = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &n, &most);
-  std::vector<Real> mine(most * stride, 0), all(static_cast<std::size_t>(most) * stride * comm.getSize());
-  for (int k = 0; k < n; ++k) {
-    mine[k * stride] = 1;  // there is a row
-    std::copy(here[k].begin(), here[k].end(), &mine[k * stride + 1]);
-  }
-  if (most > 0) Teuchos::gatherAll(comm, most * stride, mine.data(), static_cast<int>(all.size()), all.data());
+  std::vector<Real> mine;
+  for (const auto& row : here) mine.insert(mine.end(), row.begin(), row.end());
+  const auto all = base::gather_over_ranks(comm, mine);
   std::vector<std::vector<Real>> rows;
-  for (std::size_t k = 0; k < all.size(); k += stride)
-    if (all[k] > 0) rows.emplace_back(all.begin() + k + 1, all.begin() + k + stride);
+  for (auto row = all.begin(); row != all.end(); row += length) rows.emplace_back(row, row + length);
   return rows;
 }
 
@@ -90,7 +77,7 @@ std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Moti
       }
     }
   }
-  sums = sum_over_ranks(*mesh_->comm, sums);
+  sums = base::sum_over_ranks(*mesh_->comm, sums);
   std::vector<Form> forms;
   for (const auto& group : groups_) forms.emplace_back(group.modes.size());
   for (std::size_t l = 0; l < loose_.size(); ++l) {
@@ -128,8 +115,8 @@ std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>
     }
   }
   for (auto& form : forms) {
-    form.matrix = sum_over_ranks(*mesh_->comm, form.matrix);
-    form.vector = sum_over_ranks(*mesh_->comm, form.vector);
+    form.matrix = base::sum_over_ranks(*mesh_->comm, form.matrix);
+    form.vector = base::sum_over_ranks(*mesh_->comm, form.vector);
   }
   return forms;
 }

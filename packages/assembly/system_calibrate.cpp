@@ -2,8 +2,7 @@
 #include "assembly/system.hpp"
 
 #include "base/check.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +45,7 @@ bool System::calibrate(const BlockVector& x, bool first) {
   const auto before = std::exchange(grips_, grips());
   if (first) return false;
   const Real stress = blocks_[contact_].kinematic_scale, length = scales_.at(unknowns_[contact_].augmented_by);
-  std::array<std::array<Real, n_sums>, n_classes> here{}, all{};
+  std::array<std::array<Real, n_sums>, n_classes> here{};
   for (std::size_t f = 0; f < grips_.size(); ++f) {
     const auto& now = grips_[f];
     auto& sums = here[calibration_class(now)];
@@ -63,7 +62,7 @@ bool System::calibrate(const BlockVector& x, bool first) {
       sums[loaded] += size * traction * traction;
     }
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_SUM, n_classes * n_sums, here[0].data(), all[0].data());
+  const auto all = base::sum_over_ranks(*comm(), here);
   bool corrected = false;
   for (int k = 0; k < n_classes; ++k) {
     const auto& sums = all[k];

@@ -1,7 +1,7 @@
 // Coefficients of fluxes that lag behind the unknowns they depend on.
 #include "assembly/system.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +21,13 @@ Real System::lag(Lag how, const fields::BlockVector& x) {
   std::vector<Real> found(mesh_->n_fracture_faces(), -1);  // below zero: none
   for (std::size_t m = 0; m < modules_.size(); ++m)
     modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
-  Real here = -1, farthest = 0;
+  Real here = -1;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f] < 0) continue;
     found[f] = std::log(std::max(found[f], least));
     here = std::max(here, lagged_.started() ? std::abs(found[f] - lagged_.y()[f]) : 0);
   }
-  Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &farthest);
+  const Real farthest = base::max_over_ranks(*comm(), here);
   if (farthest < 0) return farthest;
   if (how == Lag::follow && lagged_.started())
     lagged_.follow(found);

@@ -1,7 +1,7 @@
 // Where a body is that nothing holds: of all places that the equations allow, the nearest one.
 #include "assembly/system.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -90,10 +90,7 @@ std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
           mesh::dot(slide.along, loose_->jump(slide.face, *motion)) < back - slack)
         obstacles.push_back({slide.face, slide.along, back});
     }
-    const int here = obstacles.size() > n_before ? 1 : 0;
-    int anywhere = 0;
-    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-    if (!anywhere) return motion;
+    if (!base::on_any_rank(*comm(), obstacles.size() > n_before)) return motion;
   }
   return {};
 }

@@ -1,7 +1,5 @@
 #include "base/check.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-
 #include <filesystem>
 #include <new>
 
@@ -27,11 +25,7 @@ void collectively(const Comm& comm, const std::function<void()>& work) {
   }
   const int first = min_over_ranks(comm, failing_rank);
   if (first == comm.getSize()) return;
-  int length = static_cast<int>(message.size());
-  Teuchos::broadcast(comm, first, 1, &length);
-  message.resize(length);
-  Teuchos::broadcast(comm, first, length, message.data());
-  throw Error(message);
+  throw Error(of_rank(comm, first, message));
 }
 
 }  // namespace sprekk::base

@@ -1,20 +1,44 @@
-// Sums and extremes over all ranks. All are collective.
+// Sums and extremes over all ranks, and what one of them knows. All are collective.
 #pragma once
 
 #include "base/types.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <algorithm>
+#include <array>
 #include <functional>
+#include <vector>
 
 namespace sprekk::base {
 
-/// Of a number, or of a container as long on all ranks, element by element.
+namespace detail {
+
+/// The numbers of nested arrays lie one after another.
+template <class T>
+T* first_number(T& value) {
+  return &value;
+}
+template <class T, std::size_t n>
+auto* first_number(std::array<T, n>& values) {
+  return first_number(values[0]);
+}
+template <class T, std::size_t n>
+const auto* first_number(const std::array<T, n>& values) {
+  return first_number(values[0]);
+}
+
+}  // namespace detail
+
+/// Of a number, or of a container of numbers or arrays, as long on all ranks, element by element.
 template <class T>
 T over_ranks(const Comm& comm, Teuchos::EReductionType how, const T& here) {
   T all = here;
   if constexpr (requires { here.data(); }) {
-    if (!here.empty()) Teuchos::reduceAll(comm, how, static_cast<int>(here.size()), here.data(), all.data());
+    if (here.empty()) return all;
+    const auto* from = detail::first_number(*here.data());
+    const std::size_t n = here.size() * (sizeof(*here.data()) / sizeof(*from));
+    Teuchos::reduceAll(comm, how, static_cast<int>(n), from, detail::first_number(*all.data()));
   } else {
     Teuchos::reduceAll(comm, how, 1, &here, &all);
   }
@@ -41,6 +65,34 @@ inline bool on_all_ranks(const Comm& comm, bool here) { return min_over_ranks(co
 /// Whether any rank's answer is yes; without a question it is no.
 inline bool any_rank(const Comm& comm, const std::function<bool()>& question) {
   return question && on_any_rank(comm, question());
+}
+
+/// What `rank` has: a number, or a text or vector of any length.
+template <class T>
+T of_rank(const Comm& comm, int rank, T here) {
+  if constexpr (requires { here.resize(1); }) {
+    here.resize(of_rank(comm, rank, static_cast<int>(here.size())));
+    Teuchos::broadcast(comm, rank, static_cast<int>(here.size()), here.data());
+  } else {
+    Teuchos::broadcast(comm, rank, 1, &here);
+  }
+  return here;
+}
+
+/// All ranks' numbers, those of the first rank first; lengths may differ.
+template <class T>
+std::vector<T> gather_over_ranks(const Comm& comm, std::vector<T> here) {
+  std::vector<int> lengths(comm.getSize());
+  const int n = static_cast<int>(here.size());
+  Teuchos::gatherAll(comm, 1, &n, comm.getSize(), lengths.data());
+  const int most = *std::max_element(lengths.begin(), lengths.end());
+  if (most == 0) return {};
+  here.resize(most);
+  std::vector<T> padded(static_cast<std::size_t>(most) * comm.getSize()), all;
+  Teuchos::gatherAll(comm, most, here.data(), static_cast<int>(padded.size()), padded.data());
+  for (int r = 0; r < comm.getSize(); ++r)
+    all.insert(all.end(), &padded[std::size_t(most) * r], &padded[std::size_t(most) * r] + lengths[r]);
+  return all;
 }
 
 }  // namespace sprekk::base

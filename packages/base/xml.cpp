@@ -1,6 +1,5 @@
 #include "base/xml.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_StringInputSource.hpp>
 #include <Teuchos_XMLObject.hpp>
 #include <fmt/ranges.h>
@@ -9,6 +8,7 @@
 
 #include "base/check.hpp"
 #include "base/file.hpp"
+#include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "base/units.hpp"
 #include "base/value.hpp"
@@ -207,10 +207,7 @@ ParameterList read_xml(const Comm& comm, const std::string& path, const std::str
   collectively(comm, [&] {
     if (comm.getRank() == 0) text = read_file(path, "an XML file", largest_file, {});
   });
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, 0, 1, &length);
-  text.resize(length);
-  Teuchos::broadcast(comm, 0, length, text.data());
+  text = of_rank(comm, 0, text);
   ParameterList list;
   collectively(comm, [&] { list = parse_xml(text, path, root, defects); });
   return list;

@@ -1,6 +1,7 @@
 #include "io/checkpoints.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "io/file.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -68,7 +69,7 @@ std::string read_once(const Comm& comm, const std::string& path, const std::opti
     text.resize(std::min<std::size_t>(text.size(), (*seal)[0]));
     SPREKK_CHECK(seal_of(text) == *seal, "{}: is damaged", path);
   });
-  return from_rank_0(comm, text);
+  return base::of_rank(comm, 0, text);
 }
 
 /// An entry a line.
@@ -99,11 +100,7 @@ std::vector<long long> Checkpoints::numbers() const {
     }
     std::sort(found.begin(), found.end());
   });
-  int n = static_cast<int>(found.size());
-  Teuchos::broadcast(*comm_, 0, 1, &n);
-  found.resize(n);
-  Teuchos::broadcast(*comm_, 0, n, found.data());
-  return found;
+  return base::of_rank(*comm_, 0, found);
 }
 
 void Checkpoints::clear() {

@@ -1,9 +1,9 @@
 #include "io/directory_lock.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "io/file.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -57,9 +57,8 @@ DirectoryLock::~DirectoryLock() {
 
 bool DirectoryLock::has_directory() const {
   std::error_code none;
-  int found = comm_->getRank() == 0 && std::filesystem::is_directory(directory_, none);
-  Teuchos::broadcast(*comm_, 0, 1, &found);
-  return found != 0;
+  const int found = comm_->getRank() == 0 && std::filesystem::is_directory(directory_, none);
+  return base::of_rank(*comm_, 0, found) != 0;
 }
 
 std::string DirectoryLock::take() {
@@ -88,7 +87,7 @@ std::string DirectoryLock::take() {
     }
     if (comm_->getRank() == 0) not_offered = "the file that was locked is another one than its name leads to";
   });
-  return from_rank_0(*comm_, not_offered);
+  return base::of_rank(*comm_, 0, not_offered);
 }
 
 }  // namespace sprekk::io

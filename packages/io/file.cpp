@@ -2,7 +2,6 @@
 
 #include "base/check.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -67,14 +66,6 @@ bool overwrite(const std::string& path, const std::string& content) {
                     ::ftruncate(file, size) == 0;
   ::close(file);
   return done;
-}
-
-std::string from_rank_0(const Comm& comm, std::string text) {
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, 0, 1, &length);
-  text.resize(length);
-  Teuchos::broadcast(comm, 0, length, text.data());
-  return text;
 }
 
 void make_directory(const Comm& comm, const std::string& path) {

@@ -19,9 +19,6 @@ void append_durably(const std::string& path, long long length, const std::string
 /// that is full; false if it is shorter, or on any error. Not collective.
 bool overwrite(const std::string& path, const std::string& content);
 
-/// The text that rank 0 has, on every rank. Collective.
-std::string from_rank_0(const Comm& comm, std::string text);
-
 /// Returns when a file's content, or a directory's names, would outlive a failure of power; at once for a directory
 /// that the file system cannot bring to the disk by itself. Not collective; Error: the path and the system's reason.
 void bring_to_disk(const std::string& path);

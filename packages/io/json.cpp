@@ -1,8 +1,8 @@
 #include "io/json.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <nlohmann/json.hpp>
 
 namespace sprekk::io {
@@ -15,10 +15,9 @@ void write_json(const Comm& comm, const std::string& path, const nlohmann::json&
 }
 
 bool overwrite_json(const Comm& comm, const std::string& path, const nlohmann::json& json) {
-  int done = comm.getRank() == 0 &&
+  const int done = comm.getRank() == 0 &&
              overwrite(path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
-  Teuchos::broadcast(comm, 0, 1, &done);
-  return done != 0;
+  return base::of_rank(comm, 0, done) != 0;
 }
 
 }  // namespace sprekk::io

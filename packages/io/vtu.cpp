@@ -262,7 +262,7 @@ void VtuSeries::add_step(Real time, const std::string& content) {
 
 void VtuSeries::write(Real time, const Piece& piece) {
   const auto piece_file = [&](int rank) { return fmt::format("{}/{}_{}.vtu", name_, step_name(times_.size()), rank); };
-  const std::string declared_on_0 = from_rank_0(*comm_, declared(piece));
+  const std::string declared_on_0 = base::of_rank(*comm_, 0, declared(piece));
   base::collectively(*comm_, [&] { write_piece(piece_file(comm_->getRank()), piece, declared_on_0); });
   std::string pieces;
   for (int r = 0; r < comm_->getSize(); ++r)
@@ -278,7 +278,7 @@ void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
   std::vector<int> here(blocks.size() * n_ranks, 0);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto& piece = blocks[b].piece;
-    const std::string declared_on_0 = from_rank_0(*comm_, declared(piece));
+    const std::string declared_on_0 = base::of_rank(*comm_, 0, declared(piece));
     here[b * n_ranks + rank] = piece.n_cells() > 0;
     base::collectively(*comm_, [&] {
       if (piece.n_cells() > 0) write_piece(piece_file(b, rank), piece, declared_on_0);

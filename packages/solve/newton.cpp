@@ -4,7 +4,6 @@
 #include <NOX_StatusTest_Generic.H>
 #include <NOX_Thyra.H>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
 #include <optional>
@@ -201,11 +200,9 @@ NewtonReport Newton::solve(BlockVector& x) {
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.iterations > 0) {
-    const int here = search.damped;
-    int anywhere = 0;
-    Teuchos::reduceAll(*problem_.comm(), Teuchos::REDUCE_MAX, 1, &here, &anywhere);
-    factors_ = anywhere > 0 ? Factors::damped : Factors::good;
-    if (report.converged && anywhere > 0) {  // now, for after a commit faces that slid would stick
+    const bool damped = base::on_any_rank(*problem_.comm(), search.damped);
+    factors_ = damped ? Factors::damped : Factors::good;
+    if (report.converged && damped) {  // now, for after a commit faces that slid would stick
       problem_.damp(0, {});
       problem_.jacobian(x);
       factors_ = Factors::old;

@@ -184,6 +184,8 @@ def largest(directory, results, input_):
     at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before
     worst, skipped, last = np.zeros(len(PARTS)), 0, -1
     for k, step in enumerate(steps):
+        if round(step.time, 9) not in at:  # the run was ended before results.json told of it
+            break
         number = at[round(step.time, 9)]
         before = steps[k - 1] if k else None
         if number == 0:  # from rest

@@ -1,8 +1,7 @@
 #include "physics/mechanics/uniqueness.hpp"
 
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -54,12 +53,6 @@ std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& 
 
 using PerPiece = std::vector<int>;
 
-PerPiece over_ranks(const mesh::Mesh& mesh, Teuchos::EReductionType how, const PerPiece& here) {
-  PerPiece all(here.size());
-  Teuchos::reduceAll(*mesh.comm, how, static_cast<int>(here.size()), here.data(), all.data());
-  return all;
-}
-
 /// [3 piece + component]: whether a displacement in this direction is given, or sides that are apart in it are tied.
 PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   PerPiece held(3 * mesh.n_pieces, 0);
@@ -76,7 +69,7 @@ PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
           mesh.coordinates[(mesh.n_free_nodes + k) * dim + i] - mesh.coordinates[mesh.tied_to[k] * dim + i];
       for (int piece = 0; piece < mesh.n_pieces && apart != 0; ++piece) held[3 * piece + i] = 1;
     }
-  return over_ranks(mesh, Teuchos::REDUCE_MAX, held);
+  return base::max_over_ranks(*mesh.comm, held);
 }
 
 /// [fracture]: whether rock resists its opening somewhere. It does not where the fracture cuts off a piece that touches
@@ -96,8 +89,8 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
       last[piece] = std::max(last[piece], other);
     }
   });
-  first = over_ranks(mesh, Teuchos::REDUCE_MIN, first);
-  last = over_ranks(mesh, Teuchos::REDUCE_MAX, last);
+  first = base::min_over_ranks(*mesh.comm, first);
+  last = base::max_over_ranks(*mesh.comm, last);
   const auto may_move = [&](int piece, const auto& normal) {
     for (int i = 0; i < 3; ++i)
       if (held[3 * piece + i] && std::abs(normal[i]) > 1e-6) return false;
@@ -108,7 +101,7 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
     const auto& normal = face.frame[0];
     if (a == b || !(may_move(a, normal) || may_move(b, normal))) resisted[face.fracture] = 1;
   });
-  return over_ranks(mesh, Teuchos::REDUCE_MAX, resisted);
+  return base::max_over_ranks(*mesh.comm, resisted);
 }
 
 }  // namespace
