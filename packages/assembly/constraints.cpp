@@ -199,6 +199,13 @@ Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
   Kokkos::deep_copy(mask_, mask);
 }
 
+std::vector<contact::Support> Constraints::supports() const {
+  std::vector<contact::Support> supports;
+  for (const auto& entry : held_.entries)
+    supports.push_back({static_cast<LocalIndex>(entry.unknown), entry.component});
+  return supports;
+}
+
 void Constraints::evaluate(Real t) {
   std::vector<std::string> conflicts;
   const auto prescribed = prescribed_values(held_, conditions_, t, conflicts);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/expression.hpp"
+#include "contact/loose_pieces.hpp"
 #include "fields/layout.hpp"
 #include "mesh/mesh.hpp"
 
@@ -56,6 +57,7 @@ class Constraints {
 
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }
   const std::vector<Held::Entry>& entries() const { return held_.entries; }  ///< one per constrained owned unknown
+  std::vector<contact::Support> supports() const;                            ///< the same, for contact
   ConstView<char*> mask() const { return mask_; }                            ///< [owned unknown] 1 if constrained
   ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time, else 0
   Real largest() const { return largest_; }            ///< largest |value| at the last evaluated time

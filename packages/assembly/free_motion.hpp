@@ -2,13 +2,15 @@
 #pragma once
 
 #include "assembly/constraints.hpp"
-#include "assembly/rigid_motion.hpp"
+#include "contact/rigid_motion.hpp"
 #include "mesh/facets.hpp"
 
 #include <string>
 #include <vector>
 
 namespace sprekk::assembly {
+
+using contact::FreeMotion;
 
 /// A basis of the rigid motions of the bodies that no condition on "displacement" and no tie prevents: those that
 /// vanish in every held component and move nodes that share their unknowns alike. Contact cannot prevent them either,

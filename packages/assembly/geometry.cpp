@@ -17,4 +17,14 @@ Geometry::Geometry(const mesh::Mesh& mesh)
       cells(view_of<LocalIndex**>(mesh.cells, mesh.n_cells(), mesh.nodes_per_cell())),
       region(view_of<int*>(mesh.cell_region, mesh.n_cells())) {}
 
+std::vector<Real> cell_volumes(const mesh::Mesh& mesh) {
+  std::vector<Real> volumes(mesh.n_cells(), 0);
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c)
+      for_each_cell_point<shape(), StiffnessQuadrature<shape()>>(
+          mesh, c, [&](const auto&, Real share, const auto&) { volumes[c] += share; });
+  });
+  return volumes;
+}
+
 }  // namespace sprekk::assembly

@@ -188,4 +188,7 @@ Real bubble_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face) {
   return face_mean<shape>(mesh, cell, local_face, [](const auto& N, const auto&) { return face_bubble<shape>(N); });
 }
 
+/// Of each local cell, m^3 (m^2 in 2D). Not collective.
+std::vector<Real> cell_volumes(const mesh::Mesh& mesh);
+
 }  // namespace sprekk::assembly

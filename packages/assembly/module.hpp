@@ -3,7 +3,7 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
-#include "assembly/loose_pieces.hpp"
+#include "contact/grip.hpp"
 #include "fields/block_matrix.hpp"
 #include "fields/block_problem.hpp"
 #include "fields/layout.hpp"
@@ -64,7 +64,7 @@ struct Unknown {
   /// Its rows are balances of rates: of fluxes, and State::rate times what is stored. They may differ by orders of
   /// magnitude, so each is measured by its diagonal, anew in each step.
   bool balance = false;
-  /// Of tractions of contact: the scale of the jumps that their rows have in them, times Grip::augmentation.
+  /// Of tractions of contact: the scale of the jumps that their rows have in them, times contact::Grip::augmentation.
   std::string augmented_by = "";
   Reactions reactions = {};
 };
@@ -157,10 +157,7 @@ class Context {
 struct State {
   Real t = 0;
   Real rate = 0;  ///< what rates are times what a module stores more than at the start of the step, 1/s: see Rates
-  ConstView<Real*> damping = {};       ///< [owned fracture face], see BlockProblem::damp(); empty: zero
-  ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see BlockProblem::calibrate(); empty: 1
-  Real tether = 0;                     ///< see BlockProblem::tether()
-  ConstView<Real**> anchor = {};       ///< [owned fracture face, 2 dim] jump that it pulls to, traction there; global
+  contact::Regularisation contact = {};
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
@@ -219,7 +216,7 @@ class Module {
   /// Sets the discrete states of owned fracture faces, [face].
   virtual void states(const State& state, std::vector<char>& states) const {}
   /// Adds to the grips [owned fracture face] how the module makes the sides of faces hold each other at `state`.
-  virtual void grip(const State& state, std::vector<Grip>& grips) const {}
+  virtual void grip(const State& state, std::vector<contact::Grip>& grips) const {}
   /// After elimination of the local groups, blocks on the diagonal of the Jacobian at `state` are symmetric as far as
   /// this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }

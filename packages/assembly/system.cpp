@@ -64,7 +64,7 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   }
   stencils_->forget_writers();
   set_merit_weights();
-  watch_pieces();
+  watch_contact();
 }
 
 std::vector<DirichletCondition> System::conditions_on(std::size_t block,
@@ -176,7 +176,7 @@ void System::declare_fields() {
         schur = rcp(new Vector(layouts_[context().field(name)].owned()));
   coupled_ = couples_balances();
   for (std::size_t b = 0; b < unknowns_.size(); ++b)
-    if (!unknowns_[b].augmented_by.empty()) contact_ = static_cast<int>(b);
+    if (!unknowns_[b].augmented_by.empty()) contact_blocks_.traction = static_cast<int>(b);
   declare_scales();
 }
 
@@ -217,7 +217,7 @@ void System::set_multigrid(const Unknown& unknown, const fields::Layout& layout,
     block.coordinates = at_corners(*mesh_, *block.coordinates);
   }
   const auto map = block.interpolation.is_null() ? layout.owned() : block.interpolation->getDomainMap();
-  block.near_null_space = {static_cast<int>(rigid_modes(mesh_->dim()).size()),
+  block.near_null_space = {static_cast<int>(contact::rigid_modes(mesh_->dim()).size()),
                            [map, places = block.coordinates] { return rigid_body_modes(map, *places); }};
 }
 
@@ -380,28 +380,36 @@ void System::set_merit_weights() {
   }
 }
 
-void System::watch_pieces() {
+void System::watch_contact() {
   const bool held = std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies(); });
+  int& displacement = contact_blocks_.displacement;
   for (int b = 0; b < static_cast<int>(blocks_.size()) && !held; ++b)
-    if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement_ = b;
-  if (displacement_ < 0) return;
-  loose_ = std::make_unique<LoosePieces>(mesh_, layouts_[displacement_], constraints_[displacement_]);
-  if (!loose_->possible()) return;
-  loose_->set_stiffness(*diagonals_[displacement_]);
-  remember(initial());
-  if (loose_->contrast() > 10 && linear_part_is_invariant())
-    deformation_ = rcp(new Vector(layouts_[displacement_].ghosted()));
+    if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement = b;
+  std::unique_ptr<contact::LoosePieces> pieces;
+  if (displacement >= 0)
+    pieces = std::make_unique<contact::LoosePieces>(mesh_, layouts_[displacement], constraints_[displacement].supports(),
+                                                    cell_volumes(*mesh_));
+  const bool loose = pieces && pieces->possible();
+  if (!loose && contact_blocks_.traction < 0) return;
+  if (loose) pieces->set_stiffness(*diagonals_[displacement]);
+  contact_ = std::make_unique<contact::Contact>(static_cast<contact::Equations&>(*this), mesh_, contact_blocks_,
+                                                std::move(pieces));
+  contact_->remember(initial());
+  if (loose && contact_->pieces()->contrast() > 10 && linear_part_is_invariant())
+    contact_->remove_rigid_motions(layouts_[displacement]);
 }
+
+fields::Globalisation& System::globalisation() { return contact_ ? *contact_ : BlockProblem::globalisation(); }
 
 /// No row of the linear part sees rigid motions of pieces.
 bool System::linear_part_is_invariant() const {
-  Vector motion(layouts_[displacement_].ghosted());
+  Vector motion(layouts_[contact_blocks_.displacement].ghosted());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const auto& A = linear_(static_cast<int>(b), displacement_);
+    const auto& A = linear_(static_cast<int>(b), contact_blocks_.displacement);
     if (A.is_null()) continue;
     Vector rows(blocks_[b].map);
-    for (int mode : rigid_modes(mesh_->dim())) {
-      loose_->set_rigid(mode, motion);
+    for (int mode : contact::rigid_modes(mesh_->dim())) {
+      contact_->pieces()->set_rigid(mode, motion);
       A->localApply(motion, rows, Teuchos::NO_TRANS, 1.0, 0.0);
       if (!(rows.normInf() <= 1e-12 * A->getFrobeniusNorm())) return false;
     }
@@ -449,12 +457,11 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
   take_scales();  // without loads of a step that is taken back
-  remember(x);
-  calibration_ = memory.calibration;
-  augmentation_ = {};
-  if (calibration_.empty()) return;
-  refresh_ghosts(x, false);
-  correct_augmentation(grips());
+  if (contact_) contact_->resume(x, memory.calibration);
+}
+
+System::Memory System::memory() const {
+  return {committed_t_, committed_dt_, scales_, contact_ ? contact_->calibration() : std::vector<Real>()};
 }
 
 }  // namespace sprekk::assembly

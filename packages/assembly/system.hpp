@@ -2,11 +2,11 @@
 #pragma once
 
 #include "assembly/constraints.hpp"
-#include "assembly/loose_pieces.hpp"
 #include "assembly/module.hpp"
 #include "assembly/rates.hpp"
 #include "assembly/relaxation.hpp"
 #include "base/timer.hpp"
+#include "contact/contact.hpp"
 #include "fields/block_problem.hpp"
 
 #include <memory>
@@ -24,7 +24,7 @@ struct Reaction {
   Reactions called = {};
 };
 
-class System : public fields::BlockProblem {
+class System : public fields::BlockProblem, private contact::Equations {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
@@ -49,18 +49,9 @@ class System : public fields::BlockProblem {
   ConstView<char*> constrained(int block) const override { return constraints_[block].mask(); }
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
-  std::size_t state_hash(const std::vector<char>& states) override;
-  std::vector<char> states(const fields::BlockVector& x) override;  ///< [owned fracture face]
-  std::string where(const std::vector<char>& flagged) override;
-  RCP<const fields::Vector> proximal(int block) const override;
   RCP<const fields::Vector> schur(int block) const override { return schur_[block]; }
-  std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
-  std::string loose() const override;
-  void damp(Real everywhere, const std::vector<Real>& here) override;
   Real lag(Lag how, const fields::BlockVector& x) override;
-  bool tether(Real stiffness, const fields::BlockVector& x) override;
-  bool calibrate(const fields::BlockVector& x, bool first) override;
-  bool settle(fields::BlockVector& x) override;
+  fields::Globalisation& globalisation() override;
 
   /// Zero but for what modules know of the initial state. [block]
   fields::BlockVector initial() const;
@@ -79,9 +70,9 @@ class System : public fields::BlockProblem {
   struct Memory {
     Real t = 0, dt = 0;             ///< the time of that state, and of the step to it
     Scales scales;                  ///< of the loads so far
-    std::vector<Real> calibration;  ///< see calibrate()
+    std::vector<Real> calibration;  ///< see contact::Contact
   };
-  Memory memory() const { return {committed_t_, committed_dt_, scales_, calibration_}; }  ///< stored data
+  Memory memory() const;  ///< stored data
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
@@ -113,7 +104,7 @@ class System : public fields::BlockProblem {
   void assemble_balances();
   void set_merit_weights();
   void find_exchanges();
-  void watch_pieces();
+  void watch_contact();
   State state(int module) const;
   bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
   void declare_gains();
@@ -123,22 +114,14 @@ class System : public fields::BlockProblem {
   Rows rows(fields::BlockVector& r) const;
   Real rounding(const fields::BlockVector& x, const std::string& scale) const;
   void update_scales(Real t);
-  bool watches_pieces() const { return loose_ && loose_->possible(); }
-  void remember(const fields::BlockVector& x);
-  std::vector<Grip> grips();
-  int calibration_class(const Grip& grip) const;
-  void correct_augmentation(const std::vector<Grip>& grips);
-  void find_loose();
   void find_schur();
-  /// Adds to dx what of a motion brings the forces along it into balance; with `mode`, of its opposite too. Empty, or
-  /// the part that finds no resistance: it goes a little way then, as a mode none.
-  std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
-                            bool mode);
-  std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
+  std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;
+  std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
+  std::vector<contact::Grip> present_grips();
+  std::vector<char> states(const fields::BlockVector& x) override;
+  contact::Sizes sizes() const override;
+  void begin_anew() override { present_.clear(); }
   bool linear_part_is_invariant() const;
-  std::optional<std::vector<RigidRow>> way_back(const fields::BlockVector& x,
-                                                const std::vector<LoosePieces::Slide>& slides,
-                                                const std::vector<Real>& least);
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
@@ -159,23 +142,12 @@ class System : public fields::BlockProblem {
   fields::BlockVector present_;      // [block] the same of the last jacobian()
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
-  std::unique_ptr<LoosePieces> loose_;  // null without displacement, or where modules hold bodies
-  std::vector<Grip> grips_;             // of the last calibrate()
-  ConstView<Real*> augmentation_;       // [owned fracture face] factor of the face law's constant
-  std::vector<Real> calibration_;       // [class of faces] that factor; 0: not yet compared with the rock
-  RCP<fields::Vector> committed_;       // displacement; null: not needed
-  RCP<fields::Vector> deformation_;     // ghosted displacement without rigid motions; null: not needed
-  LoosePieces::Motion driven_;          // where forces out of balance move what is loose, if they do
-  bool nearest_known_ = true;           // the last settle() knew where what is loose comes to lie
-  int displacement_ = -1;               // its block, where pieces are watched
-  int contact_ = -1;                    // the block of tractions of contact; none
+  contact::Blocks contact_blocks_;      // without a displacement where modules hold bodies
+  std::unique_ptr<contact::Contact> contact_;  // null where nothing touches and all is held
   fields::BlockMatrix linear_;          // what the linear modules write
   fields::BlockMatrix matrix_;          // df/dx; shares the blocks that only linear modules write
   std::vector<ScaleRelation> relations_;
   Scales scales_;
-  ConstView<Real*> damping_;  // [owned fracture face], empty: none
-  ConstView<Real**> anchor_;  // [owned fracture face, 2 dim] of tether()
-  Real tether_ = 0;
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
   Relaxation lagged_;              // [local fracture face] of the logarithms of coefficients_
   RCP<base::Timers> timers_;
@@ -183,7 +155,7 @@ class System : public fields::BlockProblem {
   Real extent_;  // largest of the domain, m
   Rates rates_;
   Real committed_t_ = 0, committed_dt_ = 0;  // of the last committed step; 0 before the first
-  Real t_ = 0, dt_ = 0, damped_everywhere_ = 0;
+  Real t_ = 0, dt_ = 0;
   bool symmetric_ = true, loaded_ = false;
   bool coupled_ = false;  // balances of rates and other rows depend on each other's fields
   bool sized_ = false;    // diagonals_ of balances are those of this step's first Jacobian, with schur_

@@ -3,8 +3,6 @@
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,47 +51,12 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 State System::state(int module) const {
   State s{.t = t_,
           .rate = rates_.now,
-          .damping = damping_,
-          .augmentation = augmentation_,
-          .tether = tether_,
-          .anchor = anchor_,
+          .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
           .coefficients = coefficients_,
           .x = {},
           .history = history_[module]};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
-}
-
-void System::damp(Real everywhere, const std::vector<Real>& here) {
-  damped_everywhere_ = everywhere;
-  damping_ = {};
-  if (everywhere == 0 && here.empty()) return;
-  View<Real*> damping("damping", mesh_->n_owned_fracture_faces);
-  const auto host = Kokkos::create_mirror_view(damping);
-  for (std::size_t f = 0; f < host.extent(0); ++f) host(f) = std::max(everywhere, here.empty() ? 0 : here[f]);
-  Kokkos::deep_copy(damping, host);
-  damping_ = damping;
-}
-
-bool System::tether(Real stiffness, const BlockVector& x) {
-  tether_ = 0;
-  present_.clear();
-  const bool contact = contact_ >= 0;
-  if (stiffness == 0 || !contact) return contact;
-  refresh_ghosts(x, false);
-  const auto held = grips();
-  const int dim = mesh_->dim();
-  View<Real**> anchor("anchor", held.size(), 2 * dim);
-  const auto host = Kokkos::create_mirror_view(anchor);
-  for (std::size_t f = 0; f < held.size(); ++f)
-    for (int i = 0; i < dim; ++i) {
-      host(f, i) = held[f].jump[i];
-      host(f, dim + i) = held[f].traction[i];
-    }
-  Kokkos::deep_copy(anchor, host);
-  anchor_ = anchor;
-  tether_ = stiffness;
-  return true;
 }
 
 /// Evaluates the loads at time t and lets the scales grow with them, then with each other: a chain of relations is no
@@ -131,7 +94,7 @@ void System::set_time(Real t, Real dt) {
   const auto scope = timers_->scope("loads");
   t_ = t;
   dt_ = dt;
-  nearest_known_ = true;
+  if (contact_) contact_->begin_step();
   rates_ = dt > 0 ? Rates::of(scheme_, dt, committed_dt_) : Rates{};  // 0: before the first step
   sized_ = false;
   present_.clear();  // its rounding is not that of where the next attempt starts
@@ -157,18 +120,11 @@ void System::set_time(Real t, Real dt) {
   loaded_ = true;
 }
 
-/// Where pieces are much stiffer than others, stresses of rigid motions, zero but for rounding, would be as large as
-/// those of the soft ones: so the linear part is applied to the displacement without them.
 void System::raw_residual(const BlockVector& x, BlockVector& r) {
   refresh_ghosts(x, false);
   const auto scope = timers_->scope("residual");
   const int n = static_cast<int>(blocks_.size());
-  auto linear_in = ghosted_;
-  if (!deformation_.is_null()) {
-    Tpetra::deep_copy(*deformation_, *ghosted_[displacement_]);
-    loose_->remove_rigid(*deformation_);
-    linear_in[displacement_] = deformation_;
-  }
+  const auto linear_in = contact_ ? contact_->without_rigid_motions(ghosted_) : ghosted_;
   for (int i = 0; i < n; ++i) {
     Tpetra::deep_copy(*r[i], *load_[i]);
     for (int j = 0; j < n; ++j) linear_.add_local_product(i, j, *linear_in[j], *r[i]);
@@ -247,7 +203,7 @@ void System::jacobian(const BlockVector& x) {
   }
   symmetric_ = base::on_all_ranks(*comm(), symmetric);
   find_schur();
-  find_loose();
+  if (contact_ && contact_->pieces()) contact_->find_loose(present_grips());
 }
 
 void System::find_schur() {
@@ -269,15 +225,12 @@ void System::find_schur() {
   sized_ = true;
 }
 
-/// Of an accepted state, what modules do not keep as histories.
-void System::remember(const BlockVector& x) {
-  if (watches_pieces()) committed_ = rcp(new fields::Vector(*x[displacement_], Teuchos::Copy));
-}
-
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
-  find_loose();  // before histories move on: afterwards faces that slid lie on the limit of sticking
-  remember(x);
+  if (contact_ && contact_->pieces()) {  // before histories move on: afterwards faces that slid lie on the limit of sticking
+    contact_->find_loose(present_grips());
+    contact_->remember(x);
+  }
   if (keeps_gains()) find_gains();
   committed_t_ = t_;
   committed_dt_ = dt_;
@@ -306,9 +259,10 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& unknown = unknowns_[b];
-    if (static_cast<int>(b) == contact_) {
+    const bool traction = static_cast<int>(b) == contact_blocks_.traction;
+    if (traction) {
       const auto constant = diagonals_[b]->getLocalViewHost(Tpetra::Access::OverwriteAll);
-      const auto faces = grips();
+      const auto faces = present_grips();
       for (std::size_t i = 0; i < constant.extent(0); ++i)
         constant(i, 0) = faces[i / blocks_[b].n_components].augmentation;
     }
@@ -318,7 +272,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // some rows let much less through than others
-    const bool bounded = !balance && static_cast<int>(b) != contact_;
+    const bool bounded = !balance && !traction;
     Real stored = 0;                       // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
@@ -375,6 +329,37 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
   return base::sum_over_ranks(*comm(), sum);
 }
 
+/// At the x of the last refresh_ghosts.
+std::vector<contact::Grip> System::present_grips() {
+  std::vector<contact::Grip> grips(mesh_->n_owned_fracture_faces);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
+  return grips;
+}
+
+std::vector<contact::Grip> System::grips(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  return present_grips();
+}
+
+std::vector<contact::Grip> System::evaluate(const BlockVector& x, BlockVector& r) {
+  residual(x, r);
+  return present_grips();
+}
+
+contact::Sizes System::sizes() const {
+  const auto& [displacement, traction] = contact_blocks_;
+  contact::Sizes sizes{.extent = extent_};
+  if (displacement >= 0) {
+    sizes.displacement = blocks_[displacement].kinematic_scale;
+    sizes.force = blocks_[displacement].residual_scale;
+  }
+  if (traction >= 0) {
+    sizes.traction = blocks_[traction].kinematic_scale;
+    sizes.jump = scales_.at(unknowns_[traction].augmented_by);
+  }
+  return sizes;
+}
+
 std::vector<char> System::states(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<char> states(mesh_->n_owned_fracture_faces);
@@ -383,52 +368,6 @@ std::vector<char> System::states(const BlockVector& x) {
     modules_[m]->states(state(static_cast<int>(m)), states);
   }
   return states;
-}
-
-std::size_t System::state_hash(const std::vector<char>& states) {
-  std::size_t here = 0;
-  for (std::size_t f = 0; f < states.size(); ++f) {
-    std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(states[f]) + 1;
-    for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
-      h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-      h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-    }
-    here += h;
-  }
-  // in halves: a sum modulo 2^64 does not depend on the partition, and one of signed numbers may not overflow
-  const auto sums = base::sum_over_ranks(
-      *comm(), std::array{static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)});
-  return static_cast<std::size_t>(sums[0]) + (static_cast<std::size_t>(sums[1]) << 32);
-}
-
-std::string System::where(const std::vector<char>& flagged) {
-  const auto& names = mesh_->fracture_names;
-  std::vector<long long> here(names.size(), 0);
-  std::array<Real, 3> nowhere, lowest, highest;
-  nowhere.fill(std::numeric_limits<Real>::max());
-  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere};  // smallest x and -x
-  for (std::size_t f = 0; f < flagged.size(); ++f) {
-    if (!flagged[f]) continue;
-    const auto& face = mesh_->fracture_faces[f];
-    ++here[face.fracture];
-    for (int i = 0; i < 3; ++i) {
-      ends[0][i] = std::min(ends[0][i], face.centre[i]);
-      ends[1][i] = std::min(ends[1][i], -face.centre[i]);
-    }
-  }
-  const auto all = base::sum_over_ranks(*comm(), here);
-  const std::array reach = {base::min_over_ranks(*comm(), ends[0]), base::min_over_ranks(*comm(), ends[1])};
-  std::vector<std::string> parts;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (all[k] > 0) parts.push_back(fmt::format("{} of \"{}\"", all[k], names[k]));
-  if (parts.empty()) return "";
-  for (int i = 0; i < 3; ++i) {
-    lowest[i] = reach[0][i];
-    highest[i] = -reach[1][i];
-  }
-  const Real size = mesh::norm(lowest) + mesh::norm(highest);
-  return fmt::format("{}, between {} and {}", fmt::join(parts, ", "), to_text(lowest, mesh_->dim(), size),
-                     to_text(highest, mesh_->dim(), size));
 }
 
 std::vector<OutputField> System::outputs(const BlockVector& x) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fields/block_matrix.hpp"
+#include "fields/globalisation.hpp"
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -99,45 +99,20 @@ class BlockProblem {
   virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
   /// A squared energy norm of r, for line searches.
   virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
-  /// A positive diagonal of a block [owned unknown] that linear solves add to the Jacobian of the last jacobian(), so
-  /// that it is regular also where bodies are free to move; null where none is needed. Solutions do not depend on it.
-  virtual RCP<const Vector> proximal(int block) const { return Teuchos::null; }
   /// About what elimination of all other blocks adds to the diagonal of a block [owned unknown] in the Jacobian of the
   /// last jacobian(), for preconditioners; null where that is nothing.
   virtual RCP<const Vector> schur(int block) const { return Teuchos::null; }
-  /// For a step dx from the x of the last jacobian(): replaces its share of motions that nothing resists, whose length
-  /// means nothing, by one after which something does. Empty, or which body finds no resistance wherever it goes.
-  virtual std::string balance(const BlockVector& x, BlockVector& dx) { return ""; }
-  /// What nothing holds in the state of the last jacobian() or commit(), in words; empty if all is held. Stored data.
-  virtual std::string loose() const { return ""; }
-  /// From now on jacobian() makes what is free to slide or part resist it, so that steps are shorter: by the larger of
-  /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
-  /// derivative of f. Solutions do not depend on it. Local.
-  virtual void damp(Real everywhere, const std::vector<Real>& here) {}
   enum class Lag { none, follow, widest };
   /// Coefficients of fluxes may depend on x by high powers, which misleads Newton's method far from a solution. From
   /// now on f takes them as given: `follow`, first those of x, then nearer to those of x with each call; `widest`, as
   /// large as they may become under the present loads. none: f is as it is. Returns the largest |ln| of the ratio of
   /// those of x to those that were given before; below zero where there are none, and f stays as it is. Collective.
   virtual Real lag(Lag how, const BlockVector& x) { return -1; }
-  /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
-  /// about as much as the rock around it does): so every body is held, and what it did before decides little. Zero is f
-  /// as it is. False where there is no contact, and f stays as it is.
-  virtual bool tether(Real stiffness, const BlockVector& x) { return false; }
-  /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
-  /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,
-  /// and f is another function. The same on every rank.
-  virtual bool calibrate(const BlockVector& x, bool first) { return false; }
-  /// Where f leaves it open where a body is, replaces the zero x of f by the one nearest to the last accepted x, and
-  /// returns true if x moved farther than rounding. x may then be a zero to a lesser accuracy.
-  virtual bool settle(BlockVector& x) { return false; }
-  /// A hash of discrete states [as states()] (which faces are open, stick, slip), the same on every rank and for any
-  /// partition.
-  virtual std::size_t state_hash(const std::vector<char>& states) = 0;
-  /// The discrete states of x on this rank, one of each owned entity that has one, in a fixed order.
-  virtual std::vector<char> states(const BlockVector& x) { return {}; }
-  /// Where the entities are that are flagged, in the order of states(), in words; empty if none is on any rank.
-  virtual std::string where(const std::vector<char>& flagged) { return ""; }
+  /// What it offers where f is not smooth.
+  virtual Globalisation& globalisation() { return smooth_; }
+
+ private:
+  Globalisation smooth_;
 };
 
 }  // namespace sprekk::fields

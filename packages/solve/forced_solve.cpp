@@ -38,7 +38,8 @@ std::size_t ForcedSolve::states_after(const BlockVector& dx) const {
   auto x = fields::create_like(x_);
   fields::copy(x_, x);
   add(-1, dx, x);
-  return problem_.state_hash(problem_.states(x));
+  auto& globalisation = problem_.globalisation();
+  return globalisation.state_hash(globalisation.states(x));
 }
 
 Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
@@ -55,7 +56,8 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
   Real asked = std::max(first_accuracy, tolerance);
   auto report = solve_.solve(b, dx, asked);
   if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
-  const auto before = problem_.state_hash(problem_.states(x_));
+  auto& globalisation = problem_.globalisation();
+  const auto before = globalisation.state_hash(globalisation.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
   auto states = states_after(dx);
   for (int k = 0; k < most_refinements && report.converged && report.residual > tolerance && asked > tolerance; ++k) {

@@ -36,8 +36,8 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   bool solved = model_.linear_history().back().converged;
   report_.damped = picard_.lags() || damping_ > 0 ||
                    std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
-  const auto unresisted = solved ? problem_.balance(solution_of(from), blocks) : "";
-  if (const auto loose = problem_.loose(); !loose.empty()) report_.loose = loose;
+  const auto unresisted = solved ? globalisation_.balance(solution_of(from), blocks) : "";
+  if (const auto loose = globalisation_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
     report_.failure = "no resistance to the loads found: " + unresisted + ", and meets none";
     return false;
@@ -48,7 +48,7 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto attempt = [&] { return picard_.lags() ? full(group, from, *dx) : search(group, from, *dx); };
   if (solved) found = attempt();
   while (!found && damping_ < most_damping) {
-    problem_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
+    globalisation_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
     report_.damped = true;
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
     if (solved) found = attempt();
@@ -82,7 +82,7 @@ std::optional<LineSearch::Trial> LineSearch::begin_anew(NOX::Abstract::Group& gr
                                                         const NOX::Abstract::Vector& dx) {
   if (picard_.possible() || n_begun_ == most_begun) return {};
   const auto taken = full(group, from, dx);
-  if (!taken || problem_.state_hash(problem_.states(solution_of(group))) == pattern_) return {};
+  if (!taken || globalisation_.state_hash(globalisation_.states(solution_of(group))) == pattern_) return {};
   ++n_begun_;
   damping_ = 0;
   begin_search();
@@ -101,7 +101,7 @@ bool LineSearch::goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gro
   if (!picard_.possible() || picard_.lags() || merits_.empty()) return false;
   group = from;
   picard_.resume(solution_of(group), 0, 0, 0);
-  problem_.damp(damping_ = 0, swinging_);
+  globalisation_.damp(damping_ = 0, swinging_);
   group.setX(group.getX());
   group.computeF();
   return true;
@@ -145,7 +145,7 @@ Real LineSearch::limit() const {
 /// Iterates before the first full step leave the linear part out of balance.
 void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
   const auto x = solution_of(group);
-  if (problem_.calibrate(x, merits_.empty())) {
+  if (globalisation_.calibrate(x, merits_.empty())) {
     group.setX(group.getX());
     group.computeF();
     merit = problem_.merit(x, residual_of(group));
@@ -154,8 +154,8 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
   } else {
     merits_.push_back(merit);
   }
-  compare(problem_.states(x), merit);
-  problem_.damp(damping_, swinging_);
+  compare(globalisation_.states(x), merit);
+  globalisation_.damp(damping_, swinging_);
   steps_.push_back(step);
   report_.stagnant = is_stagnant();
 }
@@ -189,7 +189,7 @@ void LineSearch::compare(const std::vector<char>& states, Real merit) {
   }
   states_ = states;
   const auto before = pattern_;
-  pattern_ = problem_.state_hash(states);
+  pattern_ = globalisation_.state_hash(states);
   changed_ = pattern_ != before;
   const auto seen = visited_.find(pattern_);
   if (seen != visited_.end() && merit >= seen->second && !picard_.lags()) monotone_ = true;

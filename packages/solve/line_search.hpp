@@ -36,7 +36,7 @@ struct SearchReport {
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
-      : problem_(problem), model_(model), picard_(picard), report_(report) {}
+      : problem_(problem), globalisation_(problem.globalisation()), model_(model), picard_(picard), report_(report) {}
 
   /// Fails, with step 0, where the direction does: after a linear solve that did; and when a body has found no
   /// resistance in four steps of a solve, which is what the report says then.
@@ -62,6 +62,7 @@ class LineSearch : public NOX::LineSearch::Generic {
   bool is_stagnant();
 
   BlockProblem& problem_;
+  fields::Globalisation& globalisation_;
   const ThyraModel& model_;
   Picard& picard_;
   SearchReport& report_;

@@ -55,10 +55,10 @@ LocalElimination::LocalElimination(BlockProblem& problem)
     if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);
 }
 
-LocalElimination::Status LocalElimination::update(const BlockProblem& problem) {
+LocalElimination::Status LocalElimination::update(BlockProblem& problem) {
   const bool held_anew = take_constraints(problem);
   for (int r = 0; r < n_remaining(); ++r) {
-    const auto proximal = problem.proximal(plan_.remaining[r]);
+    const auto proximal = problem.globalisation().proximal(plan_.remaining[r]);
     for (int s = 0; s < n_remaining() && (held_anew || fresh_); ++s)
       if (!block(r, s).matrix.is_null()) block(r, s).held = find_held(block(r, s), *constrained_[r]);
     if (held_anew || fresh_ || !proximal.is_null()) keep_held(block(r, r), *constrained_[r], proximal);

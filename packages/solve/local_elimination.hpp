@@ -27,7 +27,7 @@ class LocalElimination {
   explicit LocalElimination(BlockProblem& problem);
 
   /// Forms J from the present values of problem.matrix(). The same answer on every rank.
-  Status update(const BlockProblem& problem);
+  Status update(BlockProblem& problem);
 
   /// The blocks that remain, as indices into problem.blocks(). [r]
   const std::vector<int>& remaining() const { return plan_.remaining; }

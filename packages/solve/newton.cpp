@@ -183,7 +183,7 @@ Newton::~Newton() = default;
 NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
   model_->start(options_.tolerance);
-  problem_.damp(0, {});
+  problem_.globalisation().damp(0, {});
   // NOX holds references by RCP; the model outlives the solver here
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
@@ -203,7 +203,7 @@ NewtonReport Newton::solve(BlockVector& x) {
     const bool damped = base::on_any_rank(*problem_.comm(), search.damped);
     factors_ = damped ? Factors::damped : Factors::good;
     if (report.converged && damped) {  // now, for after a commit faces that slid would stick
-      problem_.damp(0, {});
+      problem_.globalisation().damp(0, {});
       problem_.jacobian(x);
       factors_ = Factors::old;
     }
@@ -219,7 +219,7 @@ NewtonReport Newton::solve(BlockVector& x) {
 
 LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (linear_->n_setups() == 0 || factors_ == Factors::damped) {
-    problem_.damp(0, {});
+    problem_.globalisation().damp(0, {});
     problem_.jacobian(x);
     factors_ = Factors::old;
   }

@@ -37,7 +37,7 @@ struct NewtonReport {
   std::vector<LinearReport> linear_solves;    ///< one for each iteration
   std::string reason;                         ///< of a failure
   std::string loose;                          ///< what nothing held in an iterate, in words, the last such
-  std::vector<char> unsettled;                ///< [as BlockProblem::states()] changed in the last five iterates
+  std::vector<char> unsettled;                ///< [as Globalisation::states()] changed in the last five iterates
   std::vector<Measure> measures;              ///< at the end
   std::vector<std::vector<Measure>> history;  ///< [iteration, from 0 for the start]
 };

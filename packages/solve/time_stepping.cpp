@@ -15,7 +15,7 @@ constexpr int most_tethers = 60, least_cuts = 3, most_settlings = 4;
 struct Release {
   BlockProblem& problem;
   const BlockVector& x;
-  ~Release() { problem.tether(0, x); }
+  ~Release() { problem.globalisation().tether(0, x); }
 };
 
 void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to) {
@@ -50,7 +50,7 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
   Real stiffness = first_tether, enough = weak_tether;
   for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
     const bool last = stiffness < enough;
-    if (!problem_.tether(last ? 0 : stiffness, place)) return {};
+    if (!problem_.globalisation().tether(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
     if (newton.stopped || (last && (newton.converged || enough == least_tether))) return newton;
     fields::copy(newton.converged ? x : place, newton.converged ? place : x);
@@ -86,12 +86,12 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       if (auto found = relax(x, report); found.converged || found.stopped) newton = std::move(found);
     }
     int settlings = 0;
-    for (; settlings < most_settlings && newton.converged && problem_.settle(x); ++settlings)
+    for (; settlings < most_settlings && newton.converged && problem_.globalisation().settle(x); ++settlings)
       newton = solve(x, report);  // to the tolerance again: mostly no iteration
     report.measures = newton.measures;
     if (newton.converged) {
       problem_.commit(x);
-      report.loose = problem_.loose();
+      report.loose = problem_.globalisation().loose();
       if (settlings == most_settlings && !report.loose.empty())
         report.loose += fmt::format(" (after {} attempts it may not be where it should come to lie)", settlings);
       fields::copy(x, committed);
@@ -111,7 +111,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     report.unsettled = newton.unsettled;
     if (size == 1) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // where x is
-      if (const auto where = problem_.where(report.unsettled); !where.empty())
+      if (const auto where = problem_.globalisation().where(report.unsettled); !where.empty())
         report.reason += "; faces that keep changing between open, stick and slip: " + where;
       if (!loose.empty()) report.reason = "no equilibrium found: in the last iterates " + loose + ", and nothing holds it; " + report.reason;
       return report;

@@ -21,7 +21,7 @@ struct StepReport {
   int substeps = 0;                         ///< committed
   int cuts = 0;
   std::string reason;             ///< of the last failure, if there was one
-  std::vector<char> unsettled;    ///< [as BlockProblem::states()] in the last failure, those that found no state
+  std::vector<char> unsettled;    ///< [as Globalisation::states()] in the last failure, those that found no state
   std::string loose;              ///< what nothing holds in the state at `time`, in words
   std::vector<Measure> measures;  ///< of the last Newton solve
 };

@@ -76,7 +76,7 @@ class ElasticPlasticJump final : public assembly::Module {
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     Op op = at(state);
-    op.damping = state.damping;
+    op.damping = state.contact.damping;
     faces_->add_jacobian(op, state, J);
   }
   void initial(const assembly::Rows& x) const override;
@@ -90,7 +90,7 @@ class ElasticPlasticJump final : public assembly::Module {
   void states(const assembly::State& state, std::vector<char>& states) const override {
     for_each_face(state, [&](LocalIndex f, const Point& point) { states[f] = static_cast<char>(point.state); });
   }
-  void grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const override;
+  void grip(const assembly::State& state, std::vector<contact::Grip>& grips) const override;
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
 
@@ -100,9 +100,9 @@ class ElasticPlasticJump final : public assembly::Module {
     Op op = *op_;
     op.p_old = state.history[0];
     if (parameters_.n_kept > 0) op.kept = state.history[2];
-    op.factor = state.augmentation;
-    op.tether = state.tether;
-    op.anchor = state.anchor;
+    op.factor = state.contact.augmentation;
+    op.tether = state.contact.tether;
+    op.anchor = state.contact.anchor;
     return op;
   }
 
@@ -298,7 +298,7 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 
 /// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
 template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<assembly::Grip>& grips) const {
+void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<contact::Grip>& grips) const {
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;

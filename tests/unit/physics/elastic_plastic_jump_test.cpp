@@ -167,7 +167,7 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
     auto r = fields::create_like(s.x), other = fields::create_like(s.x), dx = fields::create_like(s.x);
     const std::array<Real, 3> moved{0.02, 0.03, dim == 3 ? -0.01 : 0};
     s.set({5, 0.4, 0}, {0, 0, 0});
-    system.tether(2, s.x);
+    system.globalisation().tether(2, s.x);
     system.raw_residual(s.x, r);
     EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
     s.set({5 + moved[0], 0.4 + moved[1], moved[2]}, {0, 0, 0});
@@ -188,7 +188,7 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
       }
       EXPECT_LE(r[2]->normInf(), 1e-6 * other[2]->normInf()) << cell << " " << normal;
     }
-    system.tether(0, s.x);
+    system.globalisation().tether(0, s.x);
     s.set({5, 0.4, 0}, {0, 0, 0});
     system.raw_residual(s.x, r);
     EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
@@ -203,7 +203,7 @@ TEST(ElasticPlasticJump, TetherLeavesTheElasticJumpAlone) {
     auto r = fields::create_like(s.x);
     const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
     s.set({closed, 0, 0}, {-50, 0, 0});
-    s.rock.system->tether(2, s.x);
+    s.rock.system->globalisation().tether(2, s.x);
     s.set({closed, 0.15, dim == 3 ? -0.2 : 0}, {-50, 0.3, dim == 3 ? -0.4 : 0});  // w_t = lambda_t / K_t
     s.rock.system->raw_residual(s.x, r);
     for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
@@ -227,14 +227,14 @@ TEST(ElasticPlasticJump, HashTellsTheStatesOfTheFaces) {
   ShiftedRock s("quadrilateral");
   std::vector<std::size_t> hashes;
   s.set({5, 0, 0}, {0, 0, 0});
-  hashes.push_back(s.rock.system->state_hash(s.rock.system->states(s.x)));
+  hashes.push_back(s.rock.system->globalisation().state_hash(s.rock.system->globalisation().states(s.x)));
   s.set({0, 0, 0}, {-50, 0, 0});
-  hashes.push_back(s.rock.system->state_hash(s.rock.system->states(s.x)));
+  hashes.push_back(s.rock.system->globalisation().state_hash(s.rock.system->globalisation().states(s.x)));
   Rock::set(s.x, 2, 0, 100);  // one face opens
-  hashes.push_back(s.rock.system->state_hash(s.rock.system->states(s.x)));
+  hashes.push_back(s.rock.system->globalisation().state_hash(s.rock.system->globalisation().states(s.x)));
   s.set({0, 0, 0}, {-50, 0, 0});
   Rock::set(s.x, 2, 2, 100);  // the other one
-  hashes.push_back(s.rock.system->state_hash(s.rock.system->states(s.x)));
+  hashes.push_back(s.rock.system->globalisation().state_hash(s.rock.system->globalisation().states(s.x)));
   for (std::size_t i = 0; i < hashes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(hashes[i], hashes[j]);
 }
@@ -264,7 +264,7 @@ TEST(FracturedRock, IsTheSameForEveryPartition) {
           EXPECT_LE(test::largest(shared.block(b, c) - whole.block(b, c)), 1e-11) << cell << " " << b << c;
         }
       }
-      EXPECT_EQ(shared.system->state_hash(shared.system->states(x)), whole.system->state_hash(whole.system->states(y)));
+      EXPECT_EQ(shared.system->globalisation().state_hash(shared.system->globalisation().states(x)), whole.system->globalisation().state_hash(whole.system->globalisation().states(y)));
       EXPECT_EQ(shared.system->symmetric(), whole.system->symmetric());
       const Real merit = whole.system->merit(y, q);
       EXPECT_NEAR(shared.system->merit(x, r), merit, 1e-12 * merit);

@@ -61,7 +61,7 @@ struct GridOptions {
 ///   beta l r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
 /// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are
 /// more, has no nodes; faces live elsewhere than their nodes.
-class GridProblem : public BlockProblem {
+class GridProblem : public BlockProblem, public fields::Globalisation {
  public:
   static constexpr Real alpha = 3, eta = 0.4, beta = 0.7, c = 5, kt = 0.5;
 
@@ -93,6 +93,7 @@ class GridProblem : public BlockProblem {
   int n_jacobians = 0, n_commits = 0;
   RCP<const Vector> added;  ///< proximal diagonal of the displacement
 
+  fields::Globalisation& globalisation() override { return *this; }
   RCP<const Comm> comm() const override { return comm_; }
   const std::vector<Block>& blocks() const override { return blocks_; }
   const std::vector<LocalGroup>& local_groups() const override { return groups_; }
@@ -280,7 +281,7 @@ class GridProblem : public BlockProblem {
 };
 
 /// n independent copies of f(x, t, dt) = 0, the i-th on rank i % size.
-class ScalarProblem : public BlockProblem {
+class ScalarProblem : public BlockProblem, public fields::Globalisation {
  public:
   using Function = std::function<Real(Real x, Real t, Real dt)>;
 
@@ -322,6 +323,7 @@ class ScalarProblem : public BlockProblem {
   std::string loose() const override { return free_body; }
   std::string balance(const BlockVector&, BlockVector&) override { return free_body; }
 
+  fields::Globalisation& globalisation() override { return *this; }
   RCP<const Comm> comm() const override { return comm_; }
   const std::vector<Block>& blocks() const override { return blocks_; }
   const std::vector<LocalGroup>& local_groups() const override { return groups_; }

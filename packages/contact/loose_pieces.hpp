@@ -1,8 +1,8 @@
 // Pieces of rock that neither boundary conditions nor the present contact hold.
 #pragma once
 
-#include "assembly/constraints.hpp"
-#include "assembly/rigid_motion.hpp"
+#include "contact/grip.hpp"
+#include "contact/rigid_motion.hpp"
 #include "fields/layout.hpp"
 #include "fields/types.hpp"
 
@@ -13,19 +13,12 @@
 #include <utility>
 #include <vector>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
-/// How the sides of a fracture face hold each other.
-struct Grip {
-  std::array<mesh::Vector, 3> held{};  ///< rows: jumps that are zero in all of them meet no resistance, global frame
-  mesh::Vector excess{};  ///< what the traction, an unknown, is above the one that the law answers with, Pa, global
-  mesh::Vector traction{}, jump{};  ///< Pa, m, global
-  Real augmentation = 0;            ///< c of the face law, Pa/m
-  Real modulus = 0;                 ///< Young's modulus of the softer side, Pa
-  Real gap = 0;                     ///< how far the sides are from touching without traction, m
-  mesh::Vector away{};              ///< derivative of the gap in the jump
-  Real limit = 0;                   ///< of friction, on the size of the tangential traction, Pa
-  mesh::Vector slip{};              ///< plastic tangential jump since the last accepted state, m, global
+/// An unknown of the displacement that is held.
+struct Support {
+  LocalIndex unknown;  ///< owned
+  int component;
 };
 
 /// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
@@ -33,8 +26,9 @@ struct Grip {
 /// face acts at its centre. All members are collective unless they return stored data.
 class LoosePieces {
  public:
-  /// `displacement` is the layout of the field that `constraints` are on.
-  LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const Constraints& constraints);
+  /// `displacement` is the layout of the field that `supports` are of; `volumes` are those of cells, [local cell].
+  LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const std::vector<Support>& supports,
+              const std::vector<Real>& volumes);
 
   /// Some piece is not held by boundary conditions alone; if none, nothing else here needs to be called. Stored data.
   bool possible() const { return !candidates_.empty(); }
@@ -140,10 +134,10 @@ class LoosePieces {
     bool first;  ///< this piece is the pair's a
   };
 
-  void measure_pieces(const fields::Layout& displacement);
+  void measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes);
   void find_ties(const fields::Layout& displacement);
   void pair_up();
-  void hold(const Constraints& constraints);
+  void hold(const std::vector<Support>& supports);
   void sum_pairs(const std::vector<Grip>& grips);
   std::vector<int> unheld() const;
   std::vector<std::vector<int>> coupled(const std::vector<int>& pieces) const;
@@ -178,4 +172,4 @@ class LoosePieces {
   Real contrast_ = 1;
 };
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

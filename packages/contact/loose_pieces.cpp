@@ -1,6 +1,5 @@
-#include "assembly/loose_pieces.hpp"
+#include "contact/loose_pieces.hpp"
 
-#include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/union_find.hpp"
@@ -11,7 +10,7 @@
 #include <map>
 #include <set>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using mesh::Vector;
 using mesh::operator+;
@@ -42,12 +41,13 @@ bool is_regular(const RigidBlock& block, const std::vector<int>& modes) {
 
 }  // namespace
 
-LoosePieces::LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const Constraints& constraints)
+LoosePieces::LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement,
+                         const std::vector<Support>& supports, const std::vector<Real>& volumes)
     : mesh_(mesh) {
   if (mesh_->n_global_fracture_faces == 0) return;
-  measure_pieces(displacement);
+  measure_pieces(displacement, volumes);
   find_ties(displacement);
-  hold(constraints);
+  hold(supports);
   for (int p = 0; p < mesh_->n_pieces; ++p)
     if (!is_regular(support_[p], rigid_modes(dim()))) candidates_.push_back(p);
   loose_number_.assign(mesh_->n_pieces, -1);
@@ -61,7 +61,7 @@ Vector LoosePieces::node(LocalIndex n) const {
 }
 
 /// Frames and sizes of pieces; which piece a node is in, and the volume around it.
-void LoosePieces::measure_pieces(const fields::Layout& displacement) {
+void LoosePieces::measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes) {
   const int n = mesh_->nodes_per_cell(), n_pieces = mesh_->n_pieces;
   std::vector<Real> corner(6 * n_pieces, -std::numeric_limits<Real>::max());
   piece_of_.assign(displacement.n_owned_entities(), 0);
@@ -70,11 +70,6 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     const int piece = mesh_->cell_piece[c];
     if (c < mesh_->n_owned_cells) ++n_cells_[piece];
-    Real volume = 0;
-    mesh::for_shape(mesh_->shape, [&](auto shape) {
-      for_each_cell_point<shape(), StiffnessQuadrature<shape()>>(
-          *mesh_, c, [&](const auto&, Real share, const auto&) { volume += share; });
-    });
     for (int k = 0; k < n; ++k) {
       const LocalIndex here = mesh_->cells[c * n + k], owned = mesh_->free_node(here);
       const Vector x = node(here);
@@ -84,7 +79,7 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement) {
       }
       if (owned >= displacement.n_owned_entities()) continue;
       if (owned == here) piece_of_[owned] = piece;
-      volume_[owned] += volume / n;
+      volume_[owned] += volumes[c] / n;
     }
   }
   const auto corners = base::max_over_ranks(*mesh_->comm, corner);
@@ -124,11 +119,11 @@ void LoosePieces::find_ties(const fields::Layout& displacement) {
   tied_ = base::max_over_ranks(*mesh_->comm, tied);
 }
 
-void LoosePieces::hold(const Constraints& constraints) {
+void LoosePieces::hold(const std::vector<Support>& supports) {
   support_.assign(mesh_->n_pieces, {});
-  for (const auto& entry : constraints.entries()) {
-    const int piece = piece_of_[entry.unknown / dim()];
-    const auto row = rigid_row(frames_[piece], node(entry.unknown / dim()), entry.component);
+  for (const auto& [unknown, component] : supports) {
+    const int piece = piece_of_[unknown / dim()];
+    const auto row = rigid_row(frames_[piece], node(unknown / dim()), component);
     add_product(support_[piece], row, row);
   }
   for (const auto& tie : ties_)
@@ -327,4 +322,4 @@ void LoosePieces::find_motions(const std::vector<int>& pieces) {
   groups_.push_back(std::move(group));
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

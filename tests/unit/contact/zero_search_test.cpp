@@ -1,5 +1,5 @@
 // The search for a zero ends on every function, and finds the zero of one that does not fall.
-#include "assembly/zero_search.hpp"
+#include "contact/zero_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 namespace {
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
@@ -89,4 +89,4 @@ TEST(ZeroSearch, EndsFromAnyFirstStep) {
 }
 
 }  // namespace
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,5 +1,5 @@
 // The constant of the face law, held against the stiffness of the rock.
-#include "assembly/system.hpp"
+#include "contact/contact.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using fields::BlockVector;
 
@@ -26,9 +26,9 @@ bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>
 }  // namespace
 
 /// Faces whose rock is of like stiffness, by decades around what its scales say of the stiffest: u = sigma L / E.
-int System::calibration_class(const Grip& grip) const {
-  const Real stress = blocks_[contact_].kinematic_scale, length = scales_.at(unknowns_[contact_].augmented_by);
-  const Real decade = std::round(std::log10(grip.modulus * length / (stress * extent_)));
+int Contact::calibration_class(const Grip& grip) const {
+  const auto sizes = equations_.sizes();
+  const Real decade = std::round(std::log10(grip.modulus * sizes.jump / (sizes.traction * sizes.extent)));
   return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
 }
 
@@ -37,21 +37,21 @@ int System::calibration_class(const Grip& grip) const {
 /// over faces of one class that stay closed, weighted by how far each deformation has moved. Measured once: stiffness
 /// does not change, but between later iterates pieces that part move far, which says nothing of it. Where sides come
 /// nearer to each other under a given load no traction changes, and what rounding leaves of it is no stiffness.
-bool System::calibrate(const BlockVector& x, bool first) {
-  if (contact_ < 0) return false;
+bool Contact::calibrate(const BlockVector& x, bool first) {
+  if (blocks_.traction < 0) return false;
   calibration_.resize(n_classes, 0);
   if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;
-  refresh_ghosts(x, false);
-  const auto before = std::exchange(grips_, grips());
+  const auto before = std::exchange(grips_, equations_.grips(x));
   if (first) return false;
-  const Real stress = blocks_[contact_].kinematic_scale, length = scales_.at(unknowns_[contact_].augmented_by);
+  const auto sizes = equations_.sizes();
+  const Real stress = sizes.traction, length = sizes.jump;
   std::array<std::array<Real, n_sums>, n_classes> here{};
   for (std::size_t f = 0; f < grips_.size(); ++f) {
     const auto& now = grips_[f];
     auto& sums = here[calibration_class(now)];
     const Real size = mesh_->fracture_faces[f].area;
     sums[area] += size;
-    sums[noticed] += size * std::pow(noticeable * std::min(stress, now.modulus * length / extent_), 2);
+    sums[noticed] += size * std::pow(noticeable * std::min(stress, now.modulus * length / sizes.extent), 2);
     if (is_open(now) || is_open(before[f])) continue;
     for (int i = 0; i < 3; ++i) {
       const Real jump = now.jump[i] - before[f].jump[i];
@@ -62,7 +62,7 @@ bool System::calibrate(const BlockVector& x, bool first) {
       sums[loaded] += size * traction * traction;
     }
   }
-  const auto all = base::sum_over_ranks(*comm(), here);
+  const auto all = base::sum_over_ranks(*mesh_->comm, here);
   bool corrected = false;
   for (int k = 0; k < n_classes; ++k) {
     const auto& sums = all[k];
@@ -81,7 +81,7 @@ bool System::calibrate(const BlockVector& x, bool first) {
 }
 
 /// Factors of all faces from those of their classes.
-void System::correct_augmentation(const std::vector<Grip>& grips) {
+void Contact::correct_augmentation(const std::vector<Grip>& grips) {
   SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
                calibration_.size(), n_classes);
   View<Real*> factor("factor", grips.size());
@@ -91,7 +91,7 @@ void System::correct_augmentation(const std::vector<Grip>& grips) {
     host(f) = correction != 0 ? correction : 1;
   }
   Kokkos::deep_copy(factor, host);
-  augmentation_ = factor;
+  regularisation_.augmentation = factor;
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,5 +1,5 @@
 // Where a body is that nothing holds: of all places that the equations allow, the nearest one.
-#include "assembly/system.hpp"
+#include "contact/contact.hpp"
 
 #include "base/over_ranks.hpp"
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using fields::BlockVector;
 using mesh::Vector;
@@ -61,47 +61,45 @@ void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::
 
 /// The free motion to the nearest state; each pass adds the faces whose gap would fall below `least` [face], as they
 /// are seen from the last one, and those that would slide against their traction.
-std::optional<std::vector<RigidRow>> System::way_back(const BlockVector& x,
+std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
                                                       const std::vector<LoosePieces::Slide>& slides,
                                                       const std::vector<Real>& least) {
   constexpr int most_passes = 30;
-  const Real length = blocks_[displacement_].kinematic_scale, slack = 0.1 * margin * length;
+  const Real length = equations_.sizes().displacement, slack = 0.1 * margin * length;
   auto there = fields::create_like(x);
-  auto away = fields::Vector(*x[displacement_], Teuchos::Copy);
+  auto away = fields::Vector(*x[blocks_.displacement], Teuchos::Copy);
   away.update(-1, *committed_, 1);
-  const auto places = loose_->places(away, slides);
+  const auto places = pieces_->places(away, slides);
   std::vector<LoosePieces::Obstacle> obstacles;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const auto motion = loose_->nearest(places, obstacles, length);
+    const auto motion = pieces_->nearest(places, obstacles, length);
     if (!motion) return {};
     fields::copy(x, there);
-    loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *there[displacement_]);
-    refresh_ghosts(there, false);
-    const auto grips = this->grips();
+    pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *there[blocks_.displacement]);
+    const auto grips = equations_.grips(there);
     const auto n_before = obstacles.size();
     for (LocalIndex f = 0; f < static_cast<LocalIndex>(grips.size()); ++f) {
       const auto& grip = grips[f];
-      if (loose_->is_beside(f) && grip.gap < least[f] - slack)
-        obstacles.push_back({f, grip.away, least[f] - grip.gap + mesh::dot(grip.away, loose_->jump(f, *motion))});
+      if (pieces_->is_beside(f) && grip.gap < least[f] - slack)
+        obstacles.push_back({f, grip.away, least[f] - grip.gap + mesh::dot(grip.away, pieces_->jump(f, *motion))});
     }
     for (const auto& slide : slides) {
       const Real back = -std::max(slide.done, Real(0));
-      if (slide.one_way && loose_->is_beside(slide.face) &&
-          mesh::dot(slide.along, loose_->jump(slide.face, *motion)) < back - slack)
+      if (slide.one_way && pieces_->is_beside(slide.face) &&
+          mesh::dot(slide.along, pieces_->jump(slide.face, *motion)) < back - slack)
         obstacles.push_back({slide.face, slide.along, back});
     }
-    if (!base::on_any_rank(*comm(), obstacles.size() > n_before)) return motion;
+    if (!base::on_any_rank(*mesh_->comm, obstacles.size() > n_before)) return motion;
   }
   return {};
 }
 
-bool System::settle(BlockVector& x) {
-  if (!watches_pieces()) return false;
+bool Contact::settle(BlockVector& x) {
+  if (!pieces_) return false;
   nearest_known_ = true;
-  refresh_ghosts(x, false);
-  const Real length = blocks_[displacement_].kinematic_scale;
-  const Real least = loaded * (contact_ < 0 ? 0 : blocks_[contact_].kinematic_scale);
-  auto released = grips();
+  const auto sizes = equations_.sizes();
+  const Real length = sizes.displacement, least = loaded * sizes.traction;
+  auto released = equations_.grips(x);
   std::vector<Real> apart, touching;
   for (const auto& grip : released) {
     const bool is_free = !(mesh::norm(grip.traction) > least);
@@ -110,16 +108,16 @@ bool System::settle(BlockVector& x) {
   }
   std::vector<LoosePieces::Slide> slides;
   release(*mesh_, least, released, slides);
-  loose_->find(released);
-  if (!loose_->any()) return false;
+  pieces_->find(released);
+  if (!pieces_->any()) return false;
   auto motion = way_back(x, slides, apart);
   if (!motion) motion = way_back(x, slides, touching);  // it fits in between without room to spare
   nearest_known_ = motion.has_value();
   if (!motion) return false;
-  auto moved = fields::Vector(*x[displacement_], Teuchos::Copy);
-  loose_->add(std::vector<Real>(loose_->n_groups(), 1), {*motion, {}}, *x[displacement_]);
-  moved.update(-1, *x[displacement_], 1);
+  auto moved = fields::Vector(*x[blocks_.displacement], Teuchos::Copy);
+  pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *x[blocks_.displacement]);
+  moved.update(-1, *x[blocks_.displacement], 1);
   return moved.normInf() > settled * length;
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

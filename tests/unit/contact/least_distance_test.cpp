@@ -1,12 +1,12 @@
 // The nearest point of a polyhedron, against points known by geometry and against the conditions that it satisfies.
-#include "assembly/least_distance.hpp"
+#include "contact/least_distance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 namespace {
 
 using Rows = std::vector<std::vector<Real>>;
@@ -80,4 +80,4 @@ TEST(LeastDistance, IsNearestAmongMany) {
 }
 
 }  // namespace
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

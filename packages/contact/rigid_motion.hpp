@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 /// The part of a motion that is below this, relative to its largest, is round-off. Eigenvalues are squares of it.
 inline constexpr Real negligible = 1e-6;
@@ -58,4 +58,4 @@ std::string to_text(const FreeMotion& motion, int dim);
 /// "(0, 1.5)": a point or vector; components that are round-off next to `scale` are zero.
 std::string to_text(const mesh::Vector& x, int dim, Real scale);
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,5 +1,5 @@
 // What loose pieces do: their share of a displacement, the work on them, their names.
-#include "assembly/loose_pieces.hpp"
+#include "contact/loose_pieces.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using mesh::Vector;
 using mesh::operator-;
@@ -201,4 +201,4 @@ std::string LoosePieces::describe(const Motion& motion) const {
                      to_text(free_motion(piece, frame, *largest), dim()));
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,6 +1,6 @@
 // Where loose pieces come to lie nearest to a given place, next to others that they must not enter.
-#include "assembly/least_distance.hpp"
-#include "assembly/loose_pieces.hpp"
+#include "contact/least_distance.hpp"
+#include "contact/loose_pieces.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using mesh::Vector;
 using mesh::operator-;
@@ -190,4 +190,4 @@ std::optional<std::vector<RigidRow>> LoosePieces::nearest(const Places& places, 
   return motion;
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 /// The zero s > 0 of a function that does not fall and is below zero at s = 0: bracketed by steps that grow fourfold,
 /// then by false position (Illinois: Dowell and Jarratt 1971), to a tenth of the value at 0.
@@ -54,4 +54,4 @@ class ZeroSearch {
   bool bracketed_ = false, done_;
 };
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,4 +1,4 @@
-#include "assembly/least_distance.hpp"
+#include "contact/least_distance.hpp"
 
 #include "base/check.hpp"
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 namespace {
 
@@ -109,4 +109,4 @@ std::optional<std::vector<Real>> least_distance(std::vector<std::vector<Real>> G
   return y;
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

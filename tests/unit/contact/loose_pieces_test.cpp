@@ -1,5 +1,5 @@
 // Pieces that nothing holds, for grips made by hand: a column of three blocks along y, cut by "lower" and "upper".
-#include "assembly/loose_pieces.hpp"
+#include "contact/loose_pieces.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,16 +15,16 @@
 namespace sprekk::test {
 namespace {
 
-Real largest(const assembly::LoosePieces::Motion& motion) {
+Real largest(const contact::LoosePieces::Motion& motion) {
   return motion.largest.empty() ? 0 : *std::max_element(motion.largest.begin(), motion.largest.end());
 }
 
 Real sum(const std::vector<Real>& values) { return std::accumulate(values.begin(), values.end(), Real(0)); }
 
-using assembly::Grip;
-using assembly::LoosePieces;
-using assembly::RigidFrame;
-using assembly::RigidRow;
+using contact::Grip;
+using contact::LoosePieces;
+using contact::RigidFrame;
+using contact::RigidRow;
 using mesh::Vector;
 using mesh::testing::all_cells;
 using mesh::testing::dim_of;
@@ -61,7 +61,7 @@ struct Column {
       : mesh(mesh::make_distributed(mesh::make_box(box), Tpetra::getDefaultComm())),
         layout({"displacement", fields::Entity::node, mesh->dim(), "m"}, *mesh),
         constraints(*mesh, layout, conditions(*mesh, held)),
-        pieces(mesh, layout, constraints),
+        pieces(mesh, layout, constraints.supports(), assembly::cell_volumes(*mesh)),
         diagonal(rcp(new fields::Vector(layout.owned()))) {
     diagonal->putScalar(7);
     if (pieces.possible()) pieces.set_stiffness(*diagonal);
@@ -120,7 +120,7 @@ struct Column {
     if (!pieces.any()) return 0;
     Real trace = 0;
     for (int block = 0; block < 3; ++block)
-      for (int mode : assembly::rigid_modes(mesh->dim())) {
+      for (int mode : contact::rigid_modes(mesh->dim())) {
         std::array<RigidRow, 3> q{};
         q[block][mode] = 1;
         auto motion = fields::Vector(layout.owned());
@@ -381,7 +381,7 @@ TEST(LoosePieces, ComesToLieNearest) {
     column.find(open, open);
     ASSERT_EQ(column.pieces.n_groups(), 1);
     std::array<RigidRow, 3> moved{};
-    for (int mode : assembly::rigid_modes(column.mesh->dim())) moved[1][mode] = 0.3 + 0.1 * mode;
+    for (int mode : contact::rigid_modes(column.mesh->dim())) moved[1][mode] = 0.3 + 0.1 * mode;
     for (const Real side : {0, 1, -1}) {  // which neighbour is in the way
       std::vector<LoosePieces::Obstacle> obstacles;
       for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces && side != 0; ++f) {
@@ -397,7 +397,7 @@ TEST(LoosePieces, ComesToLieNearest) {
       const auto motion = column.pieces.nearest(column.pieces.places(u, {}), obstacles, 0.1);
       ASSERT_TRUE(motion);
       column.pieces.add({1}, {*motion, {}}, u);
-      for (int mode : assembly::rigid_modes(column.mesh->dim()))
+      for (int mode : contact::rigid_modes(column.mesh->dim()))
         EXPECT_NEAR(column.coordinate(u, 1, mode), mode == 1 ? -0.1 * side : 0, 1e-10) << cell << side << mode;
     }
   }
@@ -447,7 +447,7 @@ TEST(LoosePieces, BlocksOfOtherStiffness) {
     EXPECT_LT(column.pieces.proximal().normInf(), 1e-4 * 2);
     std::array<RigidRow, 3> moved{};
     for (int block = 0; block < 3; ++block)
-      for (int mode : assembly::rigid_modes(dim)) moved[block][mode] = 1 + block - 0.2 * mode;
+      for (int mode : contact::rigid_modes(dim)) moved[block][mode] = 1 + block - 0.2 * mode;
     fields::Vector ghosted(column.layout.ghosted());
     ghosted.doImport(column.rigid(moved), *column.layout.import(), Tpetra::REPLACE);
     ASSERT_GT(ghosted.normInf(), 1);
@@ -478,7 +478,7 @@ TEST(LoosePieces, WorkIsThatOfTheLaw) {
               for (int i = 0; i < dim; ++i)
                 r.sumIntoLocalValue(node * dim + i, (side == mesh::plus ? 1 : -1) * face.area / n *
                                                         (law(face.centre)[i] + excess(face.centre)[i]));
-      for (int mode : assembly::rigid_modes(dim)) {
+      for (int mode : contact::rigid_modes(dim)) {
         std::array<RigidRow, 3> q{};
         q[1][mode] = 0.3;
         q[2][mode] = upper.state == Contact::stick ? 0.3 : -0.4;

@@ -1,4 +1,4 @@
-#include "assembly/rigid_motion.hpp"
+#include "contact/rigid_motion.hpp"
 
 #include "base/check.hpp"
 
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sprekk::assembly {
+namespace sprekk::contact {
 
 using mesh::Vector;
 using mesh::operator+;
@@ -105,4 +105,4 @@ std::string to_text(const FreeMotion& motion, int dim) {
                      screws ? " while it moves along it" : "");
 }
 
-}  // namespace sprekk::assembly
+}  // namespace sprekk::contact

@@ -1,0 +1,92 @@
+// Rock that nothing holds: what it is, and how far a step may move it.
+#include "contact/contact.hpp"
+#include "contact/zero_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::contact {
+
+using fields::BlockVector;
+
+RCP<const fields::Vector> Contact::proximal(int block) const {
+  return block == blocks_.displacement && pieces_ && pieces_->any() ? Teuchos::rcpFromRef(pieces_->proximal())
+                                                                    : Teuchos::null;
+}
+
+std::string Contact::loose() const {
+  if (!pieces_ || !pieces_->any()) return "";
+  return pieces_->describe(driven_.q.empty() ? pieces_->first() : driven_) +
+         (nearest_known_ ? "" : " (the place nearest to the last one was not found)");
+}
+
+void Contact::find_loose(std::vector<Grip> grips) {
+  if (!pieces_) return;
+  if (regularisation_.tether > 0)
+    for (auto& grip : grips) grip.held = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  pieces_->find(grips);
+  driven_ = {};
+}
+
+namespace {
+
+constexpr int n_sweeps = 2;
+
+}  // namespace
+
+/// [group] Of a motion, on what is out of balance at x; below zero where the motion is along the force.
+std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const BlockVector& x) {
+  auto r = fields::create_like(x);
+  const auto grips = equations_.evaluate(x, r);
+  return pieces_->work(motion, *r[blocks_.displacement], grips);
+}
+
+/// A piece that nothing holds goes as far as the full step says, 1e4 times too far. So its motion is taken out of the
+/// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks.
+/// After that the forces that are left along the free motions are balanced, one motion after the other.
+std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
+  if (!pieces_ || !pieces_->any() || damped_everywhere_ > 0) return "";
+  const auto motion = pieces_->part_of(*dx[blocks_.displacement]);
+  pieces_->add(std::vector<Real>(pieces_->n_groups(), -1), motion, *dx[blocks_.displacement]);
+  const auto unresisted = balance_along(motion, x, dx, false);
+  for (int sweep = 0; sweep < n_sweeps && unresisted.empty(); ++sweep)
+    for (int k = 0; k < pieces_->most_modes(); ++k) balance_along(pieces_->mode(k), x, dx, true);
+  return unresisted;
+}
+
+/// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
+std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx, bool mode) {
+  auto& du = *dx[blocks_.displacement];
+  const int n = pieces_->n_groups();
+  auto y = fields::create_like(x);
+  const auto at = [&](const std::vector<Real>& s) {
+    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
+    pieces_->add(s, motion, *y[blocks_.displacement]);
+    return work(motion, y);
+  };
+  std::vector<Real> s(n, 0), sign(n, 1);
+  const auto start = at(s);
+  std::vector<ZeroSearch> searches;
+  const auto sizes = equations_.sizes();
+  const Real length = sizes.displacement, force = sizes.force, reach = 4 * sizes.extent + 1e3 * length;
+  for (int g = 0; g < n; ++g) {
+    const Real largest = motion.largest[g];
+    if (mode && start[g] > 0) sign[g] = -1;
+    const bool round_off = mode ? !(std::abs(start[g]) > 1e-10 * force * largest) : !(largest > 1e-8 * length);
+    searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * length / largest, reach / largest);
+  }
+  const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };
+  if (!mode) driven_ = pieces_->selected(motion, [&](int g) { return !searches[g].done(); });
+  while (!all_done()) {
+    for (int g = 0; g < n; ++g) s[g] = sign[g] * searches[g].s;
+    const auto value = at(s);
+    for (int g = 0; g < n; ++g) searches[g].next(sign[g] * value[g]);
+  }
+  for (int g = 0; g < n; ++g)
+    s[g] = !searches[g].lost() ? sign[g] * searches[g].s : mode ? 0 : length / motion.largest[g];
+  pieces_->add(s, motion, du);
+  const auto lost = pieces_->selected(motion, [&](int g) { return searches[g].lost(); });
+  return lost.q.empty() ? "" : pieces_->describe(lost);
+}
+
+}  // namespace sprekk::contact
