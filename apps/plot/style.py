@@ -78,24 +78,40 @@ def without_noise(values, scale):
 
 
 class Range(Normalize):
-    """Ends of a colour bar; `single` is the value of a field that has no other, else None."""
+    """Ends of a colour bar; `single` is the value of a field that has no other, else None; `extend` says, as matplotlib
+    does, on which sides there are values beyond the ends."""
 
-    def __init__(self, low, high, single=None):
+    def __init__(self, low, high, single=None, extend="neither"):
         super().__init__(low, high)
-        self.single = single
+        self.single, self.extend = single, extend
 
 
-def limits(values, signed=False):
-    """Around zero if signed; a constant gets some room."""
-    low, high = (float(np.min(values)), float(np.max(values))) if np.size(values) else (0, 0)
+def clipped(values):
+    """The ends between which 98 % of the values lie, where the others would take half of the colours, and how a colour bar
+    shows that. Tips of fractures and wells have values without bound."""
+    low, high = float(np.min(values)), float(np.max(values))
+    inner = np.percentile(values, [1, 99])
+    if np.ptp(inner) > 0.5 * (high - low) or np.ptp(inner) <= NOISE * max(abs(low), abs(high)):
+        return low, high, "neither"
+    room = 0.05 * np.ptp(inner)
+    below, above = low < inner[0] - room, high > inner[1] + room
+    return (float(inner[0]) if below else low, float(inner[1]) if above else high,
+            {(True, True): "both", (True, False): "min", (False, True): "max"}[below, above])
+
+
+def limits(values, signed=False, clip=False):
+    """Around zero if signed; a constant gets some room. With clip without the outliers of `clipped`."""
+    low, high, extend = (float(np.min(values)), float(np.max(values)), "neither") if np.size(values) else (0, 0, "neither")
+    if clip and np.size(values):
+        low, high, extend = clipped(values)
     largest = max(abs(low), abs(high))
     single = 0.5 * (low + high) if high - low <= NOISE * largest else None
     if signed:
-        return Range(-(largest or 1), largest or 1, single)
+        return Range(-(largest or 1), largest or 1, single, extend)
     if high - low <= 1e-6 * largest:
         room = 0.05 * largest
         low, high = (0, 1) if largest == 0 else (low - room, high + room)
-    return Range(low, high, single)
+    return Range(low, high, single, extend)
 
 
 def give_room(ax):
@@ -109,7 +125,8 @@ def give_room(ax):
 
 def colour_bar(figure, ax, norm, colours, label, **where):
     """A bar beside the axes or where `location` says; of a field that is the same everywhere it shows just that value."""
-    bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
+    bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, extend=getattr(norm, "extend", "neither"),
+                          **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
     bar.set_label(label)
     single = getattr(norm, "single", None)
     bar.locator = plt.MaxNLocator(4 if "location" in where else 7) if single is None else plt.FixedLocator([single])
