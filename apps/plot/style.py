@@ -29,13 +29,17 @@ plt.rcParams.update({
 
 PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
             "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")],
-            "K": [(1, "K")]}
+            "K": [(1, "K")],
+            "m³": [(1, "m³"), (1e-3, "l")],
+            "s": [(86400, "d"), (3600, "h"), (60, "min"), (1, "s")]}
+LEAST_TIMES = 2  # a time is at least so many of its unit
 
 
 def unit(largest, base):
-    """(factor, name) of the unit in which `largest`, in m, Pa or K, is a number that is easily read."""
+    """(factor, name) of the unit in which `largest`, in one of the units above, is a number that is easily read."""
+    least = LEAST_TIMES if base == "s" else 0.5
     for factor, name in PREFIXES[base]:
-        if largest >= 0.5 * factor:
+        if largest >= least * factor:
             return factor, name
     return 1, base
 
@@ -50,6 +54,33 @@ class Quantity:
 
     def __call__(self, values):
         return np.asarray(values) / self.factor
+
+
+def when(time, wanted=None):
+    """A time in words, in the unit (factor, name) that is wanted or in a readable one."""
+    factor, name = wanted or unit(abs(time), "s")
+    return f"t = {time / factor:.5g} {name}"
+
+
+def panels_of_plane(n, points, width=10.5):
+    """A figure with n panels that show something of the form of the points, beside or above each other, whatever is larger;
+    the axes, and where colour bars go."""
+    extent = np.ptp(points[:, :2], axis=0)
+    form = max(extent[1], 1e-9) / max(extent[0], 1e-9)
+    beside = min(width / n - 1.2, 8.4 / form) > min(width - 3, (9 / n - 1) / form)
+    columns, rows = (n, 1) if beside else (1, n)
+    across = width / columns if beside else min(width - 3, (9 / n - 1) / form) + 2
+    thin = not beside and form < 0.4
+    height = max((across - 1.2) * form, 0.3) + (1.3 if thin else 0.6)
+    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, figsize=(across * columns, rows * height + 0.4))
+    for ax in axes.flat:
+        ax.set_aspect("equal")
+        ax.grid(False)
+        ax.set(xlabel="x (m)", ylabel="y (m)")
+        ax.label_outer()
+        if form < 0.2:
+            ax.yaxis.set_major_locator(plt.MaxNLocator(2))
+    return figure, list(axes.flat), {"location": "bottom", "shrink": 0.5, "pad": 0.08, "aspect": 40} if thin else {}
 
 
 def look(k):
@@ -158,14 +189,15 @@ def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
     ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=edges, linewidths=0.3))
     low, high = np.min(np.concatenate(corners), axis=0), np.max(np.concatenate(corners), axis=0)
     flat = high - low < 1e-9 * np.max(high - low)
+    thin = high - low < 0.2 * np.max(high - low)  # where labels of several ticks would overlap
     room = 0.15 * flat * np.max(high - low)
-    for name, a, b, extra in zip("xyz", low, high, room):
+    for name, a, b, extra, one in zip("xyz", low, high, room, thin):
         axis = getattr(ax, f"{name}axis")
         getattr(ax, f"set_{name}lim")(a - extra, b + extra)
         axis.set_pane_color((1, 1, 1, 0))
-        axis.set_major_locator(plt.FixedLocator([a]) if extra else plt.MaxNLocator(3))
-        if extra:  # all in one plane
-            axis.set_major_formatter(f"{name} = {{x:.4g}} m")
+        axis.set_major_locator(plt.FixedLocator([0.5 * (a + b)]) if one else plt.MaxNLocator(3))
+        if one:
+            axis.set_major_formatter(plt.FixedFormatter([f"{name} = {a:.4g} m" if extra else f"{name} = {a:.4g}\nto {b:.4g} m"]))
         else:
             axis.set_label_text(f"{name} (m)")
         axis.labelpad = 0 if name == "z" else 3

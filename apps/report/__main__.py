@@ -46,7 +46,7 @@ def report(options):
     if not directory.is_dir():
         raise PlotError(f"{directory}: no such directory")
     content = read.results(directory)
-    entries = scene.Scene(directory / "effective_input.xml", ROOT / "docs" / "reference.md")
+    entries = scene.Scene(directory, ROOT / "docs" / "reference.md")
     drawn, left_out = pictures(directory, options.dpi)
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     html = page.of_run(directory.resolve().name, content, entries, checks.of_run(directory, content, entries),

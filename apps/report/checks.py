@@ -72,7 +72,7 @@ def forces(steps, scene):
         return
     total = np.sum(list(reactions.values()), axis=0)
     largest = np.max(np.abs(list(reactions.values())))
-    loads = [entry for entry in ("traction", "body force", "gravity", "periodic") if scene.any_entry(entry)]
+    loads = [entry for entry in ("traction", "body force", "gravity", "periodic") if scene.has(entry)]
     if loads:
         yield Check("balance of forces", "noted", f"the reactions sum up to ({', '.join(map(number, total))}), which the "
                                                   f"other loads carry ({', '.join(loads)})")

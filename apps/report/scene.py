@@ -1,9 +1,8 @@
 """A scene in words: what its effective_input.xml holds that is not a default, with units of the reference."""
 import re
-import xml.etree.ElementTree as xml
 
+import read
 from numbers_in_words import in_unit
-from read import PlotError
 
 
 class Reference:
@@ -35,23 +34,15 @@ def same(value, default):
 
 
 class Scene:
-    """The sections of a scene: .entries is a dictionary of texts and of dictionaries."""
+    """The scene of a run: .entries is a dictionary of texts and of dictionaries."""
 
-    def __init__(self, path, reference):
-        try:
-            self.entries = self.section(xml.parse(path).getroot())
-        except (OSError, xml.ParseError) as error:
-            raise PlotError(f"{path}: cannot be read: {error}") from None
+    def __init__(self, directory, reference):
+        self.entries = read.scene(directory)
         self.reference = Reference(reference)
 
-    def section(self, node):
-        return {child.get("name"): self.section(child) if child.tag == "ParameterList" else child.get("value")
-                for child in node}
-
-    def any_entry(self, name, entries=None):
+    def has(self, name):
         """Whether some section has an entry of this name that is not empty."""
-        return any(self.any_entry(name, value) if isinstance(value, dict) else key == name and value not in ("", "{}")
-                   for key, value in (self.entries if entries is None else entries).items())
+        return any(True for _ in read.entries(self.entries, name))
 
     def said(self, path, section):
         """(entry, value in words) of what is no default."""
