@@ -35,7 +35,7 @@ def draw_rose(ax, sets):
         share = 100 * np.histogram(both, sides, weights=np.tile(length, 2))[0] / total
         ax.bar(np.radians(sides[:-1] + 5), share, width=np.radians(10), bottom=base, color=colour, edgecolor="white", linewidth=0.4)
         base += share
-    ax.yaxis.set_major_locator(MaxNLocator(3))
+    ax.yaxis.set_major_locator(MaxNLocator(3, prune="lower"))
     ax.yaxis.set_major_formatter("{x:g} %")
     # the numbers go where there are the shortest bars
     ax.set_rlabel_position(min(np.arange(22.5, 360, 45), key=lambda a: base[np.abs((sides[:-1] + 5 - a + 180) % 360 - 180) < 15].sum()))
