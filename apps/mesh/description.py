@@ -3,11 +3,12 @@ import csv
 import os
 import xml.etree.ElementTree as xml
 
+import exchange
 import numpy as np
 from domain import Body, rows
 from generator import at_random
 from shapes import Feature, NetworkError, ellipse
-from tables import read_table
+from tables import Table, read_table
 
 MOST_FRACTURES = 10**5
 
@@ -65,9 +66,11 @@ class Network:
 
     def table(self, content):
         path = as_known(content["file"])
-        self.files.append(path)
+        self.files += exchange.files_of(path)
         domain = self.entries.get("domain")
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
+        if exchange.is_exchange(path) and "format" not in content:
+            return Table([(row.title, row.points) for row in exchange.read(path, 2 if of_domain == "lines" else 3)])
         kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
         return read_table(path, kind)
 
