@@ -9,8 +9,8 @@ NOISE = 1e-9  # of the largest of a column: rounding
 
 OF_FRACTURES = [("area", "length or area", "m"), ("fraction_slip", "slipping part", ""), ("fraction_open", "open part", ""),
                 ("mean_slip", "mean slip", "m"), ("max_slip", "largest slip", "m"), ("max_opening", "largest opening", "m"),
-                ("max_fracture_pressure", "largest pressure", "Pa"), ("moment", "moment", "N m"),
-                ("moment_magnitude", "moment magnitude", "")]
+                ("slip_tendency", "slip tendency", ""), ("max_fracture_pressure", "largest pressure", "Pa"),
+                ("moment", "moment", "N m"), ("moment_magnitude", "moment magnitude", "")]
 
 
 def column(title, values, base):
@@ -21,14 +21,24 @@ def column(title, values, base):
     return f"{title} ({unit})" if unit else title, [number(None if value is None else value / factor) for value in values]
 
 
-def of_fractures(step, dim):
-    fractures = step.get("fractures", {})
+def singles(content, step):
+    """Of traces, polygons and ellipses each, as `fractures` of a step has it of their sets; none where the run tells none."""
+    columns = step.get("single_fractures", {})
+    return {one["name"]: {"area": one["area"], **{key: values[k] for key, values in columns.items()}}
+            for k, one in enumerate(content.get("single_fractures", [])) if columns}
+
+
+def of_fractures(fractures, dim):
+    """Those that have slipped most first."""
     names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
     shown = names[:MOST_ROWS]
     columns = [("fracture", shown)]
     for key, title, base in OF_FRACTURES:
         if any(key in fractures[name] for name in shown):
-            base, title = ("m²" if dim == 3 else "m", "area" if dim == 3 else "length") if key == "area" else (base, title)
+            if key == "area":
+                base, title = ("m²", "area") if dim == 3 else ("m", "length")
+            if key == "moment" and dim == 2:
+                base, title = "N", "moment per depth"
             columns.append(column(title, [fractures[name].get(key) for name in shown], base))
     if not shown or len(columns) == 1:
         return
@@ -72,4 +82,5 @@ def of_run(content):
     """Tables of results, tables of costs."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
-    return [*of_fractures(last, dim), *of_wells(last), *of_boundaries(last)], list(of_costs(content))
+    fractures = singles(content, last) or last.get("fractures", {})
+    return [*of_fractures(fractures, dim), *of_wells(last), *of_boundaries(last)], list(of_costs(content))

@@ -57,7 +57,7 @@ class Pages(ReportTest):
         content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.error estimate=true")
         page = Path(self.write()).read_text()
         self.assertIn("has no 3D view", page)
-        self.assertEqual(len(re.findall("<img ", page)), 6)
+        self.assertEqual(len(re.findall("<img ", page)), 8)
         self.assertEqual(re.findall(r"""(?:src|href)=['"](?!data:|#)[^'"]*""", page), [])
         slip = content["steps"][-1]["fractures"]["shear plane"]["max_slip"]
         self.assertIn(f"<td>{1e3 * slip:.4g}</td>", page)
@@ -181,6 +181,18 @@ class Words(ReportTest):
         self.assertEqual(numbers_in_words.quantity(0.0, "m"), "0 m")
         self.assertEqual(numbers_in_words.number(-1.5e-12), "−1.5 × 10⁻¹²")
         self.assertEqual(numbers_in_words.in_unit("{0, ramp(t)}", "m"), "{0, ramp(t)} m")
+
+    def test_single_fractures_take_the_place_of_sets(self):
+        """Those that slipped most first."""
+        step = {"fractures": {"set": {"area": 3.0, "max_slip": 2e-3}}, "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]}}
+        content = {"mesh": {"dimension": 2}, "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
+                   "steps": [step]}
+        (table,), _ = figures.of_run(content)
+        self.assertEqual(table.columns, ["fracture", "length (m)", "largest slip (mm)", "moment per depth (N)"])
+        self.assertEqual(table.rows, [("b", "2", "2", "5 × 10⁹"), ("a", "1", "1", "0")])
+        del content["single_fractures"]
+        (table,), _ = figures.of_run(content)
+        self.assertEqual([row[0] for row in table.rows], ["set"])
 
     def test_rounding_is_zero_in_tables(self):
         self.assertEqual(figures.column("slip", [2e-3, 3e-19, None], "m"), ("slip (mm)", ["2", "0", "–"]))
