@@ -1,7 +1,7 @@
 """Fractures of a run with its results as attributes, for geographic information systems: GeoJSON or a shapefile.
 
-DIR is the output directory of `sprekk run`, FILE is NAME.geojson or NAME.shp. Each trace is a line, in 3D each fracture a
-polygon, or a polygon of each face where it is not plane. All is in m and Pa, compression negative."""
+DIR is the output directory of `sprekk run`, FILE is NAME.geojson or NAME.shp. Each trace is a line, in 3D each
+fracture a polygon, or a polygon of each face where it is not plane. All is in m and Pa, compression negative."""
 import argparse
 import re
 import sys
@@ -13,16 +13,23 @@ from read import PlotError  # noqa: E402
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="sprekk export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="sprekk export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("directory", metavar="DIR", type=Path, help="output directory of a run")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="NAME.geojson or NAME.shp")
-    parser.add_argument("--time", type=float, metavar="T", help="the step written nearest to T, in s (default: the last)")
-    parser.add_argument("--crs", metavar="EPSG:N", help="the metric coordinate system of the scene (default: a local one)")
+    parser.add_argument(
+        "--time", type=float, metavar="T", help="the step written nearest to T, in s (default: the last)"
+    )
+    parser.add_argument(
+        "--crs", metavar="EPSG:N", help="the metric coordinate system of the scene (default: a local one)"
+    )
     return parser.parse_args(words)
 
 
 def write_geojson(path, found, plane, crs):
     from features import as_geojson
+
     path.write_text(as_geojson(found, plane, crs), encoding="utf-8")
 
 
@@ -41,7 +48,9 @@ def write_shapefile(path, found, plane, crs):
     if path.exists():
         driver.DeleteDataSource(str(path))
     source = driver.CreateDataSource(str(path))
-    layer = source.CreateLayer(path.stem, system, ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D, ["ENCODING=UTF-8"])
+    layer = source.CreateLayer(
+        path.stem, system, ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D, ["ENCODING=UTF-8"]
+    )
     for name in found[0].attributes:
         layer.CreateField(column(ogr, name, [one.attributes[name] for one in found]))
     for one in found:
@@ -84,6 +93,7 @@ WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shap
 
 def export(options):
     import features
+
     write = WRITERS.get(options.output.suffix.lower())
     if write is None:
         raise PlotError(f"{options.output}: ends in none of {', '.join(WRITERS)}")

@@ -44,7 +44,9 @@ def ring(surface):
     if np.any(across >= 1e-6 * np.linalg.norm(normals, axis=1) * np.linalg.norm(mean)):  # also where the mean is zero
         return None
     edges = surface.points[rim(surface, None)]
-    place = np.unique(np.round(edges.reshape(-1, 3) / (1e-9 * np.max(np.ptp(surface.points, axis=0)))), axis=0, return_inverse=True)[1].reshape(-1, 2)
+    place = np.unique(
+        np.round(edges.reshape(-1, 3) / (1e-9 * np.max(np.ptp(surface.points, axis=0)))), axis=0, return_inverse=True
+    )[1].reshape(-1, 2)
     onward = {a: (b, edges[k, 0]) for k, (a, b) in enumerate(place)}
     at, points = place[0, 0], []
     while at in onward:
@@ -55,16 +57,27 @@ def ring(surface):
 
 def attributes(data, faces, sizes, name, group, plane):
     """Means over the length or area, largest values, and parts of it by state."""
+
     def mean(values):
         return float(np.average(values, weights=sizes))
+
     local = data["traction local"][faces]
     normal, shear = mean(local[:, 0]), mean(np.linalg.norm(local[:, 1:], axis=1))
     state = data["state"][faces]
-    found = {"name": name, "set": group, "length" if plane else "area": float(sizes.sum()),
-             "slip_mean": mean(data["slip"][faces]), "slip_max": float(np.max(data["slip"][faces])),
-             "open_mean": mean(data["opening"][faces]), "open_max": float(np.max(data["opening"][faces])),
-             "normal_tr": normal, "shear_tr": shear, "tendency": shear / -normal if normal < 0 else None,
-             "part_slip": mean(state == 2), "part_open": mean(state == 0)}
+    found = {
+        "name": name,
+        "set": group,
+        "length" if plane else "area": float(sizes.sum()),
+        "slip_mean": mean(data["slip"][faces]),
+        "slip_max": float(np.max(data["slip"][faces])),
+        "open_mean": mean(data["opening"][faces]),
+        "open_max": float(np.max(data["opening"][faces])),
+        "normal_tr": normal,
+        "shear_tr": shear,
+        "tendency": shear / -normal if normal < 0 else None,
+        "part_slip": mean(state == 2),
+        "part_open": mean(state == 0),
+    }
     if "fracture pressure" in data:
         found["pressure"] = mean(data["fracture pressure"][faces])
     return found
@@ -100,7 +113,9 @@ def of_run(directory, time=None):
     content = read.results(directory)
     written = read.written_steps(directory, "fractures")
     if not written:
-        raise PlotError(f"{directory}: holds no fractures.pvd: the run has no fractures, or its Output has \"vtu\" false")
+        raise PlotError(
+            f"{directory}: holds no fractures.pvd: the run has no fractures, or its Output has \"vtu\" false"
+        )
     at, file = written[-1] if time is None else min(written, key=lambda step: abs(step[0] - time))
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
@@ -108,7 +123,9 @@ def of_run(directory, time=None):
         raise PlotError(f"{directory}: fractures.pvd holds no fractures that deform")
     plane = grid.GetCell(0).GetCellDimension() == 1
     surface = read.segments(grid) if plane else read.surface(grid)
-    sizes = np.array([np.linalg.norm(x[1] - x[0]) if plane else np.linalg.norm(area_vector(x)) for x in surface.corners()])
+    sizes = np.array(
+        [np.linalg.norm(x[1] - x[0]) if plane else np.linalg.norm(area_vector(x)) for x in surface.corners()]
+    )
     sets = next((sorted(step["fractures"]) for step in reversed(content["steps"]) if "fractures" in step), [])
     found = []
     for name, group, faces in groups(surface, sets, content.get("single_fractures"), plane):
@@ -120,12 +137,22 @@ def of_run(directory, time=None):
 
 def as_geojson(found, plane, crs):
     """A text. Without a coordinate system "crs" is null, which means a local one."""
+
     def coordinates(shape):
-        points = shape[:, :2 if plane else 3].tolist()
+        points = shape[:, : 2 if plane else 3].tolist()
         return points if plane else [points + points[:1]]
-    content = {"type": "FeatureCollection", "crs": crs and {"type": "name", "properties": {"name": crs}}, "features": []}
+
+    content = {
+        "type": "FeatureCollection",
+        "crs": crs and {"type": "name", "properties": {"name": crs}},
+        "features": [],
+    }
     for feature in found:
         kind, inner = "LineString" if plane else "Polygon", [coordinates(shape) for shape in feature.shapes]
-        geometry = {"type": kind, "coordinates": inner[0]} if len(inner) == 1 else {"type": f"Multi{kind}", "coordinates": inner}
+        geometry = (
+            {"type": kind, "coordinates": inner[0]}
+            if len(inner) == 1
+            else {"type": f"Multi{kind}", "coordinates": inner}
+        )
         content["features"].append({"type": "Feature", "properties": feature.attributes, "geometry": geometry})
     return json.dumps(content, indent=1) + "\n"

@@ -16,6 +16,7 @@ OF_DRAWING = {"layer", "paperspace", "subclasses", "linetype", "entityhandle", "
 @dataclass
 class Outline:
     """A fracture of a file: corners of a line (n, 2) or a polygon (n, 3) in metres, and what the file says of it."""
+
     title: str  # in messages
     points: np.ndarray
     number: str
@@ -51,17 +52,26 @@ def refuse_degrees(path, layer):
         if members.get("crs", False) is None:  # a local system, as before RFC 7946
             return
         if "crs" not in members:
-            raise NetworkError(f"{path}: names no coordinate system (\"crs\"), which means longitude and latitude in degrees "
-                               "(RFC 7946), and Sprekk needs metres; export it in a projected system such as UTM, or write "
-                               "\"crs\": null for local coordinates in metres", [path])
+            raise NetworkError(
+                f"{path}: names no coordinate system (\"crs\"), which means longitude and latitude in degrees "
+                "(RFC 7946), and Sprekk needs metres; export it in a projected system such as UTM, or write "
+                "\"crs\": null for local coordinates in metres",
+                [path],
+            )
     if system is None:
         return
     if system.IsGeographic():
-        raise NetworkError(f"{path}: has longitudes and latitudes in degrees ({system.GetName()}), and Sprekk needs metres; "
-                           "export it in a projected system such as UTM", [path])
+        raise NetworkError(
+            f"{path}: has longitudes and latitudes in degrees ({system.GetName()}), and Sprekk needs metres; "
+            "export it in a projected system such as UTM",
+            [path],
+        )
     if abs(system.GetLinearUnits() - 1) > 1e-12:
-        raise NetworkError(f"{path}: has coordinates in {system.GetLinearUnitsName()} ({system.GetName()}), and Sprekk needs "
-                           "metres; export it in a system with metres", [path])
+        raise NetworkError(
+            f"{path}: has coordinates in {system.GetLinearUnitsName()} ({system.GetName()}), and Sprekk needs "
+            "metres; export it in a system with metres",
+            [path],
+        )
 
 
 def refuse_other_units(path):
@@ -70,8 +80,11 @@ def refuse_other_units(path):
     at = lines.index("$INSUNITS") if "$INSUNITS" in lines else len(lines)
     unit = lines[at + 2] if at + 2 < len(lines) else NO_UNIT
     if unit not in (METRES, NO_UNIT):
-        raise NetworkError(f"{path}: is a drawing in the unit {unit} of DXF ($INSUNITS), expected {METRES}, "
-                           "metres; scale it, or set $INSUNITS to 6 if its lengths are in metres", [path])
+        raise NetworkError(
+            f"{path}: is a drawing in the unit {unit} of DXF ($INSUNITS), expected {METRES}, "
+            "metres; scale it, or set $INSUNITS to 6 if its lengths are in metres",
+            [path],
+        )
 
 
 def parts(geometry, ogr):
@@ -117,11 +130,16 @@ def corners(part, is_polygon, dim, place, errors):
 
 def outlines(feature, k, dim, path, ogr, errors):
     """The fractures of the k-th feature; points and texts are none. Several parts are one fracture by their number."""
-    texts = {feature.GetFieldDefnRef(i).GetName(): str(feature.GetField(i)) for i in range(feature.GetFieldCount())
-             if feature.IsFieldSetAndNotNull(i)}
+    texts = {
+        feature.GetFieldDefnRef(i).GetName(): str(feature.GetField(i))
+        for i in range(feature.GetFieldCount())
+        if feature.IsFieldSetAndNotNull(i)
+    }
     lower = {title.lower(): text for title, text in texts.items()}
-    said = {"name": next((lower[title] for title in NAME if lower.get(title)), ""),
-            "number": next((lower[title] for title in NUMBER if lower.get(title)), str(k))}
+    said = {
+        "name": next((lower[title] for title in NAME if lower.get(title)), ""),
+        "number": next((lower[title] for title in NUMBER if lower.get(title)), str(k)),
+    }
     drawing = OF_DRAWING if Path(path).suffix.lower() == ".dxf" else ()
     properties = {title: text for title, text in texts.items() if title.lower() not in (*NAME, *NUMBER, *drawing)}
     place = f"{path}: feature {k}"
@@ -139,7 +157,9 @@ def read(path, dim):
     """The fractures in a file; refuses it with a line for each thing that is wrong."""
     gdal, ogr = library()
     if not Path(path).is_file():
-        raise NetworkError(f"{path}: cannot be read: " + ("is no file" if Path(path).exists() else "No such file or directory"), [path])
+        raise NetworkError(
+            f"{path}: cannot be read: " + ("is no file" if Path(path).exists() else "No such file or directory"), [path]
+        )
     found, errors = [], []
     try:
         source = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=[DRIVERS[Path(path).suffix.lower()]])

@@ -14,9 +14,11 @@ def b_value(magnitudes, least):
 
 
 def complete(magnitudes):
-    """The magnitude from which on the sample is taken as complete: where a histogram of tenths is highest (Wiemer and Wyss
-    2000)."""
-    counts, sides = np.histogram(magnitudes, np.arange(np.floor(10 * magnitudes.min()) / 10, magnitudes.max() + 0.1, 0.1))
+    """The magnitude from which on the sample is taken as complete: where a histogram of tenths is highest (Wiemer and
+    Wyss 2000)."""
+    counts, sides = np.histogram(
+        magnitudes, np.arange(np.floor(10 * magnitudes.min()) / 10, magnitudes.max() + 0.1, 0.1)
+    )
     return sides[np.argmax(counts)]
 
 
@@ -34,8 +36,13 @@ def of_step(step, title):
     above = magnitudes >= least
     if above.sum() >= FEWEST and magnitudes[-1] > least:
         b, error = b_value(magnitudes, least)
-        ax.semilogy(magnitudes[above], above.sum() * 10 ** (-b * (magnitudes[above] - least)), color=LINES[3], linestyle=STYLES[1],
-                    label=f"b = {b:.2f} ± {error:.2f} from {least:.1f} on")
+        ax.semilogy(
+            magnitudes[above],
+            above.sum() * 10 ** (-b * (magnitudes[above] - least)),
+            color=LINES[3],
+            linestyle=STYLES[1],
+            label=f"b = {b:.2f} ± {error:.2f} from {least:.1f} on",
+        )
     ax.set(xlabel="moment magnitude (-)", ylabel="fractures of at least this magnitude (-)")
     ax.legend()
     return figure

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 from read import PlotError
-from style import FAINT, INK, Quantity, foremost, look, natural, plt, unit
+from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
 
 MOST_LINES = 6  # in one panel
 
@@ -24,15 +24,28 @@ def panels(steps, start=0.0):
     """(label, unit, {name: values over the steps}) of what a run's steps hold."""
     times = np.array([step["time"] for step in steps])
     fractures = steps[-1].get("fractures", {})
-    for key, label, base in (("max_slip", "largest slip", "m"), ("mean_opening", "mean opening", "m"),
-                             ("mean_fracture_pressure", "mean pressure in fractures", "Pa")):
+    for key, label, base in (
+        ("max_slip", "largest slip", "m"),
+        ("mean_opening", "mean opening", "m"),
+        ("mean_fracture_pressure", "mean pressure in fractures", "Pa"),
+    ):
         names = [name for name in fractures if all(key in step["fractures"].get(name, {}) for step in steps)]
         if names:
-            yield label, base, {name: np.array([step["fractures"][name][key] for step in steps]) for name in sorted(names, key=natural)}
+            yield label, base, {
+                name: np.array([step["fractures"][name][key] for step in steps]) for name in sorted(names, key=natural)
+            }
     wells = [name for name in steps[-1].get("wells", {}) if all(name in step.get("wells", {}) for step in steps)]
     if wells:
-        pressure, rate = ({name: np.array([np.nan if step["wells"][name].get(key) is None else step["wells"][name][key] for step in steps], dtype=float)
-                           for name in wells} for key in ("pressure", "rate"))
+        pressure, rate = (
+            {
+                name: np.array(
+                    [np.nan if step["wells"][name].get(key) is None else step["wells"][name][key] for step in steps],
+                    dtype=float,
+                )
+                for name in wells
+            }
+            for key in ("pressure", "rate")
+        )
         yield "pressure in wells", "Pa", pressure
         yield "injected volume", "m³", {name: injected(times, values, start) for name, values in rate.items()}
 
@@ -69,7 +82,11 @@ def figure_of(title, times, name, content):
 def of_run(steps, title, wanted=None, start=0.0):
     """Of at least two steps; None if there is nothing to draw."""
     content = list(panels(steps, start)) if len(steps) > 1 else []
-    content = [(label, base, curves) for label, base, curves in content if any(np.nanmax(abs(v), initial=0) > 0 for v in curves.values())]
+    content = [
+        (label, base, curves)
+        for label, base, curves in content
+        if any(np.nanmax(abs(v), initial=0) > 0 for v in curves.values())
+    ]
     if not content:
         return None
     times, name = clock([step["time"] for step in steps], wanted)
@@ -87,28 +104,35 @@ def probe(path):
     if not titles or None in titles or titles[0]["name"] != "time":
         raise PlotError(f'{path}: is no CSV of a probe; such a file starts with "time [s],"')
     try:
-        values = np.array([[float(word) if word else np.nan for word in row] for row in rows[1:]]).reshape(-1, len(titles))
+        values = np.array([[float(word) if word else np.nan for word in row] for row in rows[1:]]).reshape(
+            -1, len(titles)
+        )
     except ValueError as error:
         raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
     return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
 
 
+def panel(name, symbol, curves):
+    """As figure_of() takes it; units that have no prefixes stand in the name."""
+    return (name, symbol, curves) if symbol in PREFIXES else (f"{name} ({symbol})", "", curves)
+
+
 def of_probe(path):
     """A panel for each unit; along a line the profiles of the last time. None of an empty one."""
     columns = probe(path)
-    if not len(columns[0][2]):
+    clock_name, times = columns[0][1:]
+    if not len(times):
         return None
-    base = ("Pa", "m", "K")
     if len(columns) > 1 and columns[1][0] == "distance":
-        last = columns[0][2] == columns[0][2][-1]
-        content = [(name, unit, {name: values[last]}) for name, unit, values in columns[2:] if name not in "xyz"]
-        figure = figure_of(f"{path.stem}, t = {columns[0][2][-1]:g} {columns[0][1]}", columns[1][2][last], "", [
-            (name if unit in base else f"{name} ({unit})", unit if unit in base else "", curves) for name, unit, curves in content])
+        last = times == times[-1]
+        content = [panel(name, symbol, {name: values[last]}) for name, symbol, values in columns[2:] if name not in "xyz"]
+        figure = figure_of(f"{path.stem}, t = {times[-1]:g} {clock_name}", columns[1][2][last], "", content)
         figure.axes[-1].set_xlabel("distance (m)")
         return figure
     groups = {}
-    for name, unit, values in columns[1:]:
-        groups.setdefault(unit, {})[name] = values
-    content = [(next(iter(curves)) if len(curves) == 1 else "values", unit, curves) for unit, curves in groups.items()]
-    content = [(name if unit in base else f"{name} ({unit})", unit if unit in base else "", curves) for name, unit, curves in content]
-    return figure_of(path.stem, columns[0][2], columns[0][1], content)
+    for name, symbol, values in columns[1:]:
+        groups.setdefault(symbol, {})[name] = values
+    content = [
+        panel(next(iter(curves)) if len(curves) == 1 else "values", symbol, curves) for symbol, curves in groups.items()
+    ]
+    return figure_of(path.stem, times, clock_name, content)

@@ -35,8 +35,12 @@ def convergence(steps):
         return Check("convergence", "failed", f"step {', '.join(failed[:5])} did not converge")
     left = max((value for step in steps for value in step["measures"].values() if value is not None), default=0)
     most = max(step["newton_iterations"] for step in steps)
-    return Check("convergence", "passed", f"all steps; at most {most} Newton iterations in one; largest relative residual "
-                                          f"at the end of a step {number(left)}")
+    return Check(
+        "convergence",
+        "passed",
+        f"all steps; at most {most} Newton iterations in one; largest relative residual "
+        f"at the end of a step {number(left)}",
+    )
 
 
 def halvings(steps):
@@ -49,6 +53,7 @@ def contact(directory, content):
     """By the files that the run wrote, independently of the solver."""
     import read
     import violation
+
     name = "laws of contact and friction"
     written = read.written_steps(directory, "fractures")
     if not written or not all("mean_slip" in f for f in content["steps"][-1].get("fractures", {}).values()):
@@ -61,8 +66,12 @@ def contact(directory, content):
         return Check(name, "noted", f"not judged: {error}")
     k = int(np.argmax(worst))
     verdict = "passed" if worst[k] <= WORST_VIOLATION else "failed"
-    return Check(name, verdict, f"largest violation {number(float(worst[k]))} ({violation.PARTS[k]}), relative to the "
-                                "largest displacement or traction")
+    return Check(
+        name,
+        verdict,
+        f"largest violation {number(float(worst[k]))} ({violation.PARTS[k]}), relative to the "
+        "largest displacement or traction",
+    )
 
 
 def forces(steps, scene):
@@ -74,12 +83,19 @@ def forces(steps, scene):
     largest = np.max(np.abs(list(reactions.values())))
     loads = [entry for entry in ("traction", "body force", "gravity", "periodic") if scene.has(entry)]
     if loads:
-        yield Check("balance of forces", "noted", f"the reactions sum up to ({', '.join(map(number, total))}), which the "
-                                                  f"other loads carry ({', '.join(loads)})")
+        yield Check(
+            "balance of forces",
+            "noted",
+            f"the reactions sum up to ({', '.join(map(number, total))}), which the "
+            f"other loads carry ({', '.join(loads)})",
+        )
     else:
         relative = np.max(np.abs(total)) / largest if largest > 0 else 0
-        yield Check("balance of forces", "passed" if relative <= MOST_UNBALANCED else "failed",
-                    f"the reactions sum up to {number(relative)} of the largest")
+        yield Check(
+            "balance of forces",
+            "passed" if relative <= MOST_UNBALANCED else "failed",
+            f"the reactions sum up to {number(relative)} of the largest",
+        )
 
 
 def fluid(steps):
@@ -89,13 +105,20 @@ def fluid(steps):
             continue
         through = sum(np.sum(value) for value in last.get(key, {}).values())
         wells = sum(well["rate"] for well in last.get("wells", {}).values()) if what == "fluid" else 0
-        yield Check(f"balance of {what}", "noted", f"at the end {quantity(through)} {unit} come in through boundaries and "
-                    f"{quantity(wells)} {unit} through wells; their sum, {quantity(through + wells)} {unit}, is stored")
+        yield Check(
+            f"balance of {what}",
+            "noted",
+            f"at the end {quantity(through)} {unit} come in through boundaries and "
+            f"{quantity(wells)} {unit} through wells; their sum, {quantity(through + wells)} {unit}, is stored",
+        )
 
 
 def estimates(step):
     for name, estimate in step.get("error_estimate", {}).items():
         if isinstance(estimate, dict) and "relative" in estimate:
             good = estimate["relative"] <= WELL_ESTIMATED
-            yield Check(f"estimated error of the {name}", "passed" if good else "noted",
-                        f"{number(100 * estimate['relative'])} %" + ("" if good else ": a finer mesh is advisable"))
+            yield Check(
+                f"estimated error of the {name}",
+                "passed" if good else "noted",
+                f"{number(100 * estimate['relative'])} %" + ("" if good else ": a finer mesh is advisable"),
+            )

@@ -1,11 +1,13 @@
 """Numbers with units that are easily read."""
 import math
 
-PREFIXED = {"Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")),
-            "Pa/m": ((1e9, "GPa/m"), (1e6, "MPa/m"), (1e3, "kPa/m"), (1, "Pa/m")),
-            "m": ((1e3, "km"), (1, "m"), (1e-3, "mm"), (1e-6, "µm")),
-            "s": ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"), (1e-3, "ms")),
-            "J": ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1, "J"))}
+PREFIXED = {
+    "Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")),
+    "Pa/m": ((1e9, "GPa/m"), (1e6, "MPa/m"), (1e3, "kPa/m"), (1, "Pa/m")),
+    "m": ((1e3, "km"), (1, "m"), (1e-3, "mm"), (1e-6, "µm")),
+    "s": ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"), (1e-3, "ms")),
+    "J": ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1, "J")),
+}
 LEAST = 0.5, {"s": 2, "m": 0.8}  # of the number in front of a unit
 ROUND = {"m": ("km",)}  # units for round multiples alone
 
@@ -15,7 +17,7 @@ def unit_of(largest, base):
     for factor, name in PREFIXED.get(base, ((1, base),)):
         if largest >= LEAST[1].get(base, LEAST[0]) * factor and name not in ROUND.get(base, ()):
             return factor, name
-    return (PREFIXED[base][-1] if largest > 0 and base in PREFIXED else (1, base))
+    return PREFIXED[base][-1] if largest > 0 and base in PREFIXED else (1, base)
 
 
 def number(value):

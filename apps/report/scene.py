@@ -52,7 +52,8 @@ class Scene:
                 yield name, in_unit(value, unit)
 
     def blocks(self, path=(), section=None):
-        """(names of sections, entries) in the order of the file; sections beside each other that say the same are one."""
+        """(names of sections, entries) in the order of the file; sections beside each other that say the same are
+        one."""
         section = self.entries if section is None else section
         own = tuple(self.said(path, section))
         found = [[(path[-1],), path, own]] if own else []

@@ -1,4 +1,5 @@
-"""What the 3D view shows: the surface of the rock and the fractures, with fields, as arrays in base64. viewer.js draws it."""
+"""What the 3D view shows: the surface of the rock and the fractures, with fields, as arrays in base64. viewer.js
+draws it."""
 import base64
 
 import bulk
@@ -8,7 +9,7 @@ import numpy as np
 import read
 from style import STATE_COLOURS, STATES, Quantity, limits, plt, without_noise
 
-MOST_TRIANGLES = 80000  # of each surface; larger ones are thinned out
+MOST_TRIANGLES = 60000  # of each surface; larger ones are thinned out
 RIBBON = 0.006  # width of a trace in 2D / size of the body
 THROUGH = 0.12  # opacity of rock with fractures inside
 PALETTES = {"slip": "YlOrRd", "tangential jump": "YlOrRd", "opening": "RdBu_r"}
@@ -26,15 +27,32 @@ def field(name, values, base, colours, on, signed=False):
     values, label = (quantity(values), quantity.label) if base else (np.asarray(values), name)
     known = values[np.isfinite(values)]
     norm = limits(known, signed, clip=True)
-    ends = [f"{'≤ ' if norm.extend in ('min', 'both') else ''}{norm.vmin:.4g}", f"{'≥ ' if norm.extend in ('max', 'both') else ''}{norm.vmax:.4g}"]
+    ends = [
+        f"{'≤ ' if norm.extend in ('min', 'both') else ''}{norm.vmin:.4g}",
+        f"{'≥ ' if norm.extend in ('max', 'both') else ''}{norm.vmax:.4g}",
+    ]
     samples = plt.get_cmap(colours)(np.linspace(0, 1, SAMPLES))[:, :3]
-    return {"name": label, "on": on, "values": np.nan_to_num(values, nan=norm.vmin), "range": [norm.vmin, norm.vmax], "low": ends[0],
-            "high": ends[1], "colours": np.round(samples, 3).tolist()}
+    return {
+        "name": label,
+        "on": on,
+        "values": np.nan_to_num(values, nan=norm.vmin),
+        "range": [norm.vmin, norm.vmax],
+        "low": ends[0],
+        "high": ends[1],
+        "colours": np.round(samples, 3).tolist(),
+    }
 
 
 def states(values):
     colours = [list(np.round(STATE_COLOURS(k)[:3], 3)) for k in range(len(STATES))]
-    return {"name": "contact state", "on": "cells", "values": values, "range": [0, len(STATES) - 1], "states": STATES, "colours": colours}
+    return {
+        "name": "contact state",
+        "on": "cells",
+        "values": values,
+        "range": [0, len(STATES) - 1],
+        "states": STATES,
+        "colours": colours,
+    }
 
 
 def triangulated(surface):
@@ -49,9 +67,12 @@ def thinned(points, triangles, arrays):
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
     from vtkmodules.vtkFiltersCore import vtkDecimatePro
+
     data, places, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
     places.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    cells.SetCells(len(triangles), numpy_to_vtkIdTypeArray(np.insert(triangles, 0, 3, axis=1).ravel().astype(np.int64), deep=True))
+    cells.SetCells(
+        len(triangles), numpy_to_vtkIdTypeArray(np.insert(triangles, 0, 3, axis=1).ravel().astype(np.int64), deep=True)
+    )
     data.SetPoints(places)
     data.SetPolys(cells)
     number = numpy_to_vtk(np.arange(len(points), dtype=float), deep=True)
@@ -78,11 +99,21 @@ def means_at_points(n_points, triangles, values):
 def content(name, points, triangles, fields, displacement, opacity=1.0):
     """What viewer.js makes a surface of. Of a thinned one all fields are on points, and states are rounded."""
     if len(triangles) > MOST_TRIANGLES:
-        on_points = [f["values"] if f["on"] == "points" else means_at_points(len(points), triangles, f["values"]) for f in fields]
+        on_points = [
+            f["values"] if f["on"] == "points" else means_at_points(len(points), triangles, f["values"]) for f in fields
+        ]
         points, triangles, (displacement, *on_points) = thinned(points, triangles, [displacement, *on_points])
-        fields = [{**f, "on": "points", "values": np.round(v) if "states" in f else v} for f, v in zip(fields, on_points)]
-    return {"name": name, "points": encoded(points, np.float32), "triangles": encoded(triangles, np.uint32), "opacity": opacity,
-            "displacement": encoded(displacement, np.float32), "fields": [{**f, "values": encoded(f["values"], np.float32)} for f in fields]}
+        fields = [
+            {**f, "on": "points", "values": np.round(v) if "states" in f else v} for f, v in zip(fields, on_points)
+        ]
+    return {
+        "name": name,
+        "points": encoded(points, np.float32),
+        "triangles": encoded(triangles, np.uint32),
+        "opacity": opacity,
+        "displacement": encoded(displacement, np.float32),
+        "fields": [{**f, "values": encoded(f["values"], np.float32)} for f in fields],
+    }
 
 
 def of_rock(surface, centre, through):
@@ -92,9 +123,17 @@ def of_rock(surface, centre, through):
     if "displacement" in surface.point_data:
         size, stress = np.linalg.norm(surface.point_data["displacement"], axis=1), surface.cell_data["stress"]
         scale = np.max(abs(stress), initial=0)
-        fields += [field("displacement", size, "m", "viridis", "points"),
-                   field("von Mises stress", without_noise(bulk.von_mises(stress), scale)[owner], "Pa", "inferno", "cells"),
-                   field("largest compressive stress", without_noise(bulk.largest_compression(stress), scale)[owner], "Pa", "cividis", "cells")]
+        fields += [
+            field("displacement", size, "m", "viridis", "points"),
+            field("von Mises stress", without_noise(bulk.von_mises(stress), scale)[owner], "Pa", "inferno", "cells"),
+            field(
+                "largest compressive stress",
+                without_noise(bulk.largest_compression(stress), scale)[owner],
+                "Pa",
+                "cividis",
+                "cells",
+            ),
+        ]
     for name, base in (("pressure", "Pa"), ("temperature", "K")):
         if name in surface.cell_data:
             fields.append(field(name, without_noise(surface.cell_data[name], 0)[owner], base, "viridis", "cells"))
@@ -107,22 +146,43 @@ def at_places(points, values, places):
     everywhere = np.concatenate([points, places])
     tolerance = 1e-9 * np.max(np.ptp(everywhere, axis=0))
     number = np.unique(np.round(everywhere / tolerance), axis=0, return_inverse=True)[1].reshape(-1)
-    count = np.bincount(number[:len(points)], minlength=number.max() + 1)
-    total = np.column_stack([np.bincount(number[:len(points)], values[:, k], minlength=number.max() + 1) for k in range(3)])
-    return (total / np.maximum(count, 1)[:, None])[number[len(points):]]
+    count = np.bincount(number[: len(points)], minlength=number.max() + 1)
+    total = np.column_stack(
+        [np.bincount(number[: len(points)], values[:, k], minlength=number.max() + 1) for k in range(3)]
+    )
+    return (total / np.maximum(count, 1)[:, None])[number[len(points) :]]
 
 
 def ribbons(lines, width):
-    """A band of two triangles for each face of a trace, above the rock; and for each triangle and point the face or point it is of."""
+    """A band of two triangles for each face of a trace, above the rock; and for each triangle and point the face or
+    point it is of."""
     first, second = (np.array([p[k] for p in lines.polygons]) for k in (0, 1))
     along = lines.points[second] - lines.points[first]
-    across = 0.5 * width * np.column_stack([-along[:, 1], along[:, 0], 0 * along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
+    across = (
+        0.5
+        * width
+        * np.column_stack([-along[:, 1], along[:, 0], 0 * along[:, 0]])
+        / np.linalg.norm(along, axis=1)[:, None]
+    )
     across[:, 2] = 0
     above = [0, 0, 0.5 * width]
-    ends = np.stack([lines.points[first] - across, lines.points[second] - across, lines.points[second] + across, lines.points[first] + across], 1)
+    ends = np.stack(
+        [
+            lines.points[first] - across,
+            lines.points[second] - across,
+            lines.points[second] + across,
+            lines.points[first] + across,
+        ],
+        1,
+    )
     corner = 4 * np.arange(len(first))[:, None]
     triangles = np.concatenate([corner + [0, 1, 2], corner + [0, 2, 3]], 1).reshape(-1, 3)
-    return ends.reshape(-1, 3) + above, triangles, np.repeat(np.arange(len(first)), 2), np.stack([first, second, second, first], 1).ravel()
+    return (
+        ends.reshape(-1, 3) + above,
+        triangles,
+        np.repeat(np.arange(len(first)), 2),
+        np.stack([first, second, second, first], 1).ravel(),
+    )
 
 
 def of_fractures(joints, rock, plane, centre, sizes):
@@ -142,8 +202,16 @@ def of_fractures(joints, rock, plane, centre, sizes):
         for name, (values, base) in fractures.quantities(data, *sizes).items():
             fields.append(field(name, values[owner], base, PALETTES.get(name, "cividis"), "cells", name == "opening"))
         fields.sort(key=lambda f: not f["name"].startswith("slip"))
-        fields += [field("shear traction / normal compression", np.minimum(maps.slip_tendency(data, sizes[1]), maps.LARGEST_TENDENCY)[owner], "", "plasma", "cells"),
-                   states(data["state"][owner].astype(float))]
+        fields += [
+            field(
+                "shear traction / normal compression",
+                np.minimum(maps.slip_tendency(data, sizes[1]), maps.LARGEST_TENDENCY)[owner],
+                "",
+                "plasma",
+                "cells",
+            ),
+            states(data["state"][owner].astype(float)),
+        ]
     if "fracture pressure" in data:
         fields.append(field("pressure", data["fracture pressure"][owner], "Pa", "viridis", "cells"))
     return content("fractures", points - centre, triangles, fields, moved)
@@ -162,7 +230,9 @@ def of_run(directory):
     centre = 0.5 * (rock.points.min(axis=0) + rock.points.max(axis=0))
     surfaces = [of_rock(rock, centre, joints and not plane)]
     if joints:
-        sizes = fractures.scales(grid, read.arrays(joints.GetCellData())) if "displacement" in rock.point_data else (0, 0)
+        sizes = (
+            fractures.scales(grid, read.arrays(joints.GetCellData())) if "displacement" in rock.point_data else (0, 0)
+        )
         inside = read.Surface(*points_of(grid)) if not plane else rock
         surfaces.append(of_fractures(joints, inside, plane, centre, sizes))
     surfaces = [surface for surface in surfaces if surface["fields"]]
@@ -174,4 +244,5 @@ def of_run(directory):
 def points_of(grid):
     """All points of a grid with their data, as a surface without polygons."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
+
     return vtk_to_numpy(grid.GetPoints().GetData()), [], {}, read.arrays(grid.GetPointData())

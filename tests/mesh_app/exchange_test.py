@@ -32,8 +32,14 @@ TRACES = {"F1": [[0.2, 0.5], [0.8, 0.5]], "F2": [[0.5, 0.2], [0.5, 0.6], [0.6, 0
 class ExchangeTest(ProgramTest):
     def geojson(self, features, name="net.geojson", **members):
         """`features`: (kind of geometry, coordinates, attributes)."""
-        content = {"type": "FeatureCollection", **members, "features": [
-            {"type": "Feature", "properties": attributes, "geometry": kind and {"type": kind, "coordinates": x}} for kind, x, attributes in features]}
+        content = {
+            "type": "FeatureCollection",
+            **members,
+            "features": [
+                {"type": "Feature", "properties": attributes, "geometry": kind and {"type": kind, "coordinates": x}}
+                for kind, x, attributes in features
+            ],
+        }
         path = self.folder / name
         path.write_text(json.dumps(content))
         return path
@@ -51,7 +57,9 @@ class ExchangeTest(ProgramTest):
         for k, (title, points) in enumerate(rows.items()):
             feature, line = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(kind)
             for point in points:
-                line.AddPoint(*map(float, point)) if kind == ogr.wkbLineString25D else line.AddPoint_2D(*map(float, point))
+                line.AddPoint(*map(float, point)) if kind == ogr.wkbLineString25D else line.AddPoint_2D(
+                    *map(float, point)
+                )
             feature.SetGeometry(line)
             if driver != "DXF":
                 feature.SetField("NAME", title)
@@ -80,13 +88,20 @@ class ExchangeTest(ProgramTest):
             self.assertIn(word, str(caught.exception))
 
     def test_geojson(self):
-        lines = [("LineString", x, {"name": name, "id": 10 + k, "friction coefficient": 0.4 + k}) for k, (name, x) in enumerate(TRACES.items())]
+        lines = [
+            ("LineString", x, {"name": name, "id": 10 + k, "friction coefficient": 0.4 + k})
+            for k, (name, x) in enumerate(TRACES.items())
+        ]
         found = exchange.read(self.geojson([*lines, ("Point", [0.1, 0.1], {})], crs=None), 2)
         self.expect_traces(found)
         self.assertEqual([row.number for row in found], ["10", "11"])
-        self.assertEqual([row.properties for row in found], [{"friction coefficient": "0.4"}, {"friction coefficient": "1.4"}])
+        self.assertEqual(
+            [row.properties for row in found], [{"friction coefficient": "0.4"}, {"friction coefficient": "1.4"}]
+        )
         self.assertIn("feature 2", found[1].title)
-        several = exchange.read(self.geojson([("MultiLineString", list(TRACES.values()), {"name": "both"})], crs=None), 2)
+        several = exchange.read(
+            self.geojson([("MultiLineString", list(TRACES.values()), {"name": "both"})], crs=None), 2
+        )
         self.assertEqual([row.name for row in several], ["both", "both"])
 
     def test_files_of_other_programs(self):
@@ -98,7 +113,10 @@ class ExchangeTest(ProgramTest):
         found = exchange.read(drawing, 2)
         self.expect_traces(found, names=False)
         self.assertEqual([row.properties for row in found], [{}, {}])
-        self.assertEqual(sorted(Path(file).suffix for file in exchange.files_of(str(self.folder / "utm.shp"))), [".dbf", ".prj", ".shp", ".shx"])
+        self.assertEqual(
+            sorted(Path(file).suffix for file in exchange.files_of(str(self.folder / "utm.shp"))),
+            [".dbf", ".prj", ".shp", ".shx"],
+        )
         self.assertEqual(exchange.read(self.folder / "utm.shp", 2)[1].properties, {"friction": "1.5"})
 
     def test_polygons(self):
@@ -107,16 +125,26 @@ class ExchangeTest(ProgramTest):
         self.assertTrue(np.allclose(found.points, ring[:-1]))
         (found,) = exchange.read(self.geojson([("LineString", ring, {})], crs=None), 3)
         self.assertTrue(np.allclose(found.points, ring[:-1]))
-        for kind, x, why in (("Polygon", [[p[:2] for p in ring]], "has no z"), ("LineString", ring[:-1], "not closed"),
-                             ("Polygon", [ring, [[0.4, 0.4, 0.5], [0.5, 0.4, 0.5], [0.5, 0.5, 0.5], [0.4, 0.4, 0.5]]], "with holes")):
+        for kind, x, why in (
+            ("Polygon", [[p[:2] for p in ring]], "has no z"),
+            ("LineString", ring[:-1], "not closed"),
+            ("Polygon", [ring, [[0.4, 0.4, 0.5], [0.5, 0.4, 0.5], [0.5, 0.5, 0.5], [0.4, 0.4, 0.5]]], "with holes"),
+        ):
             self.refused(self.geojson([(kind, x, {})], crs=None), "feature 1", why, dim=3)
         self.refused(self.geojson([("Polygon", [ring], {})], crs=None), "is a polygon; in 2D fractures are lines")
 
     def test_coordinates_must_be_metric(self):
         lines = [("LineString", x, {}) for x in TRACES.values()]
         self.refused(self.geojson(lines), "longitude and latitude in degrees", "\"crs\": null")
-        self.refused(self.geojson(lines, crs={"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}), "in degrees", "UTM")
-        self.expect_traces(exchange.read(self.geojson(lines, crs={"type": "name", "properties": {"name": "EPSG:25832"}}), 2), names=False)
+        self.refused(
+            self.geojson(lines, crs={"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}),
+            "in degrees",
+            "UTM",
+        )
+        self.expect_traces(
+            exchange.read(self.geojson(lines, crs={"type": "name", "properties": {"name": "EPSG:25832"}}), 2),
+            names=False,
+        )
         self.refused(self.write_by_ogr("ESRI Shapefile", "degrees.shp", 4326), "WGS 84", "in degrees")
         self.refused(self.write_by_ogr("ESRI Shapefile", "feet.shp", 2263), "US survey foot")
         drawing = self.write_by_ogr("DXF", "net.dxf")
@@ -130,7 +158,11 @@ class ExchangeTest(ProgramTest):
         broken.write_text("{\"type\": \"FeatureCollection\", ")
         self.refused(broken, "cannot be read")
         self.refused(self.geojson([], crs=None), "has no fracture")
-        self.refused(self.geojson([(None, None, {}), ("LineString", [[0.5, 0.5], [0.5, 0.5]], {})], crs=None), "feature 1: has no geometry", "feature 2: has 1 different points")
+        self.refused(
+            self.geojson([(None, None, {}), ("LineString", [[0.5, 0.5], [0.5, 0.5]], {})], crs=None),
+            "feature 1: has no geometry",
+            "feature 2: has 1 different points",
+        )
 
     def test_network(self):
         """In a scene: a file by its ending, in the place of a CSV; what belongs to a shapefile counts as input, too."""

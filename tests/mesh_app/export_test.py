@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Fractures with results for geographic information systems: export_test.py PROGRAM ROOT MPIEXEC
 
-Needs Debian's python3-gdal, python3-numpy, python3-matplotlib and python3-vtk9; without one of them it ends with status 77,
-which ctest shows as skipped."""
+Needs Debian's python3-gdal, python3-numpy, python3-matplotlib and python3-vtk9; without one of them it ends with
+status 77, which ctest shows as skipped."""
 import contextlib
 import importlib.util
 import io
@@ -35,10 +35,13 @@ class ExportTest(ProgramTest):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             status = app.main([str(self.folder / "out"), "-o", str(self.folder / file), *words])
         self.assertEqual(status, expect, err.getvalue())
-        return err.getvalue() if expect else json.loads((self.folder / file).read_text())["features"] if file.endswith("json") else None
+        if expect:
+            return err.getvalue()
+        return json.loads((self.folder / file).read_text())["features"] if file.endswith("json") else None
 
     def test_traces(self):
-        """Lines from end to end, without the points of the mesh; values are those of the results; shapefiles say the same."""
+        """Lines from end to end, without the points of the mesh; values are those of the results; shapefiles say the
+        same."""
         steps = self.run_scene("verification/crossing_2d.xml")["steps"]
         found = {feature["properties"]["name"]: feature for feature in self.export("net.geojson")}
         self.assertEqual(sorted(found), sorted(steps[-1]["fractures"]))
@@ -46,8 +49,14 @@ class ExportTest(ProgramTest):
             values, points = found[name]["properties"], np.array(found[name]["geometry"]["coordinates"])
             self.assertEqual(points.shape, (2, 2))
             self.assertAlmostEqual(np.linalg.norm(points[1] - points[0]), wanted["area"], 9)
-            for ours, theirs in (("length", "area"), ("slip_mean", "mean_slip"), ("slip_max", "max_slip"), ("open_max", "max_opening"),
-                                 ("part_slip", "fraction_slip"), ("part_open", "fraction_open")):
+            for ours, theirs in (
+                ("length", "area"),
+                ("slip_mean", "mean_slip"),
+                ("slip_max", "max_slip"),
+                ("open_max", "max_opening"),
+                ("part_slip", "fraction_slip"),
+                ("part_open", "fraction_open"),
+            ):
                 self.assertAlmostEqual(values[ours], wanted[theirs], 12, ours)
             self.assertTrue(np.isclose(values["normal_tr"], wanted["mean_traction"]["local"][0], rtol=1e-9))
         self.export("net.shp", "--crs", "EPSG:25832")
@@ -76,6 +85,7 @@ class ExportTest(ProgramTest):
         ring = np.array(one["geometry"]["coordinates"][0])
         self.assertEqual(ring.shape, (5, 3))
         from orientations import area_vector
+
         self.assertAlmostEqual(np.linalg.norm(area_vector(ring[:-1])), wanted["area"], 9)
         (again,) = exchange.read(str(self.folder / "net.geojson"), 3)
         self.assertTrue(np.allclose(again.points, ring[:-1]))

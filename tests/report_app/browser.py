@@ -33,10 +33,26 @@ class Browser:
             os.dup2(high[1], 4)
 
         self.process = subprocess.Popen(
-            [program(), "--headless", "--no-sandbox", "--disable-dev-shm-usage", "--remote-debugging-pipe", "--use-gl=angle",
-             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking",
-             "--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={self.profile.name}", "about:blank"],
-            preexec_fn=pipes, close_fds=False, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            [
+                program(),
+                "--headless",
+                "--no-sandbox",
+                "--disable-dev-shm-usage",
+                "--remote-debugging-pipe",
+                "--use-gl=angle",
+                "--use-angle=swiftshader",
+                "--enable-unsafe-swiftshader",
+                "--disable-background-networking",
+                "--host-resolver-rules=MAP * ~NOTFOUND",
+                f"--user-data-dir={self.profile.name}",
+                "about:blank",
+            ],
+            preexec_fn=pipes,
+            close_fds=False,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         os.close(to_browser)
         os.close(from_browser)
         self.write, self.read, self.buffer = own_out, own_in, b""
@@ -102,16 +118,31 @@ class Browser:
         options = {}
         if selector:
             self.value(f"document.querySelector({selector!r}).scrollIntoView()")
-            box = self.value(f"(b => [b.x + scrollX, b.y + scrollY, b.width, b.height])(document.querySelector({selector!r}).getBoundingClientRect())")
-            options = {"clip": {**dict(zip(("x", "y", "width", "height"), box)), "scale": 1}, "captureBeyondViewport": True}
+            box = self.value(
+                f"(b => [b.x + scrollX, b.y + scrollY, b.width, b.height])(document.querySelector({selector!r}).getBoundingClientRect())"
+            )
+            options = {
+                "clip": {**dict(zip(("x", "y", "width", "height"), box)), "scale": 1},
+                "captureBeyondViewport": True,
+            }
         return base64.b64decode(self.call("Page.captureScreenshot", format="png", **options)["data"])
 
     def drag(self, selector, dx, dy):
         """The mouse from the middle of an element, with its button held."""
         self.value(f"document.querySelector({selector!r}).scrollIntoView()")
-        x, y = self.value(f"(b => [b.x + b.width / 2, b.y + b.height / 2])(document.querySelector({selector!r}).getBoundingClientRect())")
+        x, y = self.value(
+            f"(b => [b.x + b.width / 2, b.y + b.height / 2])(document.querySelector({selector!r}).getBoundingClientRect())"
+        )
         for kind, part in (("mousePressed", 0), ("mouseMoved", 0.5), ("mouseMoved", 1), ("mouseReleased", 1)):
-            self.call("Input.dispatchMouseEvent", type=kind, x=x + part * dx, y=y + part * dy, button="left", buttons=int(kind != "mouseReleased"), clickCount=1)
+            self.call(
+                "Input.dispatchMouseEvent",
+                type=kind,
+                x=x + part * dx,
+                y=y + part * dy,
+                button="left",
+                buttons=int(kind != "mouseReleased"),
+                clickCount=1,
+            )
 
     def paper(self):
         """A PDF as the page is printed."""

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Reports as a browser shows them: browser_test.py PROGRAM ROOT MPIEXEC
 
-Needs Chromium, npm, which brings the view's library once, and what pictures need; where one is missing it ends with status
-77, which ctest shows as skipped."""
+Needs Chromium, npm, which brings the view's library once, and what pictures need; where one is missing it ends with
+status 77, which ctest shows as skipped."""
 import io
 import shutil
 import subprocess
@@ -30,7 +30,11 @@ class BrowserTest(ProgramTest):
 
     def report(self, scene, *overrides):
         self.run_scene(scene, *overrides)
-        done = subprocess.run(["timeout", "900", str(ROOT / "sprekk"), "report", str(self.folder / "out"), "--dpi", "40"], capture_output=True, text=True)
+        done = subprocess.run(
+            ["timeout", "900", str(ROOT / "sprekk"), "report", str(self.folder / "out"), "--dpi", "40"],
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         log = (BUNDLED / "npm.log").read_text() if (BUNDLED / "npm.log").is_file() else ""
         if "no 3D view" in done.stderr and "npm err" in log.lower():
@@ -40,17 +44,21 @@ class BrowserTest(ProgramTest):
 
     def image(self, png):
         from matplotlib.pyplot import imread
+
         return (imread(io.BytesIO(png), format="png")[:, :, :3] * 255).astype(int)
 
     def colours(self, png):
         """How many there are, of at least ten pixels each."""
         import numpy as np
+
         return int(np.sum(np.unique(self.image(png).reshape(-1, 3) @ (1, 256, 256**2), return_counts=True)[1] >= 10))
 
     def expect_quiet(self):
         self.browser.value("new Promise((done) => setTimeout(done, 500))")
         self.assertEqual(self.browser.complaints, [])
-        self.assertEqual([url[:80] for url in self.browser.requests if not url.startswith(("file:", "data:", "blob:"))], [])
+        self.assertEqual(
+            [url[:80] for url in self.browser.requests if not url.startswith(("file:", "data:", "blob:"))], []
+        )
 
     def expect_view(self, file):
         """It shows the run, turns with the mouse, and changes its colours with the field."""
@@ -62,8 +70,12 @@ class BrowserTest(ProgramTest):
         turned = self.browser.picture("#view canvas")
         changed = (self.image(first) != self.image(turned)).any(axis=2).mean()
         self.assertGreater(changed, 0.02)
-        self.browser.value("(s => { s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })(document.querySelector('#view-controls select'))")
-        self.assertGreater((self.image(turned) != self.image(self.browser.picture("#view canvas"))).any(axis=2).mean(), 0.02)
+        self.browser.value(
+            "(s => { s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })(document.querySelector('#view-controls select'))"
+        )
+        self.assertGreater(
+            (self.image(turned) != self.image(self.browser.picture("#view canvas"))).any(axis=2).mean(), 0.02
+        )
         self.expect_quiet()
 
     def expect_fits(self, file):

@@ -36,7 +36,9 @@ class ReportTest(ProgramTest):
     def write(self, *words, expect=0):
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            self.assertEqual(report.main([str(self.folder / "out"), "--dpi", "40", *map(str, words)]), expect, err.getvalue())
+            self.assertEqual(
+                report.main([str(self.folder / "out"), "--dpi", "40", *map(str, words)]), expect, err.getvalue()
+            )
         return out.getvalue().strip() or err.getvalue()
 
     def verdicts(self):
@@ -61,7 +63,13 @@ class Pages(ReportTest):
         self.assertEqual(re.findall(r"""(?:src|href)=['"](?!data:|#)[^'"]*""", page), [])
         slip = content["steps"][-1]["fractures"]["shear plane"]["max_slip"]
         self.assertIn(f"<td>{1e3 * slip:.4g}</td>", page)
-        for words in ("8 steps up to", "estimated error of the stress", "Key figures", "no step was halved", "largest memory"):
+        for words in (
+            "8 steps up to",
+            "estimated error of the stress",
+            "Key figures",
+            "no step was halved",
+            "largest memory",
+        ):
             self.assertIn(words, page)
 
     def test_scene_in_words(self):
@@ -77,7 +85,9 @@ class Pages(ReportTest):
         self.assertEqual([path[1].count(",") for path in joined], [10])
 
     def test_failed_run_is_reported(self):
-        self.run_scene(ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", expect=3)
+        self.run_scene(
+            ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", expect=3
+        )
         page = Path(self.write()).read_text()
         self.assertIn("did not converge", page)
         self.assertIn("class='failed'", page)
@@ -107,13 +117,22 @@ class Checks(ReportTest):
             content["status"], content["reason"] = "failed", "by hand"
             content["steps"][0].update(converged=False, cuts=1)
             content["steps"][-1]["reactions"]["west"][0] *= 1.001
+
         self.change(spoil)
         found = self.verdicts()
-        self.assertEqual({name for name, check in found.items() if check.verdict == "failed"}, {"run", "convergence", "balance of forces"})
+        self.assertEqual(
+            {name for name, check in found.items() if check.verdict == "failed"},
+            {"run", "convergence", "balance of forces"},
+        )
         self.assertIn("by hand", found["run"].words)
         self.assertEqual(found["time steps"].verdict, "noted")
         scene_file = self.folder / "out/effective_input.xml"
-        scene_file.write_text(scene_file.read_text().replace('name="friction coefficient" type="double" value="0.5"', 'name="friction coefficient" type="double" value="0.1"'))
+        scene_file.write_text(
+            scene_file.read_text().replace(
+                'name="friction coefficient" type="double" value="0.5"',
+                'name="friction coefficient" type="double" value="0.1"',
+            )
+        )
         self.assertEqual(self.verdicts()["laws of contact and friction"].verdict, "failed")
 
     def test_other_loads_carry_reactions(self):
@@ -133,6 +152,7 @@ class Views(ReportTest):
         self.assertEqual([rock["name"], joints["name"]], ["rock", "fractures"])
         self.assertLess(rock["opacity"], joints["opacity"])
         import read
+
         grid = read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1])
         slip = read.arrays(grid.GetCellData())["slip"]
         field = next(f for f in joints["fields"] if f["name"].startswith("slip"))
@@ -152,6 +172,7 @@ class Views(ReportTest):
         points = self.numbers(joints["points"]).reshape(-1, 3)
         self.assertGreater(points[:, 2].min(), self.numbers(rock["points"]).reshape(-1, 3)[:, 2].max())
         import read
+
         lines = read.segments(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]))
         lengths = [np.linalg.norm(np.diff(ends[:2], axis=0)) for ends in lines.corners()]
         bands = points.reshape(-1, 4, 3)
@@ -184,9 +205,15 @@ class Words(ReportTest):
 
     def test_single_fractures_take_the_place_of_sets(self):
         """Those that slipped most first."""
-        step = {"fractures": {"set": {"area": 3.0, "max_slip": 2e-3}}, "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]}}
-        content = {"mesh": {"dimension": 2}, "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
-                   "steps": [step]}
+        step = {
+            "fractures": {"set": {"area": 3.0, "max_slip": 2e-3}},
+            "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]},
+        }
+        content = {
+            "mesh": {"dimension": 2},
+            "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
+            "steps": [step],
+        }
         (table,), _ = figures.of_run(content)
         self.assertEqual(table.columns, ["fracture", "length (m)", "largest slip (mm)", "moment per depth (N)"])
         self.assertEqual(table.rows, [("b", "2", "2", "5 × 10⁹"), ("a", "1", "1", "0")])
