@@ -78,7 +78,7 @@ def checks_list(checks):
 
 def figure(name, png):
     data = base64.b64encode(png).decode()
-    caption = text(CAPTIONS.get(name, name))
+    caption = text(CAPTIONS.get(name, name.replace("probe_", "Probe ")))
     return (
         f"<figure><img alt='{caption}' src='data:image/png;base64,{data}'><figcaption>{caption}</figcaption></figure>"
     )
