@@ -32,13 +32,15 @@ class Plausibility(ProgramTest):
     def test_what_where_why_what_to_do(self):
         """Each with its words, on one rank and on two, and as an error where it is to be strict."""
         cases = [
-            (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], "Sprekk > Boundary conditions: displacements at t = 1 s differ by 0.2 m",
+            (["Boundary conditions.shear.displacement={0.2*x*ramp(t), free}"], "Sprekk > Boundary conditions: displacements at t = 1 s differ by 0.375 m over 1.88 m of rock, 20 %",
              "strains are taken as small", "check the unit"),
-            (["Materials.granite.Young's modulus=50"], "Young's modulus is 50 Pa, and there is a stress of 5e+06 Pa", "more than 5 %", '"50 GPa"'),
+            (["Materials.granite.Young's modulus=50"], "Young's modulus is 50 Pa, and there is a stress of 5e+06 Pa", "more than 100 %", '"50 GPa"'),
             (["Materials.rough joint.tangential stiffness=20"], 'rough joint > "tangential stiffness": is 20 Pa/m beside rock of 5e+10 Pa',
              "next to no resistance", '"10 GPa/m"'),
             (["Materials.rough joint.friction angle=0.61"], 'rough joint > "friction angle": is 0.61 degrees', "in radians", '"30 deg"'),
             (["Materials.rough joint.dilation angle=40"], 'rough joint > "dilation angle": is 40 degrees', "above the friction angle, 35 degrees", "give a smaller angle"),
+            (["Mesh.fractures.shear plane.lower corner={0.5, 0.5}", "Boundary conditions.shear.displacement={0.2*ramp(t), free}"],
+             "displacements at t = 1 s differ by 0.2 m over 1 m of rock, 20 %", "strains are taken as small", "check the unit"),
             (["Materials.rough joint.damage=isotropic"], 'rough joint > "damage": is "isotropic"', "damages nothing", '"damage length of friction"'),
             (["Time.steps=1"], 'Sprekk > Time: 1 step goes over knots of the table "ramp", the first at t = 1 s', "loads count at the ends of steps", '"schedule"'),
             ([*STRESS, "Bulk.initial stress={0, 5e6, 0, 0}"], "the initial stress is tension in 100 % of the cells, 5e+06 Pa", "negative sign", "check signs"),
@@ -65,7 +67,7 @@ class Plausibility(ProgramTest):
 
     def test_just_below(self):
         """The bounds themselves are no cause for a warning."""
-        for sets in (["Boundary conditions.shear.displacement={0.049*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],
+        for sets in (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],
                      ["Time.schedule={1, 2}"], [*STRESS, "Bulk.initial stress={0, -5e6, 0, 3.5e6}"],
                      ["Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.1"]):
             err = self.warnings(SHEAR, *sets)

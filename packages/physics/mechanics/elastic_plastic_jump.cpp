@@ -423,8 +423,8 @@ struct ElasticPlasticJump<shape, tips>::Shown {
 
 template <Shape shape, bool tips>
 Real ElasticPlasticJump<shape, tips>::slip_since_start(LocalIndex f, const Shown& face) const {
-  Real slip[dim - 1];
-  for (int i = 0; i < dim - 1; ++i) slip[i] = face.plastic[i + 1] - parameters_.joints[joint_of(f)].plastic_jump[i];
+  Real slip[dim - 1];  // of what was committed: 0 without rounding where a face has never slid
+  for (int i = 0; i < dim - 1; ++i) slip[i] = face.point.p_old[i] - parameters_.joints[joint_of(f)].plastic_jump[i];
   return laws::norm(slip);
 }
 
