@@ -36,12 +36,12 @@ if(SPREKK_TESTS)
 endif()
 
 # sprekk_test(NAME COMMAND words... [PROPERTIES name value...])
-# Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, or perf.
+# Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, or perf.
 # The time limit ends what hangs and nothing else: the longest test takes a tenth of it on two cores.
 function(sprekk_test name)
   cmake_parse_arguments(ARG "" "" "COMMAND;PROPERTIES" ${ARGN})
   if(NOT SPREKK_TEST_LABEL)
-    message(FATAL_ERROR "${name}: set SPREKK_TEST_LABEL to fast, slow or perf in this folder or above")
+    message(FATAL_ERROR "${name}: set SPREKK_TEST_LABEL to fast, slow, report or perf in this folder or above")
   endif()
   add_test(NAME ${name} COMMAND ${ARG_COMMAND})
   set_tests_properties(${name} PROPERTIES LABELS ${SPREKK_TEST_LABEL} TIMEOUT 1500

@@ -82,7 +82,7 @@ def make(options):
     options.output.parent.mkdir(parents=True, exist_ok=True)
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
     try:
-        msh_file.write(unfinished, mesh.points, groups)
+        msh_file.write(unfinished, mesh.points, groups, msh_file.singles_of(plan))
         content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(), **report.of_mesh(mesh, plan, sizes)}
         unfinished.replace(options.output)
     finally:

@@ -3,11 +3,12 @@ import csv
 import os
 import xml.etree.ElementTree as xml
 
+import exchange
 import numpy as np
 from domain import Body, rows
 from generator import at_random
-from shapes import Feature, NetworkError, ellipse
-from tables import read_table
+from shapes import Errors, Feature, NetworkError, ellipse
+from tables import Table, read_table
 
 MOST_FRACTURES = 10**5
 
@@ -53,6 +54,7 @@ class Network:
         self.fractures = self.features("fractures", "fracture")
         self.constraints = self.features("constraints", "constraint")
         self.check_names()
+        self.check_singles()
         self.check_boxes()
         self.check_dimensions()
         self.set_sizes()
@@ -65,9 +67,11 @@ class Network:
 
     def table(self, content):
         path = as_known(content["file"])
-        self.files.append(path)
+        self.files += exchange.files_of(path)
         domain = self.entries.get("domain")
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
+        if exchange.is_exchange(path) and "format" not in content:
+            return Table(exchange.read(path, 2 if of_domain == "lines" else 3))
         kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
         return read_table(path, kind)
 
@@ -84,20 +88,22 @@ class Network:
         for name, content in self.entries.get(section, {}).items():
             path, n = self.place(f"{section} > {name}"), 2 if self.dim == 2 else 3
             if (section, name) in self.tables:
-                found += [Feature(kind, name, f"{kind} {title}", x) for title, x in self.tables[section, name].fractures]
+                found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}", row.properties)
+                          for row in self.tables[section, name].fractures]
             for of, least in (("lines", 2), ("polygons", 3)):
                 for one, points in content.get(of, {}).items():
                     if (of == "lines") != (self.dim == 2):
                         raise NetworkError(f"{path} > {of} > {one}: the domain has dimension {self.dim}; give {'lines' if n == 2 else 'polygons'}")
-                    found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"', rows(points["points"], n, f"{path} > {of} > {one}", least)))
+                    found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"', rows(points["points"], n, f"{path} > {of} > {one}", least),
+                                         f"{name} {one}"))
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
-                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"])))
+                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"]), f"{name} {one}"))
             number = len(found) + content.get("random", {}).get("number", 0)
             if number > MOST_FRACTURES:
                 raise NetworkError(f"{path}: brings the network to {number} {kind}s, at most {MOST_FRACTURES} are meshed")
             if "random" in content:
-                found += [Feature(kind, name, f'{kind} {k + 1} at random of "{name}"', x)
+                found += [Feature(kind, name, f'{kind} {k + 1} at random of "{name}"', x, f"{name} {k + 1}")
                           for k, x in enumerate(at_random(content["random"], self.domain))]
         for feature in found if self.dim == 3 else ():
             feature.points = opened(feature.points)
@@ -124,6 +130,22 @@ class Network:
                 raise NetworkError(f"{self.place('fractures > ' + name)}: has the name of a side of the domain; choose another")
         if "bulk" in self.entries["regions"]:
             raise NetworkError(f"{self.place('regions > bulk')}: is the name of the rest of the rock; choose another")
+
+    def check_singles(self):
+        """A name means one fracture, with one joint; several lines or polygons of a set may make it up."""
+        first, errors = {}, Errors()
+        for feature in self.fractures:
+            one, name = first.setdefault(feature.single, feature), feature.single
+            if '"' in name or not name.isprintable():
+                errors.lines.append(f"{feature.name}: the name {name!r} has a quotation mark or what cannot be printed; choose another")
+            elif one.group != feature.group:
+                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another set; choose another")
+            elif one.properties != feature.properties:
+                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, and other values in further columns")
+            for entry, value in feature.properties.items():
+                if any('"' in text or not text.isprintable() for text in (entry, value)):
+                    errors.lines.append(f"{feature.name}: {entry} = {value!r} has a quotation mark or what cannot be printed")
+        errors.throw(self.files)
 
     def check_dimensions(self):
         for body in self.regions:

@@ -1,9 +1,11 @@
 """What gmsh is to mesh: points, edges and plane faces that meet in edges and points only, and whose they are."""
+from dataclasses import replace
+
 import numpy as np
 from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
-from shapes import Errors, Feature, NetworkError, Plane, check_line, check_polygon, refuse
+from shapes import Errors, NetworkError, Plane, check_line, check_polygon, refuse
 from surfaces import Surface, are_level, check_angles, moved_onto, overlap, traces, without
 
 
@@ -88,7 +90,7 @@ class Plan:
             with errors.of_one():
                 check_line(line, network.tolerance)
                 parts = self.worth(line, domain.clip_line(line, network.tolerance))
-                owners += [Feature(line.kind, line.group, line.name, x) for x in parts]
+                owners += [replace(line, points=x) for x in parts]
         errors.throw()
         check_same(network.fractures, network.tolerance)
         segments, parents = [], []

@@ -43,6 +43,8 @@ class Feature:
     group: str  # of the mesh: name of the set, the boundary or the region
     name: str  # in messages
     points: np.ndarray = field(repr=False)  # (n, 2) or (n, 3), m
+    single: str = ""  # of a fracture: how results call it; several of one name are one
+    properties: dict = field(default_factory=dict)  # entries of its joint that it has of its own, as texts
 
 
 def refuse(feature, what):

@@ -2,6 +2,7 @@
 import csv
 import math
 import os
+import re
 import stat
 from dataclasses import dataclass, field
 
@@ -13,10 +14,25 @@ SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  
 
 
 @dataclass
+class Row:
+    """A fracture of a table."""
+    title: str  # in messages
+    points: np.ndarray
+    number: str  # or a text; those of one number are one fracture, unless they have a name
+    name: str = ""  # how results call it
+    properties: dict = field(default_factory=dict)  # texts by the titles of further columns; see named_columns()
+
+
+@dataclass
 class Table:
-    fractures: list = field(default_factory=list)  # (name, points)
+    fractures: list = field(default_factory=list)  # rows
+    n_columns: int = 5  # of lines, those of the shape; 4 without a number
     box: tuple = None  # lowest and highest corner of the domain, if the file tells
     errors: list = field(default_factory=list)
+
+    def add(self, place, points):
+        number = str(len(self.fractures) + 1)
+        self.fractures.append(Row(f"{number} ({place})", points, number))
 
 
 def numbers(words, place, table, first=1):
@@ -85,12 +101,14 @@ def other_separator(line, words):
 
 
 def lines_row(words, place, table):
-    if len(words) != 5:
-        table.errors.append(f"{place}: has {len(words)} columns, needs 5: id,x0,y0,x1,y1")
+    if len(words) != table.n_columns:
+        needed = "5: id,x0,y0,x1,y1" if table.n_columns == 5 else "4: x0,y0,x1,y1"
+        table.errors.append(f"{place}: has {len(words)} columns, needs {needed}")
         return
-    x = numbers(words[1:], place, table, 2)
+    x = numbers(words[-4:], place, table, len(words) - 3)
     if x is not None:
-        table.fractures.append((f"{words[0].strip()} ({place})", x.reshape(2, 2)))
+        number = words[0].strip() if len(words) == 5 else str(len(table.fractures) + 1)
+        table.fractures.append(Row(f"{number} ({place})", x.reshape(2, 2), number))
 
 
 def polygons_row(words, place, table):
@@ -106,7 +124,7 @@ def polygons_row(words, place, table):
         return
     x = numbers(words, place, table)
     if x is not None:
-        table.fractures.append((f"{len(table.fractures) + 1} ({place})", x.reshape(-1, 3)))
+        table.add(place, x.reshape(-1, 3))
 
 
 def ellipses_row(words, place, table):
@@ -119,12 +137,43 @@ def ellipses_row(words, place, table):
     if min(x[3:5]) <= 0:
         table.errors.append(f"{place}: has the radii {x[3]:g} and {x[4]:g}, they must be positive")
         return
-    table.fractures.append((f"{len(table.fractures) + 1} ({place})", ellipse(x[:3], x[3:5], x[6], x[7], x[5])))
+    table.add(place, ellipse(x[:3], x[3:5], x[6], x[7], x[5]))
 
 
-def read_csv(path, row):
-    """A table of lines with commas; empty lines and what follows a # are passed over, as is a line of titles."""
-    table, is_first = Table(), True
+SHAPE = {"lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0"], "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}
+OF_SHAPE = re.compile(r"f?id|[xyz]\d+|c[xyz]|r[12]|rake|strike|dip")  # titles of columns
+N_COLUMNS = {"lines": 5, "ellipses": 8}  # without titles
+
+
+def named_columns(titles, kind):
+    """The columns beside those of the shape: (column, title, unit). Titles are `name`, or an entry of a joint with its
+    unit or without: `initial aperture [mm]`. Where titles do not tell the columns of the shape, those come first."""
+    words = [re.fullmatch(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title).groups("") for title in titles]
+    known = [title.lower() for title, _ in words]
+    if set(SHAPE[kind]) <= set(known):
+        other = [k for k, title in enumerate(known) if title and not OF_SHAPE.fullmatch(title)]
+    else:
+        other = range(N_COLUMNS.get(kind, len(words)), len(words))
+    return [(k, "name" if known[k] == "name" else words[k][0], words[k][1]) for k in other]
+
+
+def take_named(words, columns):
+    """The texts of named columns, which are removed from the words."""
+    found = {}
+    for k, title, unit in columns:
+        text = words[k].strip() if k < len(words) else ""
+        if text:
+            found[title] = f"{text} {unit}".strip()
+    taken = {k for k, _, _ in columns}
+    words[:] = [word for k, word in enumerate(words) if k not in taken]
+    return found
+
+
+def read_csv(path, kind):
+    """A table of lines with commas; empty lines and what follows a # are passed over. A first line without numbers has
+    titles."""
+    row = {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind]
+    table, is_first, named = Table(), True, []
     for k, line in enumerate(read_lines(path), 1):
         words = columns(line)
         if words is None:
@@ -136,8 +185,17 @@ def read_csv(path, row):
             words.pop()
         is_title = is_first and not any(is_number(word) for word in words)
         is_first = False
-        if not is_title:
-            row(words, f"{path}: line {k}", table)
+        if is_title:
+            named = named_columns(words, kind)
+            table.n_columns = 4 if len(words) - len(named) == 4 else 5
+            continue
+        has, before = take_named(words, named), len(table.fractures)
+        row(words, f"{path}: line {k}", table)
+        for fracture in table.fractures[before:]:
+            fracture.name = has.pop("name", "")
+            fracture.properties = has
+            if fracture.name:
+                fracture.title = f"{fracture.name} ({path}: line {k})"
     return table
 
 
@@ -167,7 +225,7 @@ def read_fab(path):
             raise NetworkError(f"{place}: fracture {head[0]} has {n} corners; their lines, number x y z, do not follow", [path])
         x = [numbers(c[1:4], f"{path}: line {k + row + 1}", table, 2) for row, c in enumerate(corners)]
         if all(p is not None for p in x):
-            table.fractures.append((f"{head[0]} ({place})", np.array(x)))
+            table.fractures.append(Row(f"{head[0]} ({place})", np.array(x), head[0]))
         k += n + 1
     if k >= len(lines):
         raise NetworkError(f"{path}: has no line END FRACTURE", [path])
@@ -180,8 +238,9 @@ def read_table(path, kind):
         rows = (words for words in map(columns, read_lines(path)) if words)
         first = next(rows, [])
         words = first if any(is_number(word) for word in first) else next(rows, [])
-        kind = "lines" if len(words) == 5 else "polygons"
-    table = read_fab(path) if kind == "fab" else read_csv(path, {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind])
+        titles = [title.strip().lower() for title in first]
+        kind = "lines" if len(words) == 5 or {"x0", "z0"} & set(titles) == {"x0"} else "polygons"
+    table = read_fab(path) if kind == "fab" else read_csv(path, kind)
     if not table.errors and not table.fractures:
         table.errors.append(f"{path}: has no fracture")
     Errors(table.errors).throw([path])

@@ -2,7 +2,9 @@
 
 PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
 as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
-error.png of one step, loops.png (mean traction against mean jump of each fracture) and convergence.png of all steps. A run
+error.png of one step, mohr.png (stress on faces beside the strength of joints), loops.png (mean traction against mean jump
+of each fracture), series.png (slip, opening, pressures and injected volume over time), magnitudes.png (of many fractures
+that slip, in 3D), a picture of each probe, and convergence.png of all steps. A run
 with flow has flow.png, with pressure and velocity, too, one with heat temperature.png, with temperature and heat flux;
 where the rock does not deform there are no others but these and the last.
 """
@@ -43,9 +45,15 @@ def of_run(directory, options):
     import flow
     import fractures
     import loops
+    import magnitudes
     import maps
-    content = read.results(directory)
+    import mohr
+    import series
+    from style import when
+    content, scene = read.results(directory), read.scene(directory)
     steps = content["steps"]
+    clock = content.get("time_unit", {"name": "s"})
+    clock = None if clock["name"] == "s" else (clock["seconds"], clock["name"])
     states = [step for step in steps if "fractures" in step]  # a step that failed at once has none
     names = sorted(states[-1]["fractures"]) if states else []
     name = directory.resolve().name
@@ -55,14 +63,15 @@ def of_run(directory, options):
     if bulk_steps:
         wanted = bulk_steps[-1][0] if options.time is None else options.time
         time, file = min(bulk_steps, key=lambda step: abs(step[0] - wanted))
-        title = f"{name}, t = {time:g} s"
+        title = f"{name}, {when(time, clock)}"
         rock, joints = read.grid(file), None
         for file in [file for t, file in fracture_steps if t == time]:
             joints = read.grid(file)
         cut = joints if joints and joints.GetNumberOfCells() else None
         for picture, kind in ("flow", flow.FLUID), ("temperature", flow.HEAT):
             if rock.GetCellData().HasArray(kind.drive):
-                yield picture, flow.of_step(rock, cut, title, options.whole, kind)
+                initial = scene.get("Flow", {}).get("initial pressure") if kind is flow.FLUID else None
+                yield picture, flow.of_step(rock, cut, title, options.whole, kind, initial)
         deforms = rock.GetPointData().HasArray("displacement")
         if deforms:
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
@@ -70,6 +79,7 @@ def of_run(directory, options):
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             yield "fractures", fractures.of_step(rock, joints, names, title)
             yield "maps", maps.of_step(rock, joints, names, title)
+            yield "mohr", mohr.of_step(rock, joints, scene, title)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:
@@ -77,9 +87,13 @@ def of_run(directory, options):
         left_out("bulk.png or other picture of one step", directory, why)
     names = [name for name in names if "mean_jump" in states[-1]["fractures"][name]]
     if names and len(states) > 1:
-        yield "loops", loops.of_fractures(states, names, name, *sizes)
+        yield "loops", loops.of_fractures(states, names, name, *sizes, unloaded=loops.starts_unloaded(scene))
     elif names:
         left_out("loops.png", directory, "it holds one step, a loop needs two")
+    start = float(scene.get("Time", {}).get("start", 0))
+    made = [("series", series.of_run(states, name, clock, start)), ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
+    made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
+    yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)
 
 

@@ -3,7 +3,9 @@ import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgba
-from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, plt, without_noise
+from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, panels_of_plane, plt, without_noise
+
+LESS_PRESSURE = ", less α (p − p₀)"  # as the array `stress` has it where a fluid moves rock
 
 
 def tensors(stress):
@@ -53,10 +55,11 @@ def panels(surface):
     """(values, colours, label, on the points) of each picture; values in the label's unit."""
     size, stress = np.linalg.norm(surface.point_data["displacement"], axis=1), surface.cell_data["stress"]
     scale = np.max(abs(stress), initial=0)
+    less = LESS_PRESSURE if "pressure" in surface.cell_data else ""
     for values, scale, colours, name, base, on_points in (
             (size, 0, "viridis", "displacement", "m", True),
             (von_mises(stress), scale, "inferno", "von Mises stress", "Pa", False),
-            (largest_compression(stress), scale, "cividis", "largest compressive stress", "Pa", False)):
+            (largest_compression(stress), scale, "cividis", "largest compressive stress" + less, "Pa", False)):
         values = without_noise(values, scale)
         quantity = Quantity(name, base, values)
         yield quantity(values), plt.get_cmap(colours), quantity.label, on_points
@@ -68,14 +71,10 @@ def of_plane(grid, fractures, title, factor=None):
     factor = warp_factor(surface.points, displacement, factor)
     rest, moved = surface.points[:, :2], (surface.points + factor * displacement)[:, :2]
     edges = rim(surface, fractures)
-    width, height = np.ptp(moved, axis=0)
-    rows, columns = (3, 1) if width > 1.8 * height else (1, 3)
-    figure, axes = plt.subplots(rows, columns, sharex=True, sharey=True,
-                                figsize=(7, 3.3 * 5.4 * height / width + 0.8) if rows == 3 else
-                                (10, 2.4 * height / width + 0.9))
+    figure, axes, where = panels_of_plane(3, moved)
     figure.suptitle(f"{title}, deformation × {factor:g}", fontsize=10)
-    for ax, (values, colours, label, on_points) in zip(axes.flat, panels(surface)):
-        norm = limits(values)
+    for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
+        norm = limits(values, clip=not on_points)
         if on_points:
             ax.tripcolor(*moved.T, triangles(surface.polygons), values, cmap=colours, norm=norm, shading="gouraud")
         else:
@@ -83,16 +82,9 @@ def of_plane(grid, fractures, title, factor=None):
                                              edgecolors="face", linewidths=0.2))
         ax.add_collection(LineCollection(rest[edges], colors=FAINT, linewidths=0.7, linestyles=(0, (4, 3))))
         ax.add_collection(LineCollection(moved[edges], colors=INK, linewidths=0.9))
-        ax.set_aspect("equal")
         ax.margins(0.03)
         ax.autoscale_view()
-        ax.grid(False)
-        ax.label_outer()
-        colour_bar(figure, ax, norm, colours, label)
-    for ax in axes.flat if columns == 3 else axes.flat[-1:]:
-        ax.set_xlabel("x (m)")
-    for ax in axes.flat if columns == 1 else axes.flat[:1]:
-        ax.set_ylabel("y (m)")
+        colour_bar(figure, ax, norm, colours, label, **where)
     return figure
 
 
@@ -125,7 +117,7 @@ def of_body(grid, fractures, title, factor=None, whole=False):
     figure.suptitle(f"{title}, deformation × {factor:g}{half}", fontsize=10)
     for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
         faces = np.array([np.mean(values[p]) for p in surface.polygons]) if on_points else values
-        norm = limits(faces)
+        norm = limits(faces, clip=not on_points)
         colour = colours(norm(faces))
         edges = np.concatenate([colour * (0.85, 0.85, 0.85, 1), np.tile(to_rgba(INK), (len(joints), 1))])
         draw_polygons_3d(ax, corners + joints, np.concatenate([colour, paper]), edges, zoom=0.98)

@@ -1,11 +1,13 @@
-"""What drives a flow and how fast it is: pressure of a fluid in rock and fractures, temperature of rock."""
+"""What drives a flow and how fast it is: pressure of a fluid in rock and fractures, and how it has changed; temperature of
+rock."""
+import re
 from collections import namedtuple
 
 import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
-from style import INK, Quantity, colour_bar, draw_polygons_3d, limits, plt, without_noise
+from style import INK, NOISE, Quantity, colour_bar, draw_polygons_3d, limits, panels_of_plane, plt, without_noise
 
 
 # Arrays of rock and fractures with what drives and what flows; how figures call them, and the unit of what drives.
@@ -22,15 +24,45 @@ def decades(values):
     return LogNorm(max(least, 1e-8 * largest), max(largest, 1.001 * least)) if largest > 0 else limits(values)
 
 
-def panels(rock, joints, kind=FLUID):
+def at_start(expression, surface):
+    """The initial pressure at the centres of polygons, by the text of the scene: a number, or a formula of x, y, z and
+    numbers; None of others."""
+    if not re.fullmatch(r"(?:[xyz\s+\-*/^().\d]|(?<=[\d.])[eE][+-]?(?=\d))+", expression):
+        return None
+    centres = np.array([surface.points[p].mean(axis=0) for p in surface.polygons]).reshape(-1, 3)
+    try:
+        value = eval(expression.replace("^", "**"), {"__builtins__": {}}, dict(zip("xyz", centres.T)))  # checked above
+    except (SyntaxError, NameError, TypeError, ArithmeticError):
+        return None
+    return np.broadcast_to(np.asarray(value, dtype=float), len(centres))
+
+
+def change(rock, joints, kind, initial):
+    """The panel of p - p0, or nothing."""
+    before = [at_start(initial, surface) for surface in (rock, joints) if surface]
+    if any(values is None for values in before):
+        return
+    inside = joints.cell_data.get(kind.drive_inside) if joints and kind.drive_inside else None
+    scale = np.max(np.abs(rock.cell_data[kind.drive]), initial=0)
+    changes = [without_noise(now - then, scale) for now, then in zip((rock.cell_data[kind.drive], inside), before) if now is not None]
+    drive = Quantity("p − p₀", kind.unit, *changes)
+    values = drive(np.concatenate(changes))
+    signed = np.min(values) < -NOISE * np.max(values) and np.max(values) > 0
+    bar = (limits(values, signed, clip=True), plt.get_cmap("coolwarm" if signed else "viridis"), drive.label)
+    yield "change", (drive(changes[0]), *bar), (drive(changes[1]), *bar) if len(changes) > 1 else None
+
+
+def panels(rock, joints, kind=FLUID, initial=None):
     """(name of the panel, of the rock: (values, norm, colours, label), of the fractures the same or None)."""
     data = rock.cell_data
     faces = joints.cell_data if joints and kind.drive_inside else {}
     inside = faces.get(kind.drive_inside, np.zeros(0))
     drive = Quantity(kind.drive, kind.unit, data[kind.drive], inside)
-    norm = limits(drive(without_noise(np.concatenate([data[kind.drive], inside]), 0)))
+    norm = limits(drive(without_noise(np.concatenate([data[kind.drive], inside]), 0)), clip=True)
     bar = (norm, plt.get_cmap("viridis"), drive.label)
     yield kind.drive, (drive(data[kind.drive]), *bar), (drive(inside), *bar) if faces else None
+    if initial is not None:
+        yield from change(rock, joints, kind, initial)
     speed = np.linalg.norm(data[kind.flux], axis=1)
     flux = np.linalg.norm(faces[kind.flux_inside], axis=1) if faces else np.zeros(0)
     yield ("flow", (speed, decades(speed), plt.get_cmap("Blues"), kind.flux_label),
@@ -46,10 +78,11 @@ def bars(figure, ax, of_rock, of_fractures, **where):
             bar.update_ticks()
 
 
-def of_plane(rock, joints, title, kind):
-    figure, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(10.5, 4.2))
+def of_plane(rock, joints, title, kind, initial):
+    content = list(panels(rock, joints, kind, initial))
+    figure, axes, where = panels_of_plane(len(content), rock.points)
     figure.suptitle(title, fontsize=10)
-    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints, kind)):
+    for ax, (name, of_rock, of_fractures) in zip(axes, content):
         values, norm, colours, _ = of_rock
         ax.add_collection(PolyCollection(rock.corners(rock.points[:, :2]), array=values, cmap=colours, norm=norm,
                                          edgecolors="face", linewidths=0.2))
@@ -58,20 +91,17 @@ def of_plane(rock, joints, title, kind):
             ax.add_collection(LineCollection(lines, colors=INK, linewidths=3))
             ax.add_collection(LineCollection(lines, array=of_fractures[0], cmap=of_fractures[2], norm=of_fractures[1],
                                              linewidths=1.8))
-        ax.set_aspect("equal")
         ax.margins(0.03)
         ax.autoscale_view()
-        ax.grid(False)
-        ax.set_xlabel("x (m)")
-        bars(figure, ax, of_rock, of_fractures)
-    axes[0].set_ylabel("y (m)")
+        bars(figure, ax, of_rock, of_fractures, **where)
     return figure
 
 
-def of_body(rock, joints, title, whole, kind):
-    figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), subplot_kw={"projection": "3d"})
+def of_body(rock, joints, title, whole, kind, initial):
+    content = list(panels(rock, joints, kind, initial))
+    figure, axes = plt.subplots(1, len(content), figsize=(4 * len(content) + 1, 4.8), subplot_kw={"projection": "3d"})
     figure.suptitle(title + ("" if whole else ", front half of the rock cut away"), fontsize=10)
-    for ax, (name, of_rock, of_fractures) in zip(axes, panels(rock, joints, kind)):
+    for ax, (name, of_rock, of_fractures) in zip(axes, content):
         drawn = [(rock, of_rock)] + ([(joints, of_fractures)] if of_fractures and not whole else [])
         corners = sum((list(surface.corners()) for surface, _ in drawn), [])
         colours = np.concatenate([colour(norm(values)) for _, (values, norm, colour, _) in drawn])
@@ -80,10 +110,10 @@ def of_body(rock, joints, title, whole, kind):
     return figure
 
 
-def of_step(grid, fractures, title, whole=False, kind=FLUID):
-    """Of the rock's grid; the fractures' may be None."""
+def of_step(grid, fractures, title, whole=False, kind=FLUID, initial=None):
+    """Of the rock's grid; the fractures' may be None; `initial` is the text of the initial pressure, if it is known."""
     flat = read.is_plane(grid)
     rock = read.surface(grid if flat or whole else read.behind(grid))
     if flat:
-        return of_plane(rock, read.segments(fractures) if fractures else None, title, kind)
-    return of_body(rock, read.surface(fractures) if fractures else None, title, whole, kind)
+        return of_plane(rock, read.segments(fractures) if fractures else None, title, kind, initial)
+    return of_body(rock, read.surface(fractures) if fractures else None, title, whole, kind, initial)

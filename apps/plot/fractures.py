@@ -62,6 +62,12 @@ def scales(rock, data):
     return max(largest(displacement), largest(data["jump"])), max(np.max(abs(stress), initial=0), largest(data["traction"]))
 
 
+def effective(data):
+    """What to call tractions: those of the contact, less than the total by the pressure of a fluid, where there is one."""
+    wet = "fracture pressure" in data or np.any(data.get("fluid pressure", 0))
+    return "effective " if wet else ""
+
+
 def quantities(data, length, stress):
     """(values, in m or Pa) by name; without round-off of a length and a stress."""
     jump, traction = data["jump local"], data["traction local"]
@@ -96,6 +102,7 @@ def traces_of(surface, number, name):
 
 def draw_curves(ax, traces, row, drawn, quantity):
     """The first quantity of a row as lines, the second with dashes; in colours of their own where there is one trace."""
+    ax.use_sticky_edges = False  # zero is a line, not the frame
     for trace in sorted(traces, key=lambda trace: trace.colour != FAINT):
         for i, name in enumerate(row):
             ax.stairs(quantity(drawn[name][0][trace.faces]), trace.arc, baseline=None, linestyle="--" if i else "-",
@@ -147,7 +154,9 @@ def along(surface, names, title, length, stress):
                                hspace=0.8 * blocks / height)
     figure.suptitle(title, fontsize=10, x=0, y=1, ha="left", va="top")
     drawn = quantities(surface.cell_data, length, stress)
-    units = [Quantity(label, drawn[row[0]][1], *(drawn[name][0] for name in row)) for label, row in ROWS.items()]
+    prefix = effective(surface.cell_data)
+    units = [Quantity((prefix if label == "traction" else "") + label, drawn[row[0]][1], *(drawn[name][0] for name in row))
+             for label, row in ROWS.items()]
     first = None
     for k, number in enumerate(numbers):
         column, cells = [], grid[k // columns, k % columns].subgridspec(len(ROWS) + 1, 1, height_ratios=[1] * len(ROWS) + [strips], hspace=0.12)
@@ -179,8 +188,9 @@ def on_faces(surface, title, length, stress):
     edges = [(0.5, 0.5, 0.5, 0.6)]
     colours = {"opening": "RdBu_r", "normal traction": "cividis", "shear traction": "cividis"}
     for ax, (name, (values, base)) in zip(axes.flat, quantities(surface.cell_data, length, stress).items()):
-        quantity, palette = Quantity(name, base, values), plt.get_cmap(colours.get(name, "inferno"))
-        norm = limits(quantity(values), signed=name == "opening")
+        prefix = effective(surface.cell_data) if name == "normal traction" else ""
+        quantity, palette = Quantity(prefix + name, base, values), plt.get_cmap(colours.get(name, "inferno"))
+        norm = limits(quantity(values), signed=name == "opening", clip=True)
         draw_polygons_3d(ax, surface.corners(), palette(norm(quantity(values))), edges, zoom=0.95)
         colour_bar(figure, ax, norm, palette, quantity.label, **bar)
     norm = state_bar(figure, axes[-1, -1], **bar)

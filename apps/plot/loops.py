@@ -1,6 +1,6 @@
 """Traction against jump: of a point, and of the means over the fractures of a run."""
 import numpy as np
-from read import PlotError
+from read import PlotError, entries
 from style import (FAINT, LINES, MOST_CURVES, Quantity, STATES, STATE_COLOURS, foremost, give_room, look, natural, plt,
                    without_noise)
 
@@ -16,12 +16,12 @@ def curve(ax, x, y, colour, label=None, states=None, line="-"):
     ax.plot(x[-1:], y[-1:], "s", color=colour, markersize=4.5, zorder=5)
 
 
-def mark_legend(figure, states):
+def mark_legend(figure, states, first="first step"):
     """In the upper right corner: the colours of the contact states, the marks of a path's ends."""
     marks = [plt.Line2D([], [], linestyle="", marker="o", markersize=4, color=STATE_COLOURS(i), label=name)
              for i, name in enumerate(STATES) if states]
     marks += [plt.Line2D([], [], linestyle="", marker="o", markersize=5, color="white", markeredgecolor=LINES[0],
-                         label="first step"),
+                         label=first),
               plt.Line2D([], [], linestyle="", marker="s", markersize=4.5, color=LINES[0], label="last step")]
     figure.legend(handles=marks, loc="upper right", ncol=len(marks), columnspacing=0.8, handletextpad=0)
 
@@ -76,32 +76,42 @@ def main_direction(vectors):
     return direction * np.sign(along[np.argmax(abs(along) >= 1e-3 * np.max(abs(along)))] or 1)
 
 
-def of_fractures(steps, names, title, length=0, stress=0):
-    """Means over each fracture, step by step: shear along the main direction of its tangential jump, and normal. Round-off is
-    measured by a length and a stress, if not by the means."""
+def starts_unloaded(scene):
+    """Whether jumps and tractions of all fractures are zero in the initial state; `scene` as read.scene has it."""
+    pressure = scene.get("Flow", {}).get("initial pressure", "0")
+    given = (value for name in ("initial stress", "plastic jump") for value in entries(scene, name))
+    return "lithostatic stress" not in scene.get("Bulk", {}) and pressure == "0" and not any(given)
+
+
+def of_fractures(steps, names, title, length=0, stress=0, unloaded=False):
+    """Means over each fracture, step by step: shear along the main direction of its tangential jump, normal, and dilation.
+    Round-off is measured by a length and a stress, if not by the means. Curves start at zero if the initial state is
+    unloaded, else with the first step."""
     if not names:
         raise PlotError(f"{title}: the run has no fractures")
 
     def local(name, key):
-        return np.array([step["fractures"][name][key]["local"] for step in steps])
+        means = np.array([step["fractures"][name][key]["local"] for step in steps])
+        return np.concatenate([0 * means[:1], means]) if unloaded else means
 
     means = {name: (local(name, "mean_jump"), local(name, "mean_traction")) for name in names}
     length = max(length, *(np.max(np.abs(jump)) for jump, _ in means.values()))
     stress = max(stress, *(np.max(np.abs(traction)) for _, traction in means.values()))
-    shears, normals = {}, {}
+    shears, normals, dilations = {}, {}, {}
     for name, (jump, traction) in means.items():
         along = main_direction(jump[:, 1:])
         shears[name] = without_noise(jump[:, 1:] @ along, length), without_noise(traction[:, 1:] @ along, stress)
         normals[name] = without_noise(jump[:, 0], length), without_noise(traction[:, 0], stress)
+        dilations[name] = shears[name][0], normals[name][0]
 
     names = sorted(names, key=natural)
     shown = [names[k] for k in foremost([np.max(np.abs(shears[name][0])) for name in names], MOST_CURVES)]
-    figure, axes = plt.subplots(1, 2, figsize=(7.4 if len(names) == 1 else 9, max(3.3, 0.17 * len(shown) + 0.8)))
+    figure, axes = plt.subplots(1, 3, figsize=(9.6 if len(names) == 1 else 11, max(3.3, 0.17 * len(shown) + 0.8)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
-    for ax, kind, curves in zip(axes, (("tangential jump", "shear traction"), ("normal jump", "normal traction")),
-                                (shears, normals)):
+    kinds = (("tangential jump", "shear traction", "Pa"), ("normal jump", "normal traction", "Pa"), ("tangential jump", "normal jump", "m"))
+    for ax, kind, curves in zip(axes, kinds, (shears, normals, dilations)):
         jump = Quantity("mean " + kind[0], "m", *(c[0] for c in curves.values()))
-        traction = Quantity("mean " + kind[1], "Pa", *(c[1] for c in curves.values()))
+        traction = Quantity("mean " + kind[1], kind[2], *(c[1] for c in curves.values()))
         for name, (x, y) in curves.items():
             if name not in shown:
                 ax.plot(jump(x), traction(y), color=FAINT, linewidth=0.5, zorder=1)
@@ -109,10 +119,11 @@ def of_fractures(steps, names, title, length=0, stress=0):
             curve(ax, *(quantity(values) for quantity, values in zip((jump, traction), curves[name])), look(k)["color"], name, line=look(k)["linestyle"])
         ax.set(xlabel=jump.label, ylabel=traction.label)
         give_room(ax)
-    mark_legend(figure, states=False)
+    mark_legend(figure, states=False, first="initial state" if unloaded else "first step")
     axes[0].set_title("shear")
+    axes[2].set_title("dilation and closure")
     axes[1].set_title("normal, compression negative")
     if len(names) > 1:
         others = [plt.Line2D([], [], color=FAINT, linewidth=0.5, label=f"{len(names) - len(shown)} others")] if len(shown) < len(names) else []
-        axes[1].legend(handles=[*axes[1].get_legend_handles_labels()[0], *others], loc="upper left", bbox_to_anchor=(1, 1), handlelength=3)
+        axes[2].legend(handles=[*axes[2].get_legend_handles_labels()[0], *others], loc="upper left", bbox_to_anchor=(1, 1), handlelength=3)
     return figure

@@ -3,7 +3,7 @@ import numpy as np
 import orientations
 import read
 from bulk import rim
-from fractures import scales, traces_of
+from fractures import effective, scales, traces_of
 from matplotlib import patheffects
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
@@ -24,12 +24,13 @@ def slip_tendency(data, stress):
 def panels(data, length, stress):
     """(values, norm, colours, label) of each map; length and stress measure round-off."""
     tendency = np.minimum(slip_tendency(data, stress), LARGEST_TENDENCY)
+    ratio = "shear traction / " + effective(data) + "normal compression (-)"
     colours = plt.get_cmap("plasma").with_extremes(bad=STATE_COLOURS(0))
-    yield tendency, limits(tendency[~np.isnan(tendency)]), colours, "shear traction / normal compression (-)"
+    yield tendency, limits(tendency[~np.isnan(tendency)]), colours, ratio
     for name, title, palette in (("slip", "slip", "YlOrRd"), ("opening", "opening, normal jump", "YlGnBu")):
         values = without_noise(data[name], length)
         quantity, signed = Quantity(title, "m", values), np.min(values) < 0
-        yield quantity(values), limits(quantity(values), signed), plt.get_cmap("coolwarm" if signed else palette), quantity.label
+        yield quantity(values), limits(quantity(values), signed, clip=True), plt.get_cmap("coolwarm" if signed else palette), quantity.label
 
 
 def planes(surface, values):
@@ -82,14 +83,26 @@ def draw_lines(ax, surface, outline, values, norm, colours):
     ax.set(xlabel="x (m)", ylabel="y (m)")
 
 
+def name_beside(ax, surface, trace, others):
+    """The name of a trace, along it where there is most room beside the other names."""
+    ends = np.array([surface.points[surface.polygons[face][:2]][:, :2].mean(axis=0) for face in trace.faces])
+    taken = np.array([text.get_position() for text in others]).reshape(-1, 2)
+    places = ends[np.unique(np.linspace(0, len(ends) - 1, 9).round().astype(int))]
+    room = [min(np.linalg.norm(taken - place, axis=1), default=1) for place in places]
+    middle = len(places) // 2
+    k = middle if not len(taken) or room[middle] > 0.15 * np.ptp(surface.points[:, :2]) else int(np.argmax(room))
+    text = ax.text(*places[k], trace.name, fontsize=6, ha="center", va="center", zorder=6)
+    text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
+    return text
+
+
 def write_names(ax, surface, names):
-    """At traces that fractures.png shows in colour, where it has several of a fracture."""
+    """At traces that fractures.png shows in colour."""
+    texts = []
     for number in sorted(set(surface.cell_data["fracture"].astype(int))):
         traces = traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}")
-        for trace in [trace for trace in traces if len(traces) > 1 and trace.colour != FAINT]:
-            at = np.mean(surface.points[surface.polygons[trace.faces[len(trace.faces) // 2]][:2]], axis=0)
-            text = ax.text(*at[:2], trace.name, fontsize=6, ha="center", va="center", zorder=6)
-            text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
+        for trace in [trace for trace in traces if trace.colour != FAINT]:
+            texts.append(name_beside(ax, surface, trace, texts))
 
 
 def of_step(rock, joints, names, title):

@@ -1,5 +1,6 @@
 """Directions of fractures: a rose diagram of strikes in 2D, poles in a stereonet in 3D."""
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 
 def strikes(lines):
@@ -25,23 +26,27 @@ def poles(polygons):
 
 def draw_rose(ax, sets):
     """Bars of 10 degrees as long as their share of the length of all fractures, stacked: (colour, lines) of each part."""
-    sides = np.arange(0, 361, 10)
+    sides = np.arange(-5, 356, 10)  # so that directions along axes are in the middle of a bar
     total = sum(strikes(lines)[1].sum() for _, lines in sets)
     base = np.zeros(36)
     for colour, lines in sets:
         strike, length = strikes(lines)
-        both = np.concatenate([strike, strike + 180])
-        share = np.histogram(both, sides, weights=np.tile(length, 2))[0] / total
+        both = (np.concatenate([strike, strike + 180]) + 5) % 360 - 5
+        share = 100 * np.histogram(both, sides, weights=np.tile(length, 2))[0] / total
         ax.bar(np.radians(sides[:-1] + 5), share, width=np.radians(10), bottom=base, color=colour, edgecolor="white", linewidth=0.4)
         base += share
-    ax.set_title("length by strike", fontsize=9)
+    ax.yaxis.set_major_locator(MaxNLocator(3, prune="lower"))
+    ax.yaxis.set_major_formatter("{x:g} %")
+    # the numbers go where there are the shortest bars
+    ax.set_rlabel_position(min(np.arange(22.5, 360, 45), key=lambda a: base[np.abs((sides[:-1] + 5 - a + 180) % 360 - 180) < 15].sum()))
+    ax.set_title("share of the length by direction", fontsize=9)
 
 
 def draw_stereonet(ax, sets):
     """Poles of planes: (colour, polygons) of each part."""
     for colour, polygons in sets:
         trend, radius = poles(polygons)
-        ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="white", markeredgewidth=0.4)
+        ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="white", markeredgewidth=0.4, clip_on=False, zorder=5)
     ax.set_ylim(0, 1)
     ax.set_yticks([])
     ax.set_title("poles, lower hemisphere, equal areas", fontsize=9)
@@ -52,5 +57,5 @@ def draw(ax, dim, sets):
     ax.set_theta_zero_location("N")
     ax.set_theta_direction(-1)
     (draw_rose if dim == 2 else draw_stereonet)(ax, sets)
-    ax.set_xticks(np.radians([0, 90, 180, 270]), ["N", "E", "S", "W"])
+    ax.set_xticks(np.radians([0, 90, 180, 270]), ["y", "x", "−y", "−x"] if dim == 2 else ["N", "E", "S", "W"])
     ax.tick_params(labelsize=8)

@@ -42,6 +42,26 @@ def results(directory):
     return content
 
 
+def scene(directory):
+    """The sections and entries (texts) of a run's effective_input.xml, as dictionaries; none if there is no such file."""
+    def section(node):
+        return {child.get("name"): section(child) if child.tag == "ParameterList" else child.get("value") for child in node}
+    path = Path(directory) / "effective_input.xml"
+    try:
+        return section(xml.parse(path).getroot()) if path.is_file() else {}
+    except xml.ParseError as error:
+        raise PlotError(f"{path}: is no XML ({error})") from None
+
+
+def entries(section, name):
+    """The values of all entries of a name that are not empty, in a section and those in it."""
+    for key, value in section.items():
+        if isinstance(value, dict):
+            yield from entries(value, name)
+        elif key == name and value not in ("", "{}"):
+            yield value
+
+
 def written_steps(directory, kind):
     """(time, file) of each step that DIRECTORY/KIND.pvd lists; none if there is no such file."""
     return [(float(entry.get("timestep")), file) for entry, file in listed(Path(directory) / f"{kind}.pvd")]

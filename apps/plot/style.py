@@ -29,13 +29,17 @@ plt.rcParams.update({
 
 PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
             "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")],
-            "K": [(1, "K")]}
+            "K": [(1, "K")],
+            "m³": [(1, "m³"), (1e-3, "l")],
+            "s": [(86400, "d"), (3600, "h"), (60, "min"), (1, "s")]}
+LEAST_TIMES = 2  # a time is at least so many of its unit
 
 
 def unit(largest, base):
-    """(factor, name) of the unit in which `largest`, in m, Pa or K, is a number that is easily read."""
+    """(factor, name) of the unit in which `largest`, in one of the units above, is a number that is easily read."""
+    least = LEAST_TIMES if base == "s" else 0.5
     for factor, name in PREFIXES[base]:
-        if largest >= 0.5 * factor:
+        if largest >= least * factor:
             return factor, name
     return 1, base
 
@@ -50,6 +54,33 @@ class Quantity:
 
     def __call__(self, values):
         return np.asarray(values) / self.factor
+
+
+def when(time, wanted=None):
+    """A time in words, in the unit (factor, name) that is wanted or in a readable one."""
+    factor, name = wanted or unit(abs(time), "s")
+    return f"t = {time / factor:.5g} {name}"
+
+
+def panels_of_plane(n, points, width=10.5):
+    """A figure with n panels that show something of the form of the points, beside or above each other, whatever is larger;
+    the axes, and where colour bars go."""
+    extent = np.ptp(points[:, :2], axis=0)
+    form = max(extent[1], 1e-9) / max(extent[0], 1e-9)
+    beside = min(width / n - 1.2, 8.4 / form) > min(width - 3, (9 / n - 1) / form)
+    columns, rows = (n, 1) if beside else (1, n)
+    across = width / columns if beside else min(width - 3, (9 / n - 1) / form) + 2
+    thin = not beside and form < 0.4
+    height = max((across - 1.2) * form, 0.3) + (1.3 if thin else 0.6)
+    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, figsize=(across * columns, rows * height + 0.4))
+    for ax in axes.flat:
+        ax.set_aspect("equal")
+        ax.grid(False)
+        ax.set(xlabel="x (m)", ylabel="y (m)")
+        ax.label_outer()
+        if form < 0.2:
+            ax.yaxis.set_major_locator(plt.MaxNLocator(2))
+    return figure, list(axes.flat), {"location": "bottom", "shrink": 0.5, "pad": 0.08, "aspect": 40} if thin else {}
 
 
 def look(k):
@@ -78,24 +109,40 @@ def without_noise(values, scale):
 
 
 class Range(Normalize):
-    """Ends of a colour bar; `single` is the value of a field that has no other, else None."""
+    """Ends of a colour bar; `single` is the value of a field that has no other, else None; `extend` says, as matplotlib
+    does, on which sides there are values beyond the ends."""
 
-    def __init__(self, low, high, single=None):
+    def __init__(self, low, high, single=None, extend="neither"):
         super().__init__(low, high)
-        self.single = single
+        self.single, self.extend = single, extend
 
 
-def limits(values, signed=False):
-    """Around zero if signed; a constant gets some room."""
-    low, high = (float(np.min(values)), float(np.max(values))) if np.size(values) else (0, 0)
+def clipped(values):
+    """The ends between which 98 % of the values lie, where the others would take half of the colours, and how a colour bar
+    shows that. Tips of fractures and wells have values without bound."""
+    low, high = float(np.min(values)), float(np.max(values))
+    inner = np.percentile(values, [1, 99])
+    if np.ptp(inner) > 0.5 * (high - low) or np.ptp(inner) <= NOISE * max(abs(low), abs(high)):
+        return low, high, "neither"
+    room = 0.05 * np.ptp(inner)
+    below, above = low < inner[0] - room, high > inner[1] + room
+    return (float(inner[0]) if below else low, float(inner[1]) if above else high,
+            {(True, True): "both", (True, False): "min", (False, True): "max"}[below, above])
+
+
+def limits(values, signed=False, clip=False):
+    """Around zero if signed; a constant gets some room. With clip without the outliers of `clipped`."""
+    low, high, extend = (float(np.min(values)), float(np.max(values)), "neither") if np.size(values) else (0, 0, "neither")
+    if clip and np.size(values):
+        low, high, extend = clipped(values)
     largest = max(abs(low), abs(high))
     single = 0.5 * (low + high) if high - low <= NOISE * largest else None
     if signed:
-        return Range(-(largest or 1), largest or 1, single)
+        return Range(-(largest or 1), largest or 1, single, extend)
     if high - low <= 1e-6 * largest:
         room = 0.05 * largest
         low, high = (0, 1) if largest == 0 else (low - room, high + room)
-    return Range(low, high, single)
+    return Range(low, high, single, extend)
 
 
 def give_room(ax):
@@ -109,7 +156,8 @@ def give_room(ax):
 
 def colour_bar(figure, ax, norm, colours, label, **where):
     """A bar beside the axes or where `location` says; of a field that is the same everywhere it shows just that value."""
-    bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
+    bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, extend=getattr(norm, "extend", "neither"),
+                          **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
     bar.set_label(label)
     single = getattr(norm, "single", None)
     bar.locator = plt.MaxNLocator(4 if "location" in where else 7) if single is None else plt.FixedLocator([single])
@@ -141,14 +189,15 @@ def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
     ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=edges, linewidths=0.3))
     low, high = np.min(np.concatenate(corners), axis=0), np.max(np.concatenate(corners), axis=0)
     flat = high - low < 1e-9 * np.max(high - low)
+    thin = high - low < 0.2 * np.max(high - low)  # where labels of several ticks would overlap
     room = 0.15 * flat * np.max(high - low)
-    for name, a, b, extra in zip("xyz", low, high, room):
+    for name, a, b, extra, one in zip("xyz", low, high, room, thin):
         axis = getattr(ax, f"{name}axis")
         getattr(ax, f"set_{name}lim")(a - extra, b + extra)
         axis.set_pane_color((1, 1, 1, 0))
-        axis.set_major_locator(plt.FixedLocator([a]) if extra else plt.MaxNLocator(3))
-        if extra:  # all in one plane
-            axis.set_major_formatter(f"{name} = {{x:.4g}} m")
+        axis.set_major_locator(plt.FixedLocator([0.5 * (a + b)]) if one else plt.MaxNLocator(3))
+        if one:
+            axis.set_major_formatter(plt.FixedFormatter([f"{name} = {a:.4g} m" if extra else f"{name} = {a:.4g}\nto {b:.4g} m"]))
         else:
             axis.set_label_text(f"{name} (m)")
         axis.labelpad = 0 if name == "z" else 3

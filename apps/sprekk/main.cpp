@@ -69,6 +69,8 @@ void declare(CLI::App& app, Arguments& arguments) {
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
         ->allow_extra_args(false);
   }
+  for (auto* command : {run, check})
+    command->add_flag("--strict", options.strict, "take warnings of the scene as errors");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");

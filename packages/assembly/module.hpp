@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -49,6 +50,7 @@ struct Reactions {
   std::string name = "";
   std::string moments = "";  ///< of forces: sum x cross f
   std::string regions = "";  ///< those of conditions in regions, by regions
+  std::string unit = "";     ///< of the sums
 };
 
 /// A field that a module adds to the problem. It becomes a block of the same name.
@@ -83,15 +85,24 @@ struct History {
   int n_components;
 };
 
+/// A number of a fracture that follows from the components of a mean or an integral over it; none: it has no meaning.
+struct Derived {
+  std::string name, unit;
+  std::function<std::optional<Real>(const std::vector<Real>&)> of;
+};
+
 /// What results.json tells of an output on fracture faces, of each fracture: its mean over the area, "mean_NAME", of
-/// vectors in it by the name of the frame; the largest value, "max_NAME"; or of a state the shares of the area in which
-/// it is 0, 1, ..., "fraction_CLASS".
+/// vectors in it by the name of the frame; the largest value, "max_NAME"; its integral over the area, "NAME", of an
+/// output that is no array of files; or of a state the area, and its shares, in which it is 0, 1, ..., "area_CLASS" and
+/// "fraction_CLASS".
 struct Summary {
-  enum Kind { none, mean, mean_and_max, fractions };
+  enum Kind { none, mean, mean_and_max, fractions, integral };
   Kind kind = none;
   std::string name = "";                  ///< spaces become underscores
   std::string frame = "";                 ///< of vectors
   std::vector<std::string> classes = {};  ///< of fractions
+  std::string unit = "";                  ///< of an integral
+  std::vector<Derived> derived = {};      ///< from the mean or the integral
 };
 
 /// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
@@ -117,6 +128,7 @@ struct Output {
 struct Total {
   std::vector<std::string> names;
   Real value;
+  std::string unit = "";
 };
 
 /// All that the framework needs to know to derive sparsity, ghost exchange, storage and output.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -84,6 +85,11 @@ class Section {
   /// A section of sections with names that the user chooses.
   template <class S>
   void named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning);
+  /// The same with entries beside them, which common(section, first) describes; `first` is what each struct is before
+  /// it is read.
+  template <class S, class Common>
+  void named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning,
+                      const Common& common);
   /// A section of expressions with names that the user chooses, which expressions_call() may compile.
   void named_expressions(Expression::Named& target, const std::string& name, const std::string& meaning);
   /// A section that is handed on as it is.
@@ -257,21 +263,34 @@ void Section::section(std::optional<S>& target, const std::string& name, const s
 
 template <class S>
 void Section::named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning) {
+  named_sections(target, name, meaning, [](Section&, S&) {});
+}
+
+template <class S, class Common>
+void Section::named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning,
+                             const Common& common) {
   names_.push_back(name);
   Section middle = child(name);
+  S first{};
   if (mode_ == Mode::document) {
-    S any_of_them{};
     middle.specification_.name = name;
-    middle.descend(any_of_them, "", nullptr, nullptr, meaning);
+    common(middle, first);
+    middle.descend(first, "", nullptr, nullptr, meaning);
     specification_.sections.push_back(std::move(middle.specification_));
   } else if (mode_ == Mode::write) {
     auto& output = output_->sublist(name);
+    middle.output_ = &output;
+    common(middle, first);
     for (auto& [key, value] : target) middle.descend(value, key, nullptr, &output.sublist(key), meaning);
   } else if (const auto* input = find_list(name)) {
     middle.input_ = input;
+    common(middle, first);
+    const auto beside = middle.names_;
     for (const auto& named_entry : *input) {
       const auto& key = named_entry.first;
-      if (const auto* list = middle.find_list(key)) middle.descend(target[key], key, list, nullptr, meaning);
+      if (std::find(beside.begin(), beside.end(), key) != beside.end()) continue;
+      const auto* list = middle.find_list(key);
+      if (list) middle.descend(target.emplace(key, first).first->second, key, list, nullptr, meaning);
     }
     middle.note_defects();
   }

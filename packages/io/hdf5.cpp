@@ -1,38 +1,10 @@
 #include "io/hdf5.hpp"
 
-#include "base/check.hpp"
-
-#include <hdf5.h>
+#include "io/hdf5_handle.hpp"
 
 namespace sprekk::io {
 
 namespace {
-
-/// An identifier of HDF5, closed in the end.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
-    SPREKK_CHECK(id >= 0, "HDF5: {} failed", what);
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-void check(herr_t status, const std::string& what) { SPREKK_CHECK(status >= 0, "HDF5: {} failed", what); }
-
-/// Access to files that are in memory only.
-hid_t in_memory() {
-  constexpr std::size_t increment = 1 << 20;  // byte
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_fapl_core(access, increment, false);
-  return access;
-}
 
 void write(hid_t group, const char* name, hid_t type, const void* data, hsize_t n) {
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "a data space");
@@ -64,12 +36,7 @@ std::string to_hdf5(const NamedVectors& vectors) {
     write(group, "numbers", H5T_NATIVE_LLONG, numbers.getRawPtr(), numbers.size());
     write(group, "values", H5T_NATIVE_DOUBLE, values.getRawPtr(), values.size());
   }
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "a file in memory");
-  const auto size = H5Fget_file_image(file, nullptr, 0);
-  check(size < 0 ? -1 : 0, "a file in memory");
-  std::string content(size, '\0');
-  check(H5Fget_file_image(file, content.data(), size) < 0 ? -1 : 0, "a file in memory");
-  return content;
+  return image_of(file);
 }
 
 void from_hdf5(const std::string& content, const std::string& name, std::map<std::string, NumberedValues>& values) {

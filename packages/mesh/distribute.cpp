@@ -63,6 +63,7 @@ class Distributor {
     mesh_.region_names = global_.region_names;
     mesh_.boundary_names = global_.boundary_names;
     mesh_.fracture_names = global_.fracture_names;
+    mesh_.single_fractures = global_.single_fractures;
     mesh_.n_global_nodes = global_.n_nodes();
     mesh_.n_global_cells = global_.n_cells();
     mesh_.n_pieces = pieces_.n();
@@ -249,6 +250,7 @@ class Distributor {
     Mesh::FractureFace face;
     face.id = id;
     face.fracture = global.fracture;
+    face.single = global.single;
     face.local_face = global.local_face;
     face.corners = corners_of(global_, id);
     face.area = norm(area);
@@ -296,13 +298,13 @@ template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
          cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
-         boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, tip,
-         enriched, enriched_id, n_owned_enriched, n_global_enriched, partition, facets] = mesh;
+         boundary_names, fracture_names, single_fractures, n_global_nodes, n_global_cells, n_global_fracture_faces,
+         n_pieces, tip, enriched, enriched_id, n_owned_enriched, n_global_enriched, partition, facets] = mesh;
   const auto put_all = [&](auto&... members) { (put(members), ...); };
   put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
           cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
-          boundary_names, fracture_names, n_global_nodes, n_global_cells, n_global_fracture_faces, n_pieces, tip,
-          enriched, enriched_id, n_owned_enriched, n_global_enriched, partition);
+          boundary_names, fracture_names, single_fractures, n_global_nodes, n_global_cells, n_global_fracture_faces,
+          n_pieces, tip, enriched, enriched_id, n_owned_enriched, n_global_enriched, partition);
 }
 
 class Packer {
@@ -321,6 +323,15 @@ class Packer {
   void operator()(const std::vector<std::string>& names) {
     (*this)(names.size());
     for (const auto& name : names) (*this)(std::vector<char>(name.begin(), name.end()));
+  }
+  void operator()(const std::vector<SingleFracture>& fractures) {
+    (*this)(fractures.size());
+    for (const auto& [name, set, properties] : fractures) {
+      std::vector<std::string> texts = {name};
+      for (const auto& [entry, value] : properties) texts.insert(texts.end(), {entry, value});
+      (*this)(texts);
+      (*this)(set);
+    }
   }
 
  private:
@@ -351,6 +362,16 @@ class Unpacker {
     for (auto& name : names) {
       name.resize(size());
       take(name.data(), name.size());
+    }
+  }
+  void operator()(std::vector<SingleFracture>& fractures) {
+    fractures.resize(size());
+    for (auto& [name, set, properties] : fractures) {
+      std::vector<std::string> texts;
+      (*this)(texts);
+      name = texts[0];
+      for (std::size_t k = 1; k < texts.size(); k += 2) properties[texts[k]] = texts[k + 1];
+      (*this)(set);
     }
   }
 

@@ -5,6 +5,7 @@
 #include "mesh/shape.hpp"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,21 @@ namespace sprekk::mesh {
 
 enum Side { minus = 0, plus = 1 };
 
+/// One fracture of a set: a trace, a polygon or an ellipse of a network. All faces that a scene calls by one name are a
+/// set; of a box, and of a file that does not tell more, each set is one fracture.
+struct SingleFracture {
+  std::string name;
+  int set;                                             ///< index into fracture_names
+  std::map<std::string, std::string> properties = {};  ///< entries of a material that it has of its own, as texts
+};
+
 /// The whole mesh, the same on every rank that holds it. Nodes are already split along the fractures.
 struct GlobalMesh {
   struct FractureFace {
     int fracture;                     ///< index into fracture_names
     std::array<GlobalIndex, 2> cell;  ///< the cell on side minus, plus; the normal points from minus to plus
     std::array<int, 2> local_face;    ///< the face's number in that cell
+    int single = 0;                   ///< index into single_fractures
   };
   struct BoundaryFace {
     int boundary;  ///< index into boundary_names
@@ -35,6 +45,7 @@ struct GlobalMesh {
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
+  std::vector<SingleFracture> single_fractures = {};  ///< those of a set follow each other, sets in their order
   /// [node] 1 for crack tips around which displacements follow the root of the distance: by further unknowns at order 1
   /// (see mark_tips()), by quarter points at order 2; empty: nowhere.
   std::vector<char> tip = {};
@@ -94,6 +105,7 @@ struct Mesh {
   struct FractureFace {
     GlobalIndex id;                  ///< global number
     int fracture;                    ///< index into fracture_names
+    int single;                      ///< index into single_fractures
     std::array<LocalIndex, 2> cell;  ///< local cell on side minus, plus; -1 where that cell is not on this rank
     std::array<int, 2> local_face;   ///< number of the face in that cell
     std::array<std::array<LocalIndex, max_face_nodes>, 2>
@@ -126,6 +138,7 @@ struct Mesh {
   std::vector<FractureFace> fracture_faces;
   std::vector<BoundaryFace> boundary_faces;  ///< of all local cells
   std::vector<std::string> region_names, boundary_names, fracture_names;
+  std::vector<SingleFracture> single_fractures;  ///< all of the whole mesh, on every rank
   GlobalIndex n_global_nodes = 0, n_global_cells = 0, n_global_fracture_faces = 0;
   int n_pieces = 0;       ///< see find_pieces()
   std::vector<char> tip;  ///< [node] see GlobalMesh; empty: nowhere

@@ -58,6 +58,8 @@ class Parser {
       read_format();
     } else if (name == "PhysicalNames") {
       read_names();
+    } else if (name == "Fractures") {
+      read_fractures();
     } else if (name == "Entities" && is_version_4_) {
       read_entities();
     } else if (name == "Nodes") {
@@ -106,6 +108,35 @@ class Parser {
         in_.fail(fmt::format("physical group {}: its name {} is not UTF-8", number, printable(quoted)));
       mesh_.group_names[{static_cast<int>(dim), static_cast<int>(number)}] = quoted.substr(1, quoted.size() - 2);
     }
+  }
+
+  void read_fractures() {
+    const auto n = in_.text_integer("the number of fractures");
+    for (GlobalIndex i = 0; i < n; ++i) {
+      MshFile::Fracture fracture;
+      fracture.group = static_cast<int>(in_.text_integer("the number of a physical group"));
+      fracture.entity = static_cast<int>(in_.text_integer("the number of an entity"));
+      const auto texts = quoted_texts(in_.line());
+      if (texts.size() % 2 == 0)
+        in_.fail(fmt::format("fracture {}: has {} texts in quotes, expected its name and pairs of entries and values",
+                             i + 1, texts.size()));
+      fracture.name = texts[0];
+      for (std::size_t k = 1; k < texts.size(); k += 2) fracture.properties[texts[k]] = texts[k + 1];
+      mesh_.fractures.push_back(std::move(fracture));
+    }
+  }
+
+  /// The texts between quotation marks, which are UTF-8.
+  std::vector<std::string> quoted_texts(std::string_view line) const {
+    if (base::where_not_utf8(line)) in_.fail(fmt::format("{} is not UTF-8", printable(line)));
+    std::vector<std::string> texts;
+    for (auto begin = line.find('"'); begin != line.npos;) {
+      const auto end = line.find('"', begin + 1);
+      if (end == line.npos) in_.fail(fmt::format("{} lacks a quotation mark", printable(line)));
+      texts.emplace_back(line.substr(begin + 1, end - begin - 1));
+      begin = line.find('"', end + 1);
+    }
+    return texts;
   }
 
   void read_entities() {
@@ -195,9 +226,9 @@ class Parser {
                     msh_element_name(number)));
   }
 
-  void add_element(const MshElementType* type, GlobalIndex tag, int groups) {
+  void add_element(const MshElementType* type, GlobalIndex tag, int groups, int entity) {
     in_.about("element", tag);
-    mesh_.elements.push_back({type, tag, groups, mesh_.element_nodes.size()});
+    mesh_.elements.push_back({type, tag, groups, entity, mesh_.element_nodes.size()});
     for (int k = 0; k < type->n_nodes; ++k) mesh_.element_nodes.push_back(in_.tag("the number of a node"));
   }
 
@@ -212,14 +243,15 @@ class Parser {
         in_.fail(fmt::format("has a block of {} elements where {} of {} are left", n_here, n - i, n));
       for (GlobalIndex k = 0; k < n_here; ++k) {
         if (in_.is_binary()) tag = in_.tag("the number of an element");
-        int group = 0;
+        int group = 0, entity = 0;
         for (GlobalIndex t = 0; t < n_tags; ++t) {
           const int value = in_.integer("a tag of an element");
           if (t == 0) group = std::abs(value);
+          if (t == 1) entity = value;
         }
         const auto [set, is_new] = set_of_group_.emplace(group, static_cast<int>(mesh_.group_sets.size()));
         if (is_new) add_set(group == 0 ? std::vector<int>{} : std::vector<int>{group});
-        add_element(element_type(number, tag), tag, set->second);
+        add_element(element_type(number, tag), tag, set->second, entity);
       }
       i += n_here;
     }
@@ -238,7 +270,7 @@ class Parser {
         const auto* type = element_type(number, tag);
         if (type->dim != dim)
           in_.fail(fmt::format("element {} is a {} in an entity of dimension {}", tag, type->name, dim));
-        add_element(type, tag, groups);
+        add_element(type, tag, groups, entity);
       }
     }
     check_total("elements", n_all, mesh_.elements.size() - n_before);

@@ -33,9 +33,19 @@ struct MshFile {
     const MshElementType* type;
     GlobalIndex tag;         ///< gmsh's number
     int groups;              ///< index into group_sets
+    int entity;              ///< number of the geometrical entity; 0: not told
     std::size_t first_node;  ///< in element_nodes
   };
+  /// A line of the section $Fractures, which Sprekk's own meshes of networks have and gmsh passes over: `group entity
+  /// "name"`, then pairs of `"entry" "value"` that the fracture has of its own.
+  struct Fracture {
+    int group;   ///< number of the physical group, the set
+    int entity;  ///< of the elements that are its faces; several fractures of one name are one
+    std::string name;
+    std::map<std::string, std::string> properties;
+  };
   std::map<std::pair<int, int>, std::string> group_names;  ///< by dimension and number
+  std::vector<Fracture> fractures;
   std::vector<GlobalIndex> node_tags;
   std::vector<Vector> points;  ///< [node]
   std::vector<Element> elements;

@@ -36,6 +36,7 @@ class Builder {
     neighbour_ = neighbours();
     check_faces();
     name_fractures();
+    name_single_fractures();
     add_faces();
     set_order();
     std::vector<Orientation> orientations;
@@ -58,6 +59,8 @@ class Builder {
   std::vector<GlobalIndex> neighbour_;                ///< see face_neighbours()
   std::vector<MarkedFace> marked_;                    ///< of the fractures
   std::unordered_map<GlobalIndex, int> fracture_at_;  ///< [cell face]
+  std::map<std::pair<int, int>, int> single_of_entity_;  ///< by group and entity; index into single_fractures
+  std::vector<int> whole_;  ///< [fracture] the single fracture that is all of it; -1: it has several
   std::vector<std::string> inside_;                   ///< groups with faces inside of the mesh that are no fractures
   std::string first_inside_;                          ///< an element of the first of them
 
@@ -286,6 +289,36 @@ class Builder {
     }
   }
 
+  /// What the file tells of fractures in sets; of a set that it tells nothing of, the set itself. Without any such line
+  /// that is left to split().
+  void name_single_fractures() {
+    if (msh_.fractures.empty()) return;
+    const int dim = mesh_.dim() - 1;
+    auto& singles = mesh_.single_fractures;
+    for (int set = 0; set < static_cast<int>(mesh_.fracture_names.size()); ++set) {
+      std::map<std::string, int> known;  // of the set
+      for (const auto& fracture : msh_.fractures) {
+        if (msh_.group_name(dim, fracture.group) != mesh_.fracture_names[set]) continue;
+        const auto [found, is_new] = known.emplace(fracture.name, static_cast<int>(singles.size()));
+        if (is_new) singles.push_back({fracture.name, set, fracture.properties});
+        single_of_entity_[{fracture.group, fracture.entity}] = found->second;
+      }
+      whole_.push_back(known.empty() ? static_cast<int>(singles.size()) : -1);
+      if (known.empty()) singles.push_back({mesh_.fracture_names[set], set});
+    }
+  }
+
+  int single_of(const Element& element, int set) const {
+    if (msh_.fractures.empty()) return set;
+    for (int group : msh_.group_sets[element.groups])
+      if (const auto found = single_of_entity_.find({group, element.entity}); found != single_of_entity_.end())
+        return found->second;
+    if (whole_[set] < 0)
+      fail("element {}: its entity {} is no fracture of the set \"{}\" in $Fractures", element.tag, element.entity,
+           mesh_.fracture_names[set]);
+    return whole_[set];
+  }
+
   std::optional<SortedCorners> corners(const Element& element) const {
     SortedCorners key{-1, -1, -1, -1};
     for (int k = 0; k < element.type->n_corners; ++k) {
@@ -359,7 +392,7 @@ class Builder {
     if (!is_new)
       fail("element {} at {} is in the fractures \"{}\" and \"{}\"; a face belongs to one fracture", element.tag,
            where(), fractures[known->second], name);
-    marked_.push_back({index, cell, local_face});
+    marked_.push_back({index, cell, local_face, single_of(element, index)});
   }
 
   void set_order() {

@@ -117,6 +117,7 @@ class Divider {
     r.region_names = mesh_.region_names;
     r.boundary_names = mesh_.boundary_names;
     r.fracture_names = mesh_.fracture_names;
+    r.single_fractures = mesh_.single_fractures;
     r.n_owned_nodes = mesh_.n_owned_nodes;
     r.n_owned_cells = mesh_.n_owned_cells * cells;
     r.n_owned_fracture_faces = mesh_.n_owned_fracture_faces * faces;
@@ -172,6 +173,7 @@ class Divider {
     Mesh::FractureFace face;
     face.id = parent.id * division_.n_parts() + k;
     face.fracture = parent.fracture;
+    face.single = parent.single;
     face.cell = cells;
     face.corners.fill(-1);
     for (int i = 0; i < n_face_corners(shape_); ++i) face.corners[i] = point(parent, parts[minus]->nodes[i]);

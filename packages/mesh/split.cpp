@@ -33,7 +33,8 @@ FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& m
     has_face[mark.fracture] = true;
     faces.push_back({mark.fracture,
                      {mark.cell, other / faces_per_cell},
-                     {mark.local_face, static_cast<int>(other % faces_per_cell)}});
+                     {mark.local_face, static_cast<int>(other % faces_per_cell)},
+                     mesh.single_fractures.empty() ? mark.fracture : mark.single});
   }
   for (std::size_t f = 0; f < has_face.size(); ++f)
     SPREKK_CHECK(has_face[f], "fracture \"{}\": has no interior face", mesh.fracture_names[f]);
@@ -93,6 +94,9 @@ GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked, const s
   orient(mesh, faces, orientations);
   split_nodes(mesh, faces, neighbour);
   mesh.fracture_faces = std::move(faces);
+  if (mesh.single_fractures.empty())
+    for (const auto& name : mesh.fracture_names)
+      mesh.single_fractures.push_back({name, static_cast<int>(mesh.single_fractures.size())});
   return mesh;
 }
 

@@ -13,6 +13,7 @@ struct MarkedFace {
   int fracture;  ///< index into fracture_names
   GlobalIndex cell;
   int local_face;
+  int single = 0;  ///< index into single_fractures
 };
 
 /// What the user says about a fracture's normal.
@@ -27,9 +28,10 @@ struct Orientation {
 /// node: the set of the lowest cell keeps the old number, copies are appended. So tips stay whole, a crossing of two
 /// fractures has four copies, a T three. parent_node keeps the old number of each node.
 ///
-/// `mesh` has conforming cells of positive volume, fracture_names, and no fracture faces. fracture_faces come in the
-/// order of `marked`, without repetitions, oriented by orient(). `orientations` is empty or has one entry per fracture.
-/// Throws an Error if a face belongs to two fractures or lies on the boundary, or if a fracture has no face.
+/// `mesh` has conforming cells of positive volume, fracture_names, and no fracture faces; without single_fractures,
+/// each fracture becomes one. fracture_faces come in the order of `marked`, without repetitions, oriented by orient().
+/// `orientations` is empty or has one entry per fracture. Throws an Error if a face belongs to two fractures or lies on
+/// the boundary, or if a fracture has no face.
 GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked,
                  const std::vector<Orientation>& orientations = {});
 

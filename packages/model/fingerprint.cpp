@@ -91,6 +91,8 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
     const std::string& name = named_entry.first;
     if (!is_free(name) && sections.isSublist(name)) result[name] = base::to_xml(sections.sublist(name));
   }
+  for (const auto& [name, set, properties] : system.mesh().single_fractures)
+    if (!properties.empty()) result["properties of fractures"][name] = properties;
   for (const auto& module : system.modules())
     result["module \"" + module->name() + "\""].push_back(module->fingerprint());
   for (const auto& [name, table] : scene.tables)

@@ -89,6 +89,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   }
   scene_ = std::move(draft.value);
   check_ends(scene_, *mesh);
+  base::collectively(*comm, [&] { scene_.own_joints = physics::own_joints(scene_, *mesh); });
   std::vector<std::unique_ptr<assembly::Module>> modules;
   base::collectively(*comm, [&] {
     modules = make_modules(scene_, *mesh);

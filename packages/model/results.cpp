@@ -1,13 +1,18 @@
 #include "model/results.hpp"
 
 #include "base/over_ranks.hpp"
+#include "base/units.hpp"
 #include "base/xml.hpp"
 #include "io/json.hpp"
+#include "model/fracture_table.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 namespace sprekk::model {
 
@@ -26,24 +31,30 @@ void remove_unsettled(const std::string& directory) {
     std::filesystem::remove_all(directory + '/' + unsettled_name + end, ignored);
 }
 
+/// Removes what an earlier run left of tables; silent. Not collective.
+void remove_tables(const std::string& directory) {
+  std::error_code ignored;
+  for (const char* name : {"/fractures.csv", "/probes.h5", "/probes"})
+    std::filesystem::remove_all(directory + name, ignored);
+}
+
 std::string with_underscores(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
 
-/// Per-fracture sums over faces and maxima of one quantity.
-struct Statistics {
-  std::vector<Real> sum, maximum;  ///< [fracture * n_components + component]
-};
-
 /// The owned fracture faces with what is known of them.
 io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
   auto piece = io::fracture_piece(mesh);
-  std::vector<Real> number;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) number.push_back(mesh.fracture_faces[f].fracture);
+  std::vector<Real> number, single;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    number.push_back(mesh.fracture_faces[f].fracture);
+    single.push_back(mesh.fracture_faces[f].single);
+  }
   piece.cell_data.push_back(io::data_array("fracture", 1, number));
+  piece.cell_data.push_back(io::data_array("single fracture", 1, single));
   for (const auto& output : outputs)
-    if (output.entity == fields::Entity::fracture_face)
+    if (output.entity == fields::Entity::fracture_face && output.summary.kind != Summary::integral)
       piece.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
   return piece;
 }
@@ -58,20 +69,15 @@ std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractu
   return blocks;
 }
 
-Statistics statistics(const mesh::Mesh& mesh, const OutputField& output) {
-  const int n = output.n_components;
-  Statistics s;
-  s.sum.assign(mesh.fracture_names.size() * n, 0);
-  s.maximum.assign(s.sum.size(), -std::numeric_limits<Real>::max());
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-    for (int c = 0; c < n; ++c) {
-      const auto& face = mesh.fracture_faces[f];
-      s.sum[face.fracture * n + c] += face.area * output.values[f * n + c];
-      s.maximum[face.fracture * n + c] = std::max(s.maximum[face.fracture * n + c], output.values[f * n + c]);
-    }
-  s.sum = base::sum_over_ranks(*mesh.comm, s.sum);
-  s.maximum = base::max_over_ranks(*mesh.comm, s.maximum);
-  return s;
+/// The values of probes that a journal holds, where null stands for no number.
+std::vector<std::vector<Real>> values_of(const json& tables) {
+  std::vector<std::vector<Real>> all;
+  for (const auto& table : tables) {
+    auto& values = all.emplace_back();
+    for (const auto& value : table)
+      values.push_back(value.is_null() ? std::numeric_limits<Real>::quiet_NaN() : value.get<Real>());
+  }
+  return all;
 }
 
 /// Faces of the three classes of a state.
@@ -97,38 +103,6 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
                    {{"status", "failed"}, {"reason", reason}, {"ranks", comm.getSize()}, {"steps", json::array()}});
   } catch (const Error&) {  // the reason is told in any case
   }
-}
-
-json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
-  json summary = json::object();
-  const std::size_t n = mesh.fracture_names.size();
-  if (n == 0) return summary;
-  OutputField ones{"area", "m^2", fields::Entity::fracture_face, 1};
-  ones.values.assign(mesh.n_owned_fracture_faces, 1);
-  const auto area = statistics(mesh, ones).sum;
-  const auto each = [&](const auto& set) {
-    for (std::size_t k = 0; k < n; ++k) set(k, summary[mesh.fracture_names[k]]);
-  };
-  each([&](std::size_t k, json& j) { j["area"] = area[k]; });
-  for (const auto& output : outputs) {
-    const auto& told = output.summary;
-    for (std::size_t c = 0; c < told.classes.size(); ++c) {
-      OutputField is = ones;
-      for (std::size_t f = 0; f < is.values.size(); ++f) is.values[f] = output.values[f] == static_cast<Real>(c);
-      const auto sums = statistics(mesh, is).sum;
-      each([&](std::size_t k, json& j) { j["fraction_" + told.classes[c]] = sums[k] / area[k]; });
-    }
-    if (told.kind != Summary::mean && told.kind != Summary::mean_and_max) continue;
-    const auto s = statistics(mesh, output);
-    const auto name = with_underscores(told.name);
-    each([&](std::size_t k, json& j) {
-      if (told.frame.empty()) j["mean_" + name] = s.sum[k] / area[k];
-      for (int c = 0; c < output.n_components && !told.frame.empty(); ++c)
-        j["mean_" + name][told.frame].push_back(s.sum[k * output.n_components + c] / area[k]);
-      if (told.kind == Summary::mean_and_max) j["max_" + name] = s.maximum[k];
-    });
-  }
-  return summary;
 }
 
 json block_summary(const assembly::System& system) {
@@ -176,7 +150,7 @@ json block_summary(const assembly::System& system) {
 }
 
 Results::Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier)
-    : model_(model), directory_(std::move(directory)) {
+    : model_(model), directory_(std::move(directory)), probes_(model) {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
   Scene scene = model_.scene();
@@ -185,6 +159,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
     if (comm->getRank() != 0) return;
     io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
     remove_unsettled(directory_);
+    if (!earlier) remove_tables(directory_);
   });
   if (model_.scene().output.vtu) {
     std::vector<Real> written;
@@ -213,9 +188,16 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
   const auto& solver = model_.newton().linear().solver();
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
+  if (!mesh.fracture_names.empty()) json_["single_fractures"] = described_singles(mesh);
+  const auto& unit = model_.scene().output.time_unit;
+  json_["time_unit"] = {{"name", unit}, {"seconds", base::value_in("s", {1, unit})}};
   json_["steps"] = json::array();
   if (earlier) {
-    for (const auto& entry : earlier->journal) json_["steps"].push_back(entry.at("step"));
+    for (const auto& entry : earlier->journal) {
+      json_["steps"].push_back(entry.at("step"));
+      if (!probes_.empty() && entry.contains("probes"))
+        earlier_rows_.push_back({entry["step"]["time"], values_of(entry["probes"])});
+    }
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
@@ -237,6 +219,7 @@ std::vector<json> Results::journal(int begin) const {
     const bool written =
         bulk_ && std::binary_search(bulk_->times().begin(), bulk_->times().end(), step["time"].get<Real>());
     entries.push_back({{"step", step}, {"written", written}});
+    if (series_) entries.back()["probes"] = series_->rows()[k].values;
   }
   return entries;
 }
@@ -263,8 +246,9 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
     for (const auto& warning : physics.warnings_of_state(model_.setting(), outputs))
       if (told_.insert(warning).second) warnings_.push_back(warning);
   });
-  step["fractures"] = fracture_summary(model_.mesh(), outputs);
+  add_fractures(step, outputs);
   step.update(reactions());
+  add_probes(step, outputs);
   if (estimator_) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
@@ -278,8 +262,33 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   return counts_of_classes(*model_.mesh().comm, outputs);
 }
 
+/// The numbers of sets and, where there are any, of single fractures.
+void Results::add_fractures(json& step, const std::vector<OutputField>& outputs) {
+  const auto& mesh = model_.mesh();
+  step["fractures"] = json::object();
+  if (mesh.fracture_names.empty()) return;
+  sets_ = fracture_table(mesh, outputs, Grouping::sets);
+  const bool same = mesh.single_fractures.size() == mesh.fracture_names.size();
+  singles_ = same ? sets_ : fracture_table(mesh, outputs, Grouping::singles);
+  step["fractures"] = by_sets(mesh, sets_);
+  step["single_fractures"] = by_singles(singles_);
+  json_["units"] = units(sets_);
+}
+
+void Results::add_probes(const json& step, const std::vector<OutputField>& outputs) {
+  if (probes_.empty()) return;
+  const auto scope = model_.timers().scope("probes");
+  auto row = probes_.row(step.at("time"), {outputs, sets_, singles_, step, units_});
+  if (!series_) {
+    const std::string unit = json_["time_unit"]["name"];
+    series_.emplace(model_.system().comm(), directory_, probes_.tables(),
+                    io::TimeUnit{unit, json_["time_unit"]["seconds"]}, std::move(earlier_rows_));
+  }
+  series_->add(std::move(row));
+}
+
 /// Those of conditions, by boundaries or regions, and what modules have to tell.
-json Results::reactions() const {
+json Results::reactions() {
   json all = {{"reactions", json::object()}, {"reaction_moments", json::object()}};  // in any case
   const auto add = [](json& sum, Real value) { sum = value + (sum.is_null() ? 0 : sum.get<Real>()); };
   const auto add_all = [&](json& sums, const std::vector<Real>& values) {
@@ -288,7 +297,8 @@ json Results::reactions() const {
   const auto& mesh = model_.mesh();
   for (const auto& reaction : model_.system().reactions(model_.state())) {
     const bool in_region = reaction.region >= 0;
-    const auto& [name, moments, regions] = reaction.called;
+    const auto& [name, moments, regions, unit] = reaction.called;
+    units_.insert({{name, unit}, {moments, unit + "*m"}, {regions, unit}});
     const auto& place = in_region ? mesh.region_names[reaction.region]
                                   : model_.scene().boundary_conditions.at(reaction.condition).boundary;
     if (const auto& called = in_region ? regions : name; called.empty())
@@ -305,6 +315,7 @@ json Results::reactions() const {
     json* place = &all;
     for (const auto& name : total.names) place = &(*place)[name];
     *place = total.value + (place->is_null() ? 0 : place->get<Real>());
+    units_.insert({fmt::format("{}", fmt::join(total.names, " > ")), total.unit});
   }
   return all;
 }
@@ -363,8 +374,17 @@ void Results::write_json() {
     json_["timing"][with_underscores(phase.name)] = {
         {"seconds", phase.seconds}, {"cpu_seconds", phase.cpu_seconds}, {"count", phase.count}};
   io::write_json(comm, directory_ + "/results.json", json_);
+  if (series_) series_->write_all();
+  if (singles_.empty()) return;
+  base::collectively(comm, [&] {
+    if (comm.getRank() == 0) io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
+  });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();
+}
+
+std::vector<std::string> Results::fracture_digest() const {
+  return singles_.empty() ? std::vector<std::string>() : digest(json_["single_fractures"], singles_);
 }
 
 void Results::finish(const std::string& status, const std::string& reason) {

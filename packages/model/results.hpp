@@ -4,6 +4,7 @@
 #include "base/log.hpp"
 #include "io/vtu.hpp"
 #include "model/error_estimate.hpp"
+#include "model/probes.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -38,12 +39,16 @@ class Results {
   std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
   /// What may be wrong with the states added since the last call, each text once in the life of the results.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+  /// Which single fractures are in which state after the last step, a line for each state. Stored data.
+  std::vector<std::string> fracture_digest() const;
   /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
   /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
 
  private:
-  nlohmann::json reactions() const;
+  nlohmann::json reactions();
+  void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
+  void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
@@ -54,6 +59,11 @@ class Results {
   std::string directory_;
   std::optional<ErrorEstimator> estimator_;
   std::optional<io::VtuSeries> bulk_, fractures_;
+  Probes probes_;
+  std::vector<io::SeriesRow> earlier_rows_;     // of probes
+  std::optional<io::SeriesFiles> series_;       // from the first step on
+  std::vector<FractureColumn> sets_, singles_;  // of the last step
+  std::map<std::string, std::string> units_;    // of what reactions() gives
   nlohmann::json json_;
   int n_steps_ = 0, n_written_ = 0;
   std::set<std::string> told_;
@@ -64,9 +74,6 @@ class Results {
 /// Leaves a results.json that says why a run never began, or with `only_replace` only in place of one that is there;
 /// silent if it cannot be written. Collective.
 void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace);
-
-/// Area, fractions of states, means over the area and maxima of one step, by the names of the fractures. Collective.
-nlohmann::json fracture_summary(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs);
 
 /// Fields, blocks with their unknowns and bytes, and what is exchanged between ranks. Collective.
 nlohmann::json block_summary(const assembly::System& system);

@@ -8,7 +8,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
-#include "physics/comparison.hpp"
+#include "model/warnings.hpp"
 
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -100,7 +100,10 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
     return naming_file(options.scene, [&] {
       const Scene scene = scene_of(options, *comm);
       has_scene = true;
-      return std::make_unique<Model>(scene, comm);
+      auto model = std::make_unique<Model>(scene, comm);
+      const Probes probes(*model);  // whose places must be there
+      if (options.strict) base::throw_errors(scene_warnings(*model));
+      return model;
     });
   } catch (const Error& error) {
     try {
@@ -126,13 +129,6 @@ void describe(const Model& model, base::Log& log) {
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
   log.info("linear solver: {}", model.newton().linear().solver().describe());
-  for (const auto& warning : physics::conditions_that_hold_nowhere(model.scene(), mesh)) log.warning("{}", warning);
-  physics::for_each_physics([&](auto physics) {
-    for (const auto& doubt : physics.doubts(model.setting(), true)) log.warning("{}", doubt);
-  });
-  physics::for_each_physics([&](auto physics) {
-    for (const auto& warning : physics.warnings(model.setting())) log.warning("{}", warning);
-  });
 }
 
 /// A line for each part of the preconditioner: what it has cost on this rank.
@@ -254,6 +250,7 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   task =
       fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
   describe(*model, log);
+  for (const auto& warning : scene_warnings(*model)) log.warning("{}", warning);
   Checkpointing checkpoints(*model, directory, log);
   if (!options.restart) checkpoints.start_anew();
   std::optional<EarlierResults> earlier;
@@ -261,6 +258,7 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   Results results(*model, directory, earlier);
   const auto ending = take_steps(*model, results, checkpoints, log, options.should_stop);
   tell_costs(*model, log);
+  for (const auto& line : results.fracture_digest()) log.info("{}", line);
   if (ending == Ending::completed) log.info("results in {}", directory);
   return ending;
 }
@@ -281,6 +279,11 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
   naming_file(options.scene, [&] {
     Model model(scene, comm);
     model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
+    const Probes probes(model);
+    const auto warnings = scene_warnings(model);
+    if (options.strict) base::throw_errors(warnings);
+    base::Log log(*comm, base::Log::Level::quiet);
+    for (const auto& warning : warnings) log.warning("{}", warning);
   });
 }
 

@@ -16,6 +16,7 @@ struct RunOptions {
   bool restart = false;                ///< go on from the last checkpoint in the output directory
   bool terminal = false;               ///< print a line per time step
   bool reserved = false;               ///< the caller sees to it that no other run writes into the directory
+  bool strict = false;                 ///< warnings of the scene are errors
   /// If not empty: asked on every rank in each Newton iteration and after each step; true on any ends the run.
   std::function<bool()> should_stop;
 };

@@ -55,6 +55,7 @@ void Output::describe(base::Section& s) {
       error_estimate, "error estimate", "-",
       "estimate after every step how far stress and jumps are off on this mesh: error_estimate in results.json, and "
       "fields; costs a pass over all cells and a linear solve per step");
+  s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "of times in tables of probes and in pictures");
   s.section(checkpoints, "checkpoints", "what --restart goes on from; one is also written after the last step");
 }
 
@@ -87,11 +88,20 @@ void MeshFile::describe(base::Section& s) {
     for (const auto& [name, set] : network->fractures) fractures[name];
 }
 
+void Scene::add_default_joints() {
+  const auto add = [&](const auto& of_mesh) {
+    for (const auto& [name, fracture] : of_mesh)
+      if (auto& added = fractures[name]; added.material.empty()) added.material = *default_joint;
+  };
+  mesh_file ? add(mesh_file->fractures) : add(mesh.fractures);
+}
+
 void Scene::describe(base::Section& s) {
   describe_expressions(s);
   s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
   if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
   describe_physics(s);
+  if (default_joint) add_default_joints();
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");

@@ -61,6 +61,7 @@ struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
   bool error_estimate = false;
+  std::string time_unit = "s";  ///< of tables and pictures
   std::optional<CheckpointTimes> checkpoints;
   void describe(base::Section& section);
 };
@@ -80,6 +81,9 @@ struct Scene : physics::Scene {
   mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
   int refinements() const;             ///< of the mesh that is used
   const std::string& tips() const;     ///< the same
+
+ private:
+  void add_default_joints();  ///< to fractures of the mesh that name no material
 };
 
 /// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,

@@ -90,12 +90,26 @@ void Comparison::compare_boundary_conditions() {
   }
 }
 
+void Comparison::compare_probes() {
+  for (const auto& [name, probe] : scene_.probes) {
+    const std::string section = "Probes > " + name;
+    const bool plain = !name.empty() && name.find_first_of("/\\\"\n") == name.npos && name[0] != '.';
+    if (!plain) fail(section, "its name becomes that of a file; leave out slashes, quotation marks and a first dot");
+    check_length(section + " > \"point\"", probe.point.size(), names_.dim);
+    check_length(section + " > \"line\"", probe.line.size(),
+                 names_.dim ? std::optional(2 * *names_.dim) : std::nullopt);
+    if (probe.boundary) check_name(section, section + " > \"boundary\"", *probe.boundary, names_.boundaries);
+    if (probe.region) check_name(section, section + " > \"region\"", *probe.region, names_.regions);
+  }
+}
+
 void Comparison::compare() {
   check_material("Bulk", scene_.bulk.material, "elastic");
   check_length("Bulk > \"gravity\"", scene_.bulk.gravity.size(), names_.dim);
   compare_regions();
   compare_fractures();
   compare_boundary_conditions();
+  compare_probes();
   bool any = false;
   for_each_physics([&](auto physics) {
     physics.compare(*this);

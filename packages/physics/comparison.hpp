@@ -86,6 +86,7 @@ class Comparison {
   void compare_regions();
   void compare_fractures();
   void compare_boundary_conditions();
+  void compare_probes();
 
   const Scene& scene_;
   const base::Report& report_;

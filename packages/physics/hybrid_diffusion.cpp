@@ -34,7 +34,8 @@ class HybridDiffusion final : public assembly::Module {
     const Real conductance = largest_mobility(mesh) / mesh::largest_extent(mesh) * mesh::typical_face_area(mesh);
     assembly::Unknown cells{{field, fields::Entity::cell, 1, parameters_.unit}, field, {{field, conductance}}};
     cells.balance = true;
-    cells.reactions = {parameters_.outflow.inflows, "", "region_" + parameters_.outflow.inflows};
+    cells.reactions = {parameters_.outflow.inflows, "", "region_" + parameters_.outflow.inflows,
+                       parameters_.outflow.unit};
     auto facets = cells;
     facets.field = {on_facets, fields::Entity::facet, 1, parameters_.unit};
     facets.near_null_space = assembly::NearNullSpace::constants;

@@ -54,7 +54,8 @@ Real Outflow::largest(Real t, bool beyond) const {
 void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const {
   const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
   const std::size_t first = totals.size();
-  for (const auto& one : conditions_) totals.push_back({{names_.inflows, mesh.boundary_names[one.boundary]}, 0});
+  for (const auto& one : conditions_)
+    totals.push_back({{names_.inflows, mesh.boundary_names[one.boundary]}, 0, names_.unit});
   for (const auto& [number, row, area, x] : points_) {
     if (row >= n_owned_) continue;
     const auto& [boundary, value, coefficient, region, fracture] = conditions_[number];

@@ -38,6 +38,7 @@ std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh&
 struct OutflowNames {
   std::string coefficient;  ///< its entry in a scene
   std::string inflows;      ///< what flows in, in results.json
+  std::string unit;         ///< of that
 };
 
 /// Adds what leaves by conditions to the rows of a field.

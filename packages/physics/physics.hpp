@@ -27,6 +27,12 @@ struct Setting {
   Real start;  ///< time of the initial state, s
 };
 
+/// A warning of input that is allowed and yet hardly meant: where and what it is, why that is doubted, what to do.
+inline std::string implausible(const std::string& where, const std::string& what, const std::string& why,
+                               const std::string& advice) {
+  return where + ": " + what + ": " + why + "; " + advice;
+}
+
 /// The values of a field that a condition prescribes, per component; the text "free" leaves one free.
 struct Prescribed {
   std::string field;
@@ -36,10 +42,10 @@ struct Prescribed {
 /// Base of each physics, of what it has nothing to say about. A physics is one room of packages/physics and a line in
 /// list.hpp. It hides those of the following that it has:
 ///
-/// - parts of sections that are there without it: Rock and Joint of a material, Bulk, Region, Fracture and
-///   BoundaryCondition, whose members become members of physics::Material, ..., and Sections of its own, whose members
-///   become members of physics::Scene. describe() describes their entries, check() compares them after all of the
-///   section have been read;
+/// - parts of sections that are there without it: Rock and Joint of a material, Bulk, Region, Fracture,
+///   BoundaryCondition and Probe, whose members become members of physics::Material, ..., and Sections of its own,
+///   whose members become members of physics::Scene. describe() describes their entries, check() compares them after
+///   all of the section have been read;
 /// - functions, which are called for each physics in the order of the list.
 template <class Self>
 struct Physics {
@@ -57,6 +63,10 @@ struct Physics {
   using Fracture = Part<4>;
   struct BoundaryCondition : Part<5> {
     static constexpr const char* kinds = "";  ///< for a message: `"pressure" or "flux"`
+  };
+  struct Probe : Part<7> {
+    static constexpr const char* kinds = "";
+    std::vector<std::string> totals() const { return {}; }  ///< the first names of the assembly::Totals that it shows
   };
   struct Sections : Part<6> {
     void keep(const Sections&) {}  ///< takes over from another scene what is no entry
@@ -80,6 +90,8 @@ struct Physics {
   static void add_modules(const Setting&, Modules&) {}
   /// What may be wrong with a scene that has a mesh, a line each. Collective.
   static std::vector<std::string> warnings(const Setting&) { return {}; }
+  /// What a scene may ask and hardly means, a line each, see implausible(); `times`: the ends of all steps. Collective.
+  static std::vector<std::string> plausibility(const Setting&, const std::vector<Real>& times) { return {}; }
   /// What may be wrong with a state that a step has reached, whose outputs these are: the same text in each.
   /// Collective.
   static std::vector<std::string> warnings_of_state(const Setting&, const std::vector<assembly::OutputField>&) {

@@ -1,6 +1,12 @@
 #include "physics/scene.hpp"
 
+#include "base/text.hpp"
+#include "base/xml.hpp"
 #include "physics/material_library.hpp"
+
+#include <fmt/ranges.h>
+
+#include <set>
 
 namespace sprekk::physics {
 
@@ -33,9 +39,39 @@ void Region::describe(base::Section& s) {
 }
 
 void Fracture::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
+  const std::string meaning = "name of a joint material, of this scene or of the library";
+  if (material.empty())
+    s.required(material, "material", "-", meaning + "; that of \"Fractures\" where it is missing here");
+  else
+    s.entry(material, "material", "-", meaning);
   describe_parts(s);
   if (s.complete()) check_parts(s);
+}
+
+void Probe::describe(base::Section& s) {
+  s.entry(
+      outputs, "outputs", "-",
+      "names of arrays of bulk.pvd or fractures.pvd, of numbers that results.json has of fractures, or of sums over "
+      "a boundary as \"reactions\"");
+  s.entry(point, "point", "m", base::any(), "coordinates: values at a point");
+  s.entry(line, "line", "m", base::any(), "coordinates of its first and its last point: values along it");
+  s.entry(points, "points", "-", base::between(2, 100000), "of the line, at equal distances, its ends among them");
+  s.entry(boundary, "boundary", "-", "name of a boundary: the \"value\" over its faces");
+  s.entry(region, "region", "-", "name of a region: the \"value\" over its cells");
+  s.entry(fracture, "fracture", "-", "name of a fracture, or of a set of them: the \"value\" over its faces");
+  s.choice(value, "value", {"mean", "maximum", "minimum", "integral"}, "over a boundary, a region or a fracture");
+  describe_parts(s);
+  if (!s.complete()) return;
+  const int n = !point.empty() + !line.empty() + boundary.has_value() + region.has_value() + fracture.has_value();
+  const bool of_physics = is_any_given();
+  std::string others;
+  for (const auto& kind : kinds())
+    if (!kind.empty()) others += std::string(", ") + kind;
+  if (n + of_physics != 1)
+    s.fail(fmt::format("give one of \"point\", \"line\", \"boundary\", \"region\", \"fracture\"{}", others));
+  if (outputs.empty() && !of_physics && n == 1) s.fail("outputs", "missing; name at least one output");
+  if (!outputs.empty() && of_physics) s.fail("outputs", "goes with a place; " + others.substr(2) + " shows all it has");
+  check_parts(s);
 }
 
 void BoundaryCondition::describe(base::Section& s) {
@@ -67,19 +103,111 @@ void Scene::describe_physics(base::Section& s) {
   s.section(bulk, "Bulk", "the rock");
   describe_parts(s);
   s.named_sections(regions, "Regions", "what regions of the mesh have of their own, by their names");
-  s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh");
+  s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh that needs one",
+                   [&](base::Section& all, Fracture& first) {
+                     all.entry(default_joint, "material", "-",
+                               "name of a joint material: of fractures without a section, or without a \"material\"");
+                     first.material = default_joint.value_or("");
+                   });
   s.named_sections(boundary_conditions, "Boundary conditions",
                    "by names of your choice; boundaries without one are free of traction");
+  s.named_sections(probes, "Probes", "by names of your choice: what is written of each step as a table of its own");
   std::vector<std::string> used = {bulk.material};
   for (const auto& [name, region] : regions)
     if (region.material) used.push_back(*region.material);
   for (const auto& [name, fracture] : fractures) used.push_back(fracture.material);
+  if (default_joint) used.push_back(*default_joint);
   add_library_materials(materials, used);
 }
 
 const Material& Scene::material_of(const std::string& region) const {
   const auto found = regions.find(region);
   return materials.at(found == regions.end() ? bulk.material : found->second.material.value_or(bulk.material));
+}
+
+namespace {
+
+/// Materials by the names of fractures, as a part of a scene: so that their entries are read as those of Materials.
+struct OwnJoints {
+  base::Tables tables;
+  base::Expression::Named expressions;
+  std::map<std::string, Material> joints;
+  void describe(base::Section& s) {
+    s.named_sections(tables, "Tables", "");
+    s.named_expressions(expressions, "Expressions", "");
+    s.expressions_call(tables, expressions);
+    s.named_sections(joints, "single fractures", "");
+  }
+};
+
+/// The names of all entries of joints.
+std::vector<std::string> names_of_entries() {
+  std::vector<std::string> names = {"material"};
+  for (const auto& entry : base::specification<Material>("").entries) names.push_back(entry.name);
+  return names;
+}
+
+bool is_entry(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto names = names_of_entries();
+  OwnJoints own{scene.tables, scene.expressions, {}};
+  auto list = base::effective(own, "Sprekk");
+  std::vector<std::string> errors;
+  for (const auto& [name, set, properties] : mesh.single_fractures) {
+    const auto material = properties.find("material");
+    const auto joint =
+        material == properties.end() ? scene.fractures.at(mesh.fracture_names[set]).material : material->second;
+    if (properties.empty()) continue;
+    const auto tell = [&](const std::string& entry, const std::string& what) {
+      errors.push_back(fmt::format("{}: fracture \"{}\": {}: {}", scene.origin, name, entry, what));
+    };
+    if (const auto wrong = wrong_material(joint, "joint", scene.materials); !wrong.empty()) {
+      tell("\"material\"", wrong);
+      continue;
+    }
+    auto copy = scene.materials.at(joint);
+    auto& entries = list.sublist("single fractures").sublist(name);
+    entries = base::effective(copy, name);
+    for (const auto& [entry, value] : properties)
+      if (is_entry(names, entry) && entry != "material")
+        base::apply_override(entries, entry + "=" + value);
+      else if (const auto meant = base::did_you_mean(entry, names); !is_entry(names, entry) && !meant.empty())
+        tell(fmt::format("\"{}\"", entry), "is no entry of a joint" + meant);
+  }
+  const auto draft = base::draft<OwnJoints>(list, scene.origin, "Sprekk", errors);
+  base::throw_errors(draft.report.errors);
+  std::map<int, Material> result;
+  for (std::size_t k = 0; k < mesh.single_fractures.size(); ++k)
+    if (const auto found = draft.value.joints.find(mesh.single_fractures[k].name); found != draft.value.joints.end())
+      result.emplace(static_cast<int>(k), found->second);
+  return result;
+}
+
+std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::Mesh& mesh) {
+  std::set<std::string> titles;
+  for (const auto& single : mesh.single_fractures)
+    for (const auto& property : single.properties) titles.insert(property.first);
+  for (const auto& name : names_of_entries()) titles.erase(name);
+  if (titles.empty()) return {};
+  return {fmt::format("{}: columns of fractures are passed over that are no entries of a joint: \"{}\"", scene.origin,
+                      fmt::join(titles, "\", \""))};
+}
+
+const Material& joint_of(const Scene& scene, const mesh::Mesh& mesh, int single) {
+  if (const auto own = scene.own_joints.find(single); own != scene.own_joints.end()) return own->second;
+  return scene.materials.at(scene.fractures.at(mesh.fracture_names[mesh.single_fractures[single].set]).material);
+}
+
+std::string place_of(const Scene& scene, const Material& material) {
+  const auto is_it = [&](const auto& one) { return &one.second == &material; };
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
+  return fmt::format("{}: Sprekk > Materials > {}", scene.origin,
+                     found == scene.materials.end() ? "a fracture's own" : found->first);
 }
 
 }  // namespace sprekk::physics

@@ -57,6 +57,20 @@ struct BoundaryConditions : Parts<typename P::BoundaryCondition...> {
 };
 
 template <class... P>
+struct Probes : Parts<typename P::Probe...> {
+  /// Of the totals that one part shows.
+  std::vector<std::string> totals() const {
+    std::vector<std::string> names;
+    const auto add = [&](const auto& some) { names.insert(names.end(), some.begin(), some.end()); };
+    (add(P::Probe::totals()), ...);
+    return names;
+  }
+
+ protected:
+  static std::vector<std::string> kinds() { return {P::Probe::kinds...}; }
+};
+
+template <class... P>
 struct Sections : P::Sections... {
  protected:
   void describe_parts(base::Section& s) { (P::Sections::describe(s), ...); }
@@ -114,6 +128,17 @@ struct BoundaryCondition : OfAll<detail::BoundaryConditions> {
   void describe(base::Section& section);
 };
 
+/// Where a run looks at what, in each step.
+struct Probe : OfAll<detail::Probes> {
+  std::vector<std::string> outputs;  ///< names of them
+  std::vector<Real> point, line;     ///< coordinates; of the line's ends
+  int points = 11;                   ///< of a line, its ends among them
+  std::optional<std::string> boundary, region, fracture;
+  std::string value = "mean";  ///< over a boundary, a region or a fracture: "mean", "maximum", "minimum", "integral"
+  bool is_extended() const { return boundary || region || fracture; }
+  void describe(base::Section& section);
+};
+
 struct Scene : OfAll<detail::Sections> {
   std::string origin = "scene";  ///< opens messages about it: the file that it was read from
   base::Tables tables;
@@ -121,8 +146,11 @@ struct Scene : OfAll<detail::Sections> {
   std::map<std::string, Material> materials;
   Bulk bulk;
   std::map<std::string, Region> regions;
+  std::optional<std::string> default_joint;  ///< the material of fractures that name none
   std::map<std::string, Fracture> fractures;
+  std::map<int, Material> own_joints;  ///< [single fracture] of those with properties of their own; see own_joints()
   std::map<std::string, BoundaryCondition> boundary_conditions;
+  std::map<std::string, Probe> probes;
 
   /// Tables and named expressions, which all later entries may call.
   void describe_expressions(base::Section& section);
@@ -133,15 +161,24 @@ struct Scene : OfAll<detail::Sections> {
   const Material& material_of(const std::string& region) const;
 };
 
+/// Materials of the single fractures of a mesh that have properties of their own: that of the set, or the one that
+/// their property "material" names, with these entries in place. Properties that are no entries of a joint are passed
+/// over. Error: an entry is wrong, or misspelt; all are told.
+std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh);
+/// A line for the names of properties that were passed over, if there are any.
+std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::Mesh& mesh);
+/// The material of a single fracture.
+const Material& joint_of(const Scene& scene, const mesh::Mesh& mesh, int single);
+/// "SCENE: Sprekk > Materials > NAME" of one of its materials.
+std::string place_of(const Scene& scene, const Material& material);
+
 /// What `find` finds of a material; its errors get the place of the material in the scene.
 template <class Find>
 auto at_place(const Scene& scene, const Material& material, const Find& find) {
   try {
     return find();
   } catch (const Error& error) {
-    const auto is_it = [&](const auto& one) { return &one.second == &material; };
-    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
-    throw Error(fmt::format("{}: Sprekk > Materials > {}: {}", scene.origin, found->first, error.what()));
+    throw Error(place_of(scene, material) + ": " + error.what());
   }
 }
 

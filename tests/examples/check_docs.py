@@ -80,7 +80,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
   words+=(--set "Mesh file.path=$PWD/$folder/network.msh")
   if [[ ${{words[0]}} == run && " ${{words[*]}} " != *" --output "* ]]; then words+=(--output "$folder"); fi
 fi
-if [[ ${{words[0]}} == plot ]]; then exec {python} -B {root}/apps/plot "${{words[@]:1}}"; fi
+if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} "${{words[@]:1}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
 BUILDS = re.compile(r"\./sprekk (build|test|fuzz)\b")

@@ -89,7 +89,7 @@ class Lines(Conformity):
         seam = {**SQUARE, "lower corner": [0.0, 0.2], "upper corner": [1.0, 0.4]}
         plan, mesh = self.expect({"a": [[0.5, 0.1], [0.5, 0.9]], "on": [[0.6, 0.4], [0.9, 0.4]]}, {"a": 0.8, "on": 0.3}, regions={"seam": seam},
                                  constraints={"line": {"lines": {"1": numbers([[0.1, 0.6], [0.7, 0.9]])}}})
-        groups = {name: elements for dim, name, elements in groups_of(mesh, plan)}
+        groups = {name: elements for dim, name, elements, _ in groups_of(mesh, plan)}
         x = mesh.points[groups["seam"]][:, :, 1]
         self.assertTrue((x > 0.2 - 1e-12).all() and (x < 0.4 + 1e-12).all())
         self.assertNotIn("line", groups)
@@ -210,7 +210,7 @@ class Polygons(Conformity):
         seam = {**CUBE, "upper corner": [1.0, 1.0, 0.5]}
         plan, mesh = self.expect({"on": square_at(2, 0.5), "b": square_at(0, 0.3)}, {"on": 0.36, "b": 0.36}, regions={"seam": seam})
         from conformity import sizes_of
-        groups = {name: elements for _, name, elements in groups_of(mesh, plan)}
+        groups = {name: elements for _, name, elements, _ in groups_of(mesh, plan)}
         self.assertAlmostEqual(sizes_of(mesh.points, groups["seam"]).sum(), 0.5, 9)
 
     def test_fractures_that_cross_within_one_on_a_side_of_a_region(self):

@@ -91,6 +91,40 @@ class Files(MeshTest):
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
         self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 1.2, 9)
 
+    def singles(self, output="net.msh"):
+        """What the mesh says of its single fractures: name and entries."""
+        content = (self.folder / output).read_bytes()
+        lines = content[content.index(b"$Fractures") : content.index(b"$EndFractures")].decode().splitlines()[2:]
+        found = [line.split('"')[1::2] for line in lines]
+        return [(name, dict(zip(entries[::2], entries[1::2]))) for name, *entries in found]
+
+    def test_single_fractures(self):
+        """Names by a column or by the number; further columns with units; what has one name is one fracture."""
+        self.write("net.csv", "name,x0,y0,x1,y1,friction coefficient,initial aperture [mm]", "A,0.2,0.5,0.4,0.5,0.4,0.1", "A,0.4,0.5,0.8,0.6,0.4,0.1",
+                   "B,0.5,0.2,0.5,0.4,,", '"C, left",0.1,0.1,0.2,0.2,0.7')
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual(self.singles(), [("A", {"friction coefficient": "0.4", "initial aperture": "0.1 mm"}), ("B", {}),
+                                          ("C, left", {"friction coefficient": "0.7"})])
+        self.write("net.csv", "7,0.2,0.5,0.4,0.5", "8,0.5,0.2,0.5,0.4")
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual(self.singles(), [("set 7", {}), ("set 8", {})])
+        self.write("net.csv", "id,east,north,to east,to north,friction angle (deg)", "7,0.2,0.5,0.4,0.5,30")
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual(self.singles(), [("set 7", {"friction angle": "30 deg"})])
+        self.write("net.csv", "name,dilation angle,x0,y0,z0,x1,y1,z1,x2,y2,z2", "P,5,0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}, **self.CUBE))
+        self.assertEqual(self.singles(), [("P", {"dilation angle": "5"})])
+
+    def test_bad_names(self):
+        net = self.write("net.csv", "name,x0,y0,x1,y1,friction angle", "A,0.2,0.5,0.4,0.5,30", "A,0.4,0.5,0.8,0.6,31")
+        self.refused(net, f'fracture A ({net}: line 3): has the name "A", as fracture A ({net}: line 2), and other values')
+        net = self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4")
+        self.refused(net, f"{net}: line 2: has 3 columns, needs 4: x0,y0,x1,y1")
+        other = self.write("other.csv", "name,x0,y0,x1,y1", "A,0.2,0.2,0.4,0.2")
+        self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5")
+        told = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
+        self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', told)
+
     def test_polygons_and_their_domain(self):
         self.write("net.csv", "0,0,0,2,1,1", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5", "1,0.2,0.2,1,0.8,0.2,1,0.5,0.8")
         self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}))

@@ -28,9 +28,12 @@ import convergence  # noqa: E402
 import flow  # noqa: E402
 import fractures  # noqa: E402
 import loops  # noqa: E402
+import magnitudes  # noqa: E402
 import maps  # noqa: E402
+import mohr  # noqa: E402
 import numpy as np  # noqa: E402
 import read  # noqa: E402
+import series  # noqa: E402
 import style  # noqa: E402
 from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
@@ -102,7 +105,7 @@ class Pictures(PlotTest):
     def test_plane_run(self):
         self.run_scene("verification/crossing_2d.xml")
         out, _ = self.draw(self.folder / "out")
-        names = ["bulk.png", "fractures.png", "maps.png", "loops.png", "convergence.png"]
+        names = ["bulk.png", "fractures.png", "maps.png", "mohr.png", "loops.png", "series.png", "convergence.png"]
         self.assertEqual([Path(line).name for line in out.splitlines()], names)
         self.expect_pictures("out/" + name for name in names)
         made = self.figures("out")
@@ -184,7 +187,8 @@ class Pictures(PlotTest):
         content = self.run_scene("verification/cyclic_2d.xml")
         last = content["steps"][-1]["fractures"]["fracture"]
         x, y = self.figures("out")["loops"].axes[0].lines[0].get_data()
-        self.assertEqual(len(y), len(content["steps"]))
+        self.assertEqual(len(y), 1 + len(content["steps"]))
+        self.assertEqual((x[0], y[0]), (0, 0))  # the initial state
         self.assertAlmostEqual(abs(x[-1]) * 1e-3, abs(last["mean_jump"]["local"][1]), 12)
         self.assertAlmostEqual(abs(y[-1]), abs(last["mean_traction"]["local"][1]), 12)
 
@@ -194,7 +198,18 @@ class Pictures(PlotTest):
             content = self.run_scene(ROOT / "docs/shear_test.xml", f"Tables.ramp.values={ramp}", "Time.steps=6", "Mesh.cells={8, 4}", "Output.vtu=false")
             wanted = [step["fractures"]["shear plane"]["mean_traction"]["local"][1] for step in content["steps"]]
             y = self.figures("out")["loops"].axes[0].lines[0].get_ydata()
-            self.assertTrue(np.allclose(1e6 * y, wanted, rtol=1e-9, atol=1), (ramp, y, wanted))
+            self.assertTrue(np.allclose(1e6 * y, [0, *wanted], rtol=1e-9, atol=1), (ramp, y, wanted))
+
+    def test_loops_under_stress_start_with_the_first_step(self):
+        """What the initial stress is on the fractures, the results do not tell."""
+        content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=4", "Output.vtu=false", "Bulk.body force={0, 0}", "Bulk.initial stress={0, -5e6, 0, 0}")
+        figure = self.figures("out")["loops"]
+        dilation = figure.axes[2].lines[0].get_data()
+        means = np.array([step["fractures"]["shear plane"]["mean_jump"]["local"] for step in content["steps"]])
+        for values, wanted in zip(dilation, (means[:, 1], means[:, 0])):
+            self.assertEqual(len(values), 4)
+            self.assertTrue(np.allclose(values * np.max(abs(wanted)), wanted * np.max(abs(values)), rtol=1e-9))
+        self.assertIn("first step", [text.get_text() for text in figure.legends[0].get_texts()])
 
     def means(self, n):
         """Steps of a run with n fractures, and their names."""
@@ -208,14 +223,14 @@ class Pictures(PlotTest):
         """Curves that are named differ in colour or line, in the order of their numbers, beside the axes."""
         for n, named in ((12, 12), (40, style.MOST_CURVES)):
             figure = loops.of_fractures(*self.means(n), "many")
-            legend = figure.axes[1].get_legend()
+            legend = figure.axes[2].get_legend()
             labels = [text.get_text() for text in legend.get_texts()]
             self.assertEqual(labels[:named], [f"f {k + 1}" for k in range(n - named, n)])
             self.assertEqual(labels[named:], [f"{n - named} others"] if n > named else [])
             lines = legend.get_lines()
             self.assertEqual(len({(line.get_color(), line._dash_pattern[1] and tuple(line._dash_pattern[1])) for line in lines}), len(labels))
             figure.canvas.draw()
-            self.assertGreaterEqual(legend.get_window_extent().x0, figure.axes[1].get_window_extent().x1)
+            self.assertGreaterEqual(legend.get_window_extent().x0, figure.axes[2].get_window_extent().x1)
 
     def test_convergence_shows_what_its_legend_lists(self):
         measures = {f"m{k}": 10.0**-k for k in range(12, 20)}
@@ -278,7 +293,7 @@ class Pictures(PlotTest):
 
     def test_quadratic_cells(self):
         self.run_scene("seed/push_2d.xml", "Mesh.order=2")
-        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures", "maps"])
+        self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures", "maps", "mohr"])
 
     def shown_by_paraview(self, output):
         """What the state shows: displays of the stand-in of ParaView."""
@@ -319,9 +334,67 @@ class Pictures(PlotTest):
     def test_one_step_has_no_loop(self):
         self.run_scene("seed/push_2d.xml")
         out, err = self.draw(self.folder / "out", "--dpi", "30")
-        self.assertEqual([Path(line).name for line in out.splitlines()], ["bulk.png", "fractures.png", "maps.png", "convergence.png"])
+        self.assertEqual([Path(line).name for line in out.splitlines()], ["bulk.png", "fractures.png", "maps.png", "mohr.png", "convergence.png"])
         self.assertIn("no loops.png", err)
         self.assertIn("one step", err)
+
+
+    def test_injection(self):
+        """Pressure less that of the start, volume, effective tractions, time in hours: as the run wrote them."""
+        content = self.run_scene("poro/injection_2d.xml", "Time.steps=3", "Time.end=10800")
+        made = self.figures("out")
+        change = made["flow"].axes[1]
+        self.expect_labels(made["flow"], "p − p₀ (MPa)")
+        rock = read.grid(read.written_steps(self.folder / "out", "bulk")[-1][1])
+        shown = change.collections[0].get_array()
+        self.assertTrue(np.allclose(np.sort(shown), np.sort(read.arrays(rock.GetCellData())["pressure"] / 1e6 - 10), atol=1e-6))
+        self.assertIn("t = 3 h", made["flow"]._suptitle.get_text())
+        self.expect_labels(made["bulk"], "largest compressive stress, less α (p − p₀) (MPa)")
+        self.expect_labels(made["fractures"], "effective traction (MPa)")
+        self.expect_labels(made["mohr"], "effective normal compression (MPa)")
+        self.expect_labels(made["series"], "time (h)", "largest slip (", "pressure in wells (MPa)", "injected volume (")
+        panels = {ax.get_ylabel().split(" (")[0]: ax for ax in made["series"].axes}
+        times, volume = panels["injected volume"].lines[0].get_data()
+        litres = 1e3 if "(l)" in panels["injected volume"].get_ylabel() else 1
+        self.assertTrue(np.allclose(times, [1, 2, 3]))
+        self.assertTrue(np.allclose(volume, litres * 6e-5 * 3600 * np.cumsum([0.5, 1, 1])))
+        lines = {line.get_label(): line.get_ydata() for line in panels["largest slip"].lines}
+        wanted = [step["fractures"]["west"]["max_slip"] for step in content["steps"]]
+        self.assertTrue(np.allclose(lines["west"] / lines["west"][-1], np.array(wanted) / wanted[-1]))
+        names = {text.get_text() for ax in made["maps"].axes for text in ax.texts}
+        self.assertEqual(names, set(content["steps"][-1]["fractures"]))
+
+    def test_mohr(self):
+        """Faces as the run wrote them, the circle of the mean stress, a line of the slope of friction."""
+        self.run_scene("verification/crossing_2d.xml")
+        ax = self.figures("out")["mohr"].axes[0]
+        lines = {line.get_label(): line.get_data() for line in ax.lines}
+        joints = read.arrays(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]).GetCellData())
+        rock = read.grid(read.written_steps(self.folder / "out", "bulk")[-1][1])
+        for state, label in enumerate(("open faces", "faces that stick", "faces that slip")):
+            on = joints["state"] == state
+            self.assertEqual(label in lines, bool(on.any()))
+            if on.any():
+                for values, wanted in zip(lines[label], (-joints["traction local"][on, 0], abs(joints["traction local"][on, 1]))):
+                    scale = np.max(abs(wanted))
+                    self.assertTrue(np.allclose(values / (np.max(abs(values)) or 1), wanted / (scale or 1), atol=1e-7))
+        x, y = lines["mean stress of the rock"]
+        least, most = mohr.mean_stress(rock)
+        self.assertAlmostEqual((x.max() - x.min()) / x.mean(), (most - least) / (0.5 * (most + least)), 2)
+        envelope = next(data for label, data in lines.items() if label.startswith("strength of"))
+        materials = read.scene(self.folder / "out")
+        friction = float(next(read.entries(materials["Materials"], "friction coefficient")))
+        self.assertAlmostEqual(envelope[1][-1] / envelope[0][-1], friction, 9)
+
+    def test_thin_bodies_are_drawn_wide(self):
+        """Above each other, with nothing left over; square ones beside each other."""
+        strip, square = np.array([[0.0, 0], [30, 1]]), np.array([[0.0, 0], [1, 1]])
+        for points, rows in ((strip, 3), (square, 1)):
+            figure, axes, where = style.panels_of_plane(3, points)
+            self.assertEqual(len(figure.axes), 3)
+            self.assertEqual(figure.axes[0].get_gridspec().nrows, rows)
+            self.assertEqual(bool(where), rows == 3)
+            self.assertLess(150 * figure.get_size_inches()[0], 2000)  # dots at the usual resolution
 
 
 class Maps(PlotTest):
@@ -444,6 +517,75 @@ class Numbers(ProgramTest):
         figure.canvas.draw()
         self.assertEqual([label.get_text() for label in bar.ax.get_yticklabels()], ["2.5e-11"])
         self.assertEqual(bar.ax.yaxis.get_offset_text().get_text(), "")
+
+    def test_outliers_are_clipped_with_arrows(self):
+        values = np.concatenate([np.linspace(0, 1, 1000), [100]])
+        norm = style.limits(values, clip=True)
+        self.assertAlmostEqual(norm.vmax, np.percentile(values, 99))
+        self.assertEqual((norm.vmin, norm.extend), (0, "max"))
+        figure, ax = style.plt.subplots()
+        self.assertEqual(style.colour_bar(figure, ax, norm, style.plt.get_cmap(), "").extend, "max")
+        for kept in (np.linspace(0, 1, 1000), np.array([0.0, 1]), np.zeros(5)):
+            self.assertEqual(style.limits(kept, clip=True).extend, "neither")
+        self.assertEqual(style.limits(values).extend, "neither")
+        both = style.limits(np.concatenate([values, [-100]]), clip=True)
+        self.assertEqual(both.extend, "both")
+
+    def test_pressure_at_the_start(self):
+        surface = read.Surface(np.array([[0.0, 0, 0], [0, -2, 0], [1, -4, 0]]), [np.array([0, 1]), np.array([1, 2])], {}, {})
+        self.assertTrue(np.allclose(flow.at_start("1e5 - 9.81e3*y", surface), [1e5 + 9.81e3, 1e5 + 3 * 9.81e3]))
+        self.assertTrue(np.allclose(flow.at_start("2.5E7", surface), 2.5e7))
+        for unknown in ("table(t)", "p0", "__import__('os')", "1/0", "xy"):
+            self.assertIsNone(flow.at_start(unknown, surface))
+
+    def test_strength(self):
+        normal = np.array([0.0, 1e6])
+        joint = {"friction": "Coulomb", "friction angle": "30", "bond": "constant cohesion", "cohesion": "2e5"}
+        self.assertTrue(np.allclose(mohr.strength(joint, normal), [2e5, 2e5 + 1e6 / 3**0.5]))
+        self.assertTrue(np.allclose(mohr.strength({**joint, "bond": "none"}, normal), [0, 1e6 / 3**0.5]))
+        self.assertIsNone(mohr.strength({"friction": "Coulomb", "friction coefficient": "0.5 + x"}, normal))
+        rough = {"friction": "Barton-Choubey", "joint roughness coefficient": "10", "joint wall strength": "1e8", "residual friction angle": "25"}
+        self.assertAlmostEqual(mohr.strength(rough, normal)[1] / 1e6, np.tan(np.radians(45)))
+        self.assertIsNone(mohr.strength({"friction": "slip weakening"}, normal))
+
+    def test_times(self):
+        self.assertEqual([style.when(t) for t in (2.0, 600.0, 7200.0, 30 * 86400.0)], ["t = 2 s", "t = 10 min", "t = 2 h", "t = 30 d"])
+        self.assertEqual(style.when(43200.0, (86400.0, "d")), "t = 0.5 d")
+        self.assertTrue(np.allclose(series.injected(np.array([2.0, 3]), np.array([5.0, 7]), 1.0), [5, 12]))
+
+    def test_probes(self):
+        path = self.folder / "gauge.csv"
+        path.write_text("time [d],pressure [Pa],mean slip [m],maximum slip [m]\n1,2e6,1e-3,2e-3\n2,3e6,2e-3,5e-3\n")
+        axes = series.of_probe(path).axes
+        self.assertEqual([ax.get_ylabel() for ax in axes], ["pressure (MPa)", "values (mm)"])
+        self.assertEqual(axes[-1].get_xlabel(), "time (d)")
+        self.assertEqual([line.get_ydata().tolist() for line in axes[1].lines], [[1, 2], [2, 5]])
+        path.write_text("time [s],distance [m],x [m],y [m],slip [m]\n1,0,0,0,1\n1,1,1,0,2\n2,0,0,0,3\n2,1,1,0,4\n")
+        (ax,) = series.of_probe(path).axes
+        self.assertEqual([ax.lines[0].get_xdata().tolist(), ax.lines[0].get_ydata().tolist()], [[0, 1], [3, 4]])
+        path.write_text("a,b\n")
+        self.assertRaises(read.PlotError, series.of_probe, path)
+
+    def test_magnitudes(self):
+        """The slope of a sample of a known one, within three standard errors; none of a few fractures."""
+        sample = 2 + np.random.default_rng(1).exponential(np.log10(np.e) / 1.2, 3000)
+        b, error = magnitudes.b_value(sample, 2.0)
+        self.assertLess(abs(b - 1.2), 3 * error)
+        self.assertLess(error, 0.05)
+        step = {"single_fractures": {"moment_magnitude": [*sample[:40], None, None]}}
+        x, y = magnitudes.of_step(step, "run").axes[0].lines[0].get_data()
+        self.assertTrue(np.allclose(x, np.sort(sample[:40])))
+        self.assertEqual(y.tolist(), list(range(40, 0, -1)))
+        self.assertIsNone(magnitudes.of_step({"single_fractures": {"moment_magnitude": [1.0] * 5}}, "run"))
+        self.assertIsNone(magnitudes.of_step({}, "run"))
+
+    def test_rose_is_centred_on_axes(self):
+        """A line along y is a bar around y, not beside it; the bars are shares in percent, both ways."""
+        ax = style.plt.figure().add_subplot(projection="polar")
+        maps.orientations.draw_rose(ax, [("red", [np.array([[0.0, 0], [0, 2]]), np.array([[0.0, 0], [1, 0]])])])
+        bars = {round(np.degrees(bar.get_x() + bar.get_width() / 2)): bar.get_height() for bar in ax.patches if bar.get_height() > 0}
+        self.assertEqual(sorted(bars), [0, 90, 180, 270])
+        self.assertTrue(np.allclose([bars[0], bars[90]], [200 / 3, 100 / 3]))
 
     def test_directions_of_one_value_have_one_colour(self):
         lines = [np.array([[0.0, 0], [np.cos(a), np.sin(a)]]) for a in (0.1, 0.9, 2.0)]

@@ -214,8 +214,9 @@ class Results(ProgramTest):
             with unittest.mock.patch.dict(os.environ, {"SPREKK_TERMINAL": "1"}):
                 out, err = self.call("run", scene, "--output", "out", "--set", times, "--set", QUIET, ranks=ranks)
             self.assertEqual(re.findall("^warning: .*", err, re.MULTILINE), err.splitlines())
-            self.assertEqual(len(err.splitlines()), 1, err)
-            self.assertIn("t = 3.75: " + words, err)
+            lines = [line for line in err.splitlines() if "over knots" not in line]  # the first step goes over some
+            self.assertEqual(len(lines), 1, err)
+            self.assertIn("t = 3.75: " + words, lines[0])
             self.assertEqual(re.findall("^.*held again", out, re.MULTILINE), ["t = 5: all rock is held again"])
             loose = {step["time"]: step["loose"] for step in self.results()["steps"] if "loose" in step}
             self.assertEqual(list(loose), [3.75, 3.9, 4])

@@ -105,6 +105,15 @@ void compare_conditions(Comparison& c) {
                fmt::format("gives a {} where \"{}\" gives the pressure", other.flux ? "flux" : "conductance", name));
 }
 
+void compare_probes(Comparison& c) {
+  Names wells;
+  if (c.scene().flow)
+    for (const auto& [name, well] : c.scene().flow->wells) wells.push_back(name);
+  for (const auto& [name, probe] : c.scene().probes)
+    if (probe.well && c.is_sound("Flow"))
+      c.check_name("Probes > " + name, fmt::format("Probes > {} > \"well\"", name), *probe.well, wells);
+}
+
 void compare_rock(Comparison& c, const Material& rock) {
   const std::string name = c.name_of(rock);
   const auto& flow = *c.scene().flow;
@@ -134,6 +143,7 @@ void Flow::compare(Comparison& c) {
   if (c.scene().flow && c.scene().host_fluid) c.fail("Flow", "goes without a host_fluid, which brings its own flow");
   compare_without_flow(c);
   compare_fractures(c);
+  compare_probes(c);
   if (!c.scene().flow) return;
   compare_wells(c);
   compare_level(c);

@@ -125,6 +125,14 @@ void Flow::BoundaryCondition::describe(base::Section& s) {
                  "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
 }
 
+void Flow::Probe::describe(base::Section& s) {
+  s.entry(well, "well", "-", "name of a well: all that results.json has of it");
+}
+
+std::vector<std::string> Flow::Probe::totals() const {
+  return well ? std::vector<std::string>{"wells", *well} : std::vector<std::string>();
+}
+
 void Flow::BoundaryCondition::check(base::Section& s) const {
   if (conductance && !pressure) s.fail("conductance", "needs a \"pressure\" beyond the boundary");
   if (pressure && flux) s.fail("give either \"pressure\" or \"flux\"");

@@ -73,7 +73,7 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   base::collectively(*mesh.comm, [&] {
     for (std::size_t f = 0; f < openings.size(); ++f) {
       const auto& face = mesh.fracture_faces[f];
-      const auto& joint = scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material);
+      const auto& joint = joint_of(scene, mesh, face.single);
       faces.push_back(
           at_place(scene, joint, [&] { return hydraulics(joint, scene.flow->viscosity, openings[f], face.centre); }));
     }
@@ -88,7 +88,7 @@ HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh)
                                   .unit = "Pa",
                                   .flux = "Darcy velocity",
                                   .flux_unit = "m/s",
-                                  .outflow = {"conductance", "inflows"},
+                                  .outflow = {"conductance", "inflows", mesh.dim() == 2 ? "m^2/s" : "m^3/s"},
                                   .fluid = {flow.compressibility, flow.reference_pressure},
                                   .conditions = fluid_conditions(scene, mesh, false),
                                   .coupled_by = "displacement"};

@@ -91,6 +91,14 @@ struct Flow : Physics<Flow> {
     std::vector<Prescribed> prescribed() const;
   };
 
+  struct Probe : Physics::Probe {
+    static constexpr const char* kinds = "\"well\"";
+    std::optional<std::string> well;
+    void describe(base::Section& section);
+    bool is_given() const { return well.has_value(); }
+    std::vector<std::string> totals() const;
+  };
+
   struct Sections : Physics::Sections {
     std::optional<FlowSection> flow;
     std::optional<HostFluid> host_fluid;  ///< not an entry

@@ -120,8 +120,12 @@ class Wells final : public assembly::Module {
     const auto first = totals.size();
     const auto width = 3 + mesh_->fracture_names.size();
     for (const auto& one : parameters_.wells) {
-      for (const char* what : {"rate", "pressure", "in rock"}) totals.push_back({{"wells", one.name, what}, 0});
-      for (const auto& fracture : mesh_->fracture_names) totals.push_back({{"wells", one.name, "in " + fracture}, 0});
+      const char* const unit = mesh_->dim() == 2 ? "m^2/s" : "m^3/s";
+      totals.push_back({{"wells", one.name, "rate"}, 0, unit});
+      totals.push_back({{"wells", one.name, "pressure"}, 0, "Pa"});
+      totals.push_back({{"wells", one.name, "in rock"}, 0, unit});
+      for (const auto& fracture : mesh_->fracture_names)
+        totals.push_back({{"wells", one.name, "in " + fracture}, 0, unit});
     }
     std::array<Kokkos::View<Real*>::HostMirror, 2> p;
     for (int k = 0; k < 2; ++k) {

@@ -160,15 +160,16 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
         });
   });
   const auto chosen = flux_scheme(scheme_entry(heat), mesh, conductivity);
-  HybridDiffusionParameters conduction{.name = "heat conduction",
-                                       .field = "temperature",
-                                       .unit = "K",
-                                       .flux = "heat flux",
-                                       .flux_unit = "W/m^2",
-                                       .outflow = {"heat transfer coefficient", "heat_inflows"},
-                                       .mobility = std::move(conductivity),
-                                       .scheme = chosen.scheme,
-                                       .reason = chosen.reason};
+  HybridDiffusionParameters conduction{
+      .name = "heat conduction",
+      .field = "temperature",
+      .unit = "K",
+      .flux = "heat flux",
+      .flux_unit = "W/m^2",
+      .outflow = {"heat transfer coefficient", "heat_inflows", mesh.dim() == 2 ? "W/m" : "W"},
+      .mobility = std::move(conductivity),
+      .scheme = chosen.scheme,
+      .reason = chosen.reason};
   if (!is_zero(heat.source)) conduction.source = {heat.source};
   conduction.conditions = flux_conditions(
       scene, mesh,

@@ -33,7 +33,7 @@ class BulkMomentum final : public assembly::Module {
     assembly::Unknown u{
         {"displacement", fields::Entity::node, dim, "m"}, "displacement", {{"stress", mesh::typical_face_area(mesh)}}};
     u.near_null_space = assembly::NearNullSpace::rigid_motions;
-    u.reactions = {"reactions", "reaction_moments"};
+    u.reactions = {"reactions", "reaction_moments", "", dim == 2 ? "N/m" : "N"};
     d.unknowns = {u};
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     d.scales = {{"stress", 1e-12 * E}, {"displacement", 1e-12 * L}};

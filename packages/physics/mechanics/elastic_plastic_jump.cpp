@@ -15,9 +15,6 @@ using assembly::Loop;
 using laws::ContactState;
 using mesh::Shape;
 
-namespace {
-
-/// mean(sigma_0 n) + p n in the frames of owned faces, Pa, of both sides in the mean; zero without initial stress.
 std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
                                                    const ElasticPlasticJumpParameters& parameters) {
   std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
@@ -35,6 +32,20 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
         tractions[f][0] += mean_fluid_pressure<shape()>(fluid, mesh, face, mesh::minus, parameters.start);
     });
   return tractions;
+}
+
+namespace {
+
+/// Shear over compression of a traction n, t[, t2]: Morris, Ferrill and Henderson (1996).
+std::optional<Real> slip_tendency(const std::vector<Real>& traction) {
+  if (!(traction[0] < 0)) return {};
+  return std::hypot(traction[1], traction.size() > 2 ? traction[2] : 0) / -traction[0];
+}
+
+/// Of a seismic moment in N m: Hanks and Kanamori (1979).
+std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
+  if (!(moment[0] > 0)) return {};
+  return 2.0 / 3 * (std::log10(moment[0]) - 9.1);
 }
 
 int joint_of(const ElasticPlasticJumpParameters& parameters, const mesh::Mesh& mesh, LocalIndex face) {
@@ -147,6 +158,11 @@ class ElasticPlasticJump final : public assembly::Module {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
   }
   struct Shown;
+  Real shear_modulus(LocalIndex f) const {
+    const auto& cell = mesh_->fracture_faces[f].cell;
+    return (parameters_.elasticity[elasticity_of(cell[0])].G + parameters_.elasticity[elasticity_of(cell[1])].G) / 2;
+  }
+  Real slip_since_start(LocalIndex f, const Shown& face) const;
   ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
   void add_outputs(assembly::Declaration& d) const;
 
@@ -406,6 +422,13 @@ struct ElasticPlasticJump<shape, tips>::Shown {
 };
 
 template <Shape shape, bool tips>
+Real ElasticPlasticJump<shape, tips>::slip_since_start(LocalIndex f, const Shown& face) const {
+  Real slip[dim - 1];  // of what was committed: 0 without rounding where a face has never slid
+  for (int i = 0; i < dim - 1; ++i) slip[i] = face.point.p_old[i] - parameters_.joints[joint_of(f)].plastic_jump[i];
+  return laws::norm(slip);
+}
+
+template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) const {
   using assembly::Summary;
   const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary, const auto& append) {
@@ -423,8 +446,9 @@ void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) cons
   const auto number = [&](const char* name, const char* unit, const Summary& summary, const auto& of) {
     add(name, unit, 1, summary, [of](LocalIndex, const Shown& face, auto& all) { all.push_back(of(face)); });
   };
-  const auto vector = [&](const std::string& name, const char* unit, const auto& of) {
-    add(name + " local", unit, dim, {Summary::mean, name, "local"},
+  const auto vector = [&](const std::string& name, const char* unit, const auto& of,
+                          const std::vector<assembly::Derived>& derived = {}) {
+    add(name + " local", unit, dim, {Summary::mean, name, "local", {}, "", derived},
         [of](LocalIndex, const Shown& face, auto& all) { all.insert(all.end(), of(face), of(face) + dim); });
     add(name, unit, dim, {Summary::mean, name, "global"}, [this, of](LocalIndex f, const Shown& face, auto& all) {
       for (int i = 0; i < dim; ++i) {
@@ -436,13 +460,20 @@ void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) cons
   vector("jump", "m", [](const Shown& face) { return face.point.w; });
   vector("elastic jump", "m", [](const Shown& face) { return face.elastic; });
   vector("plastic jump", "m", [](const Shown& face) { return face.plastic; });
-  vector("traction", "Pa", [](const Shown& face) { return face.point.traction; });
+  vector("traction", "Pa", [](const Shown& face) { return face.point.traction; },
+         {{"slip_tendency", "-", slip_tendency}});
   number("opening", "m", {Summary::mean_and_max, "opening"}, [](const Shown& face) { return face.point.w[0]; });
   number("slip", "m", {Summary::mean_and_max, "slip"}, [](const Shown& face) { return face.slip; });
   number("aperture", "m", {}, [](const Shown& face) { return face.aperture; });
   number("state", "-", {Summary::fractions, "", "", {"open", "stick", "slip"}},
          [](const Shown& face) { return static_cast<Real>(face.state); });
   number("slip tendency", "-", {}, [](const Shown& face) { return face.slip_tendency; });
+  std::vector<assembly::Derived> magnitude;
+  if (dim == 3) magnitude = {{"moment_magnitude", "-", moment_magnitude}};
+  add("moment density", "N/m", 1, {Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N", magnitude},
+      [this](LocalIndex f, const Shown& face, auto& all) {
+        all.push_back(shear_modulus(f) * slip_since_start(f, face));
+      });
 }
 
 }  // namespace

@@ -32,6 +32,10 @@ struct ElasticPlasticJumpParameters {
   int n_kept = 0;  ///< how many numbers the joints of any rank keep of a face, at most
 };
 
+/// mean(sigma_0 n) + p n in the frames of owned faces, Pa, of both sides in the mean; zero without initial stress.
+std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
+                                                   const ElasticPlasticJumpParameters& parameters);
+
 /// w_0 of make_elastic_plastic_jump in the frames of owned fracture faces, m.
 std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const ElasticPlasticJumpParameters& parameters);
 
@@ -45,7 +49,9 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips;
 /// "kept by laws" [face, n_kept], if there are any, which the laws themselves commit.
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
-/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b.
+/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b. Of fractures, from their mean traction,
+/// the slip tendency |lambda_t|/-lambda_n; the moment M0 = integral of G |p - p_0|, N m (2D: per depth, N), G the mean
+/// of both sides; in 3D the moment magnitude 2/3 (log10(M0/(N m)) - 9.1).
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
                                                             ElasticPlasticJumpParameters parameters);
 

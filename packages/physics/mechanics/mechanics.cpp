@@ -9,6 +9,7 @@
 #include "physics/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sprekk::physics {
 
@@ -25,14 +26,18 @@ Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const ba
 /// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
 /// means, too.
 Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto section = [&](int fracture) -> const Fracture& {
-    return scene.fractures.at(mesh.fracture_names[fracture]);
+  const bool own = !scene.own_joints.empty();  // groups are single fractures then, else sets
+  const auto section = [&](int group) -> const Fracture& {
+    return scene.fractures.at(mesh.fracture_names[own ? mesh.single_fractures[group].set : group]);
   };
-  const auto material = [&](int fracture) -> const Material& { return scene.materials.at(section(fracture).material); };
-  std::vector<int> fracture_of;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) fracture_of.push_back(mesh.fracture_faces[f].fracture);
-  return properties<JointParameters>(
-      static_cast<int>(mesh.fracture_names.size()), fracture_of,
+  const auto material = [&](int group) -> const Material& {
+    return own ? joint_of(scene, mesh, group) : scene.materials.at(section(group).material);
+  };
+  std::vector<int> group_of;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    group_of.push_back(own ? mesh.fracture_faces[f].single : mesh.fracture_faces[f].fracture);
+  auto result = properties<JointParameters>(
+      static_cast<int>(own ? mesh.single_fractures.size() : mesh.fracture_names.size()), group_of,
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
         return material(fracture).is_uniform() &&
@@ -51,6 +56,8 @@ Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
           joint.law.gap.initial = mean(mesh, face, gap);
         return joint;
       });
+  if (own && result.number.empty()) result.number = group_of;
+  return result;
 }
 
 BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
@@ -164,6 +171,25 @@ std::vector<Real> initial_openings(const Setting& setting) {
       openings.push_back(jump[0]);
   });
   return openings;
+}
+
+std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
+  std::vector<StartOfFace> starts;
+  base::collectively(*setting.mesh.comm, [&] {
+    const auto parameters = jump_parameters(setting.mesh, parameters_of(setting));
+    if (parameters.initial_stress.empty()) return;
+    const auto tractions = initial_tractions(setting.mesh, parameters);
+    const Real zero = 0;  // all that laws have kept
+    for (LocalIndex f = 0; f < setting.mesh.n_owned_fracture_faces; ++f) {
+      const auto& joint = parameters.joints[parameters.joint_of_face.empty() ? setting.mesh.fracture_faces[f].fracture
+                                                                             : parameters.joint_of_face[f]];
+      laws::Contact<Real> at{.lambda_n = tractions[f][0], .history = {&zero, 0}};
+      at.plastic_slip = std::hypot(joint.plastic_jump[0], joint.plastic_jump[1]);
+      for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = joint.plastic_jump[k];
+      starts.push_back({tractions[f], joint.law.bound(at)});
+    }
+  });
+  return starts;
 }
 
 void Mechanics::add_modules(const Setting& setting, Modules& modules) {

@@ -82,6 +82,7 @@ struct Mechanics : Physics<Mechanics> {
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
+  static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
   static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
 };
 
@@ -93,6 +94,14 @@ Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
 
 /// As given, or the lithostatic one; of a region its own, where it has one.
 InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names);
+
+/// An owned fracture face at the start: its traction in its frame, Pa, and the bound on the shear of its joint.
+struct StartOfFace {
+  std::array<Real, 3> traction;
+  Real bound;
+};
+/// Of all owned ones; empty without initial stress. Collective.
+std::vector<StartOfFace> starts_of_faces(const Setting& setting);
 
 /// Along the normal, of owned fracture faces, m. Collective.
 std::vector<Real> initial_openings(const Setting& setting);

@@ -28,6 +28,20 @@ void expect_refusals(const std::string& text, const std::vector<Change>& changes
   }
 }
 
+/// What the section $Fractures may say of `two_squares`.
+std::string told(const std::string& lines) {
+  return replaced(two_squares, "$Nodes", "$Fractures\n" + lines + "$EndFractures\n$Nodes");
+}
+
+TEST(MshError, Fractures) {
+  EXPECT_THAT(refusal(told("1\n1 1\n")), HasSubstr("$Fractures, line 11: fracture 1: has 0 texts in quotes"));
+  EXPECT_THAT(refusal(told("1\n1 1 \"a\" \"friction\"\n")), HasSubstr("fracture 1: has 2 texts in quotes"));
+  EXPECT_THAT(refusal(told("1\n1 1 \"a\n")), HasSubstr("lacks a quotation mark"));
+  EXPECT_THAT(refusal(told("1\n1 x \"a\"\n")), HasSubstr("the number of an entity is \"x\""));
+  EXPECT_THAT(refusal(told("2\n1 1 \"a\"\n")), HasSubstr("must be an integer"));
+  EXPECT_THAT(refusal(told("1\n1 7 \"a\"\n")), HasSubstr("element 20: its entity 1 is no fracture of the set \"f1\""));
+}
+
 TEST(MshError, Files) {
   EXPECT_THAT(error_of([] { read_msh("no/such.msh"); }), HasSubstr("no/such.msh: there is no such file"));
   EXPECT_THAT(error_of([] { read_msh(SPREKK_SOURCE_DIR); }), HasSubstr("is a folder"));

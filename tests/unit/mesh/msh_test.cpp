@@ -296,5 +296,22 @@ TEST(MeshInfo, Text) {
   EXPECT_THAT(text, HasSubstr("6 edges, which meet in 1 point"));
 }
 
+TEST(Msh, SingleFractures) {
+  const auto of = [](const std::string& lines) {
+    return parse_msh(replaced(two_squares, "$Nodes", lines + "$Nodes"), "a.msh", fractures(1));
+  };
+  const auto plain = of("");
+  ASSERT_EQ(plain.single_fractures.size(), 1u);
+  EXPECT_EQ(plain.single_fractures[0].name, "f1");
+  const auto told = of(
+      "$Fractures\n3\n2 1 \"no fracture\"\n1 4 \"absent here\"\n1 1 \"joint A\" \"angle\" \"30 deg\"\n$EndFractures\n");
+  ASSERT_EQ(told.single_fractures.size(), 2u);
+  EXPECT_EQ(told.single_fractures[1].name, "joint A");
+  EXPECT_EQ(told.single_fractures[1].set, 0);
+  EXPECT_EQ(told.single_fractures[1].properties.at("angle"), "30 deg");
+  ASSERT_EQ(told.fracture_faces.size(), 1u);
+  EXPECT_EQ(told.fracture_faces[0].single, 1);
+}
+
 }  // namespace
 }  // namespace sprekk::mesh::testing

@@ -1,0 +1,119 @@
+"""Fractures of a run with its results as attributes, for geographic information systems: GeoJSON or a shapefile.
+
+DIR is the output directory of `sprekk run`, FILE is NAME.geojson or NAME.shp. Each trace is a line, in 3D each
+fracture a polygon, or a polygon of each face where it is not plane. All is in m and Pa, compression negative."""
+import argparse
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(1, str(Path(__file__).resolve().parents[1] / "plot"))
+
+from read import PlotError  # noqa: E402
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="sprekk export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("directory", metavar="DIR", type=Path, help="output directory of a run")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="NAME.geojson or NAME.shp")
+    parser.add_argument(
+        "--time", type=float, metavar="T", help="the step written nearest to T, in s (default: the last)"
+    )
+    parser.add_argument(
+        "--crs", metavar="EPSG:N", help="the metric coordinate system of the scene (default: a local one)"
+    )
+    return parser.parse_args(words)
+
+
+def write_geojson(path, found, plane, crs):
+    from features import as_geojson
+
+    path.write_text(as_geojson(found, plane, crs), encoding="utf-8")
+
+
+def write_shapefile(path, found, plane, crs):
+    try:
+        from osgeo import ogr, osr
+    except ImportError:
+        raise PlotError(f"{path}: writing this needs GDAL for Python: apt-get install python3-gdal") from None
+    ogr.UseExceptions()
+    osr.UseExceptions()
+    system = None
+    if crs:
+        system = osr.SpatialReference()
+        system.ImportFromEPSG(int(crs[5:]))
+    driver = ogr.GetDriverByName("ESRI Shapefile")
+    if path.exists():
+        driver.DeleteDataSource(str(path))
+    source = driver.CreateDataSource(str(path))
+    layer = source.CreateLayer(
+        path.stem, system, ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D, ["ENCODING=UTF-8"]
+    )
+    for name in found[0].attributes:
+        layer.CreateField(column(ogr, name, [one.attributes[name] for one in found]))
+    for one in found:
+        feature = ogr.Feature(layer.GetLayerDefn())
+        for name, value in one.attributes.items():
+            if value is not None:
+                feature.SetField(name, value)
+        feature.SetGeometry(geometry(ogr, one.shapes, plane))
+        layer.CreateFeature(feature)
+
+
+def column(ogr, name, values):
+    """Numbers have a fixed number of decimals in shapefiles: as many as there is room for beside the largest."""
+    texts = any(isinstance(value, str) for value in values)
+    definition = ogr.FieldDefn(name, ogr.OFTString if texts else ogr.OFTReal)
+    if not texts:
+        largest = max((abs(value) for value in values if value is not None), default=0)
+        definition.SetWidth(24)
+        definition.SetPrecision(max(min(15, 21 - len(str(int(largest)))), 0))
+    return definition
+
+
+def geometry(ogr, shapes, plane):
+    """All shapes of a fracture in one geometry."""
+    whole = ogr.Geometry(ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D)
+    for shape in shapes:
+        points = ogr.Geometry(ogr.wkbLineString if plane else ogr.wkbLinearRing)
+        for x in shape if plane else [*shape, shape[0]]:
+            points.AddPoint_2D(*x[:2]) if plane else points.AddPoint(*x)
+        part = points
+        if not plane:
+            part = ogr.Geometry(ogr.wkbPolygon25D)
+            part.AddGeometry(points)
+        whole.AddGeometry(part)
+    return whole
+
+
+WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shapefile}
+
+
+def export(options):
+    import features
+
+    write = WRITERS.get(options.output.suffix.lower())
+    if write is None:
+        raise PlotError(f"{options.output}: ends in none of {', '.join(WRITERS)}")
+    if options.crs and not re.fullmatch(r"EPSG:\d{4,6}", options.crs):
+        raise PlotError(f"--crs {options.crs}: is no coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
+    found, plane = features.of_run(options.directory, options.time)
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    write(options.output, found, plane, options.crs)
+    return options.output
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        print(export(options))
+    except (PlotError, OSError, RuntimeError) as error:  # the last by GDAL
+        print(f"sprekk export: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,138 @@
+"""Over time: slip and opening of fractures, pressures and rates of wells, injected volume; and what probes wrote."""
+import csv
+import re
+
+import numpy as np
+from read import PlotError
+from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
+
+MOST_LINES = 6  # in one panel
+
+
+def clock(times, wanted):
+    """The times in the unit that is wanted, (factor, name), or in a readable one; and the name."""
+    factor, name = wanted or unit(np.max(np.abs(times), initial=0), "s")
+    return np.asarray(times) / factor, name
+
+
+def injected(times, rates, start=0.0):
+    """The volume since the start, with the rate of each step all through it, as the steps are computed."""
+    return np.cumsum(np.diff(np.concatenate([[start], times])) * rates)
+
+
+def panels(steps, start=0.0):
+    """(label, unit, {name: values over the steps}) of what a run's steps hold."""
+    times = np.array([step["time"] for step in steps])
+    fractures = steps[-1].get("fractures", {})
+    for key, label, base in (
+        ("max_slip", "largest slip", "m"),
+        ("mean_opening", "mean opening", "m"),
+        ("mean_fracture_pressure", "mean pressure in fractures", "Pa"),
+    ):
+        names = [name for name in fractures if all(key in step["fractures"].get(name, {}) for step in steps)]
+        if names:
+            yield label, base, {
+                name: np.array([step["fractures"][name][key] for step in steps]) for name in sorted(names, key=natural)
+            }
+    wells = [name for name in steps[-1].get("wells", {}) if all(name in step.get("wells", {}) for step in steps)]
+    if wells:
+        pressure, rate = (
+            {
+                name: np.array(
+                    [np.nan if step["wells"][name].get(key) is None else step["wells"][name][key] for step in steps],
+                    dtype=float,
+                )
+                for name in wells
+            }
+            for key in ("pressure", "rate")
+        )
+        yield "pressure in wells", "Pa", pressure
+        yield "injected volume", "m³", {name: injected(times, values, start) for name, values in rate.items()}
+
+
+def draw(ax, times, label, base, curves):
+    """Those with the largest changes in colour, the others thin."""
+    quantity = Quantity(label, base, *curves.values()) if base else None
+    names = list(curves)
+    shown = foremost([np.nanmax(values) - np.nanmin(values) for values in curves.values()], MOST_LINES)
+    for k, name in enumerate(names):
+        values = quantity(curves[name]) if quantity else curves[name]
+        if k in shown:
+            ax.plot(times, values, markersize=3 if len(times) <= 60 else 0, label=name, **look(shown.index(k)))
+        else:
+            ax.plot(times, values, color=FAINT, linewidth=0.5, zorder=1)
+    if len(names) > len(shown):
+        ax.plot([], [], color=FAINT, linewidth=0.5, label=f"{len(names) - len(shown)} others")
+    ax.set_ylabel(quantity.label if quantity else label)
+    if len(names) > 1:
+        ax.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=7)
+
+
+def figure_of(title, times, name, content):
+    """A panel for each entry of the content, with one axis of time."""
+    figure, axes = plt.subplots(len(content), 1, sharex=True, squeeze=False, figsize=(7.4, 0.6 + 2.1 * len(content)))
+    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+    for ax, (label, base, curves) in zip(axes.flat, content):
+        draw(ax, times, label, base, curves)
+    axes[-1, 0].set_xlabel(f"time ({name})")
+    figure.align_ylabels()
+    return figure
+
+
+def of_run(steps, title, wanted=None, start=0.0):
+    """Of at least two steps; None if there is nothing to draw."""
+    content = list(panels(steps, start)) if len(steps) > 1 else []
+    content = [
+        (label, base, curves)
+        for label, base, curves in content
+        if any(np.nanmax(abs(v), initial=0) > 0 for v in curves.values())
+    ]
+    if not content:
+        return None
+    times, name = clock([step["time"] for step in steps], wanted)
+    return figure_of(title, times, name, content)
+
+
+TITLE = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*$")
+
+
+def probe(path):
+    """The columns of a probe's CSV: [(name, unit, values)], the first of them the time."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    titles = [TITLE.match(title) for title in rows[0]] if rows else []
+    if not titles or None in titles or titles[0]["name"] != "time":
+        raise PlotError(f'{path}: is no CSV of a probe; such a file starts with "time [s],"')
+    try:
+        values = np.array([[float(word) if word else np.nan for word in row] for row in rows[1:]]).reshape(
+            -1, len(titles)
+        )
+    except ValueError as error:
+        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+    return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
+
+
+def panel(name, symbol, curves):
+    """As figure_of() takes it; units that have no prefixes stand in the name."""
+    return (name, symbol, curves) if symbol in PREFIXES else (f"{name} ({symbol})", "", curves)
+
+
+def of_probe(path):
+    """A panel for each unit; along a line the profiles of the last time. None of an empty one."""
+    columns = probe(path)
+    clock_name, times = columns[0][1:]
+    if not len(times):
+        return None
+    if len(columns) > 1 and columns[1][0] == "distance":
+        last = times == times[-1]
+        content = [panel(name, symbol, {name: values[last]}) for name, symbol, values in columns[2:] if name not in "xyz"]
+        figure = figure_of(f"{path.stem}, t = {times[-1]:g} {clock_name}", columns[1][2][last], "", content)
+        figure.axes[-1].set_xlabel("distance (m)")
+        return figure
+    groups = {}
+    for name, symbol, values in columns[1:]:
+        groups.setdefault(symbol, {})[name] = values
+    content = [
+        panel(next(iter(curves)) if len(curves) == 1 else "values", symbol, curves) for symbol, curves in groups.items()
+    ]
+    return figure_of(path.stem, times, clock_name, content)

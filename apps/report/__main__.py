@@ -1,0 +1,86 @@
+"""Reports on a run in one HTML file, which needs nothing beside it: the scene in words, checks, key figures,
+pictures, a 3D view that can be turned, convergence and timing.
+
+DIR is the output directory of `sprekk run`; the report is DIR/report.html."""
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[1:1] = [str(ROOT / "apps" / "plot"), str(ROOT / "perf" / "contact")]
+
+from read import PlotError  # noqa: E402
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="sprekk report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("directory", metavar="DIR", type=Path, help="output directory of a run")
+    parser.add_argument("--output", type=Path, metavar="FILE", help="write the report there")
+    parser.add_argument("--dpi", type=int, default=110, help="dots per inch of pictures (default: 110)")
+    parser.add_argument("--viewer", type=Path, help=argparse.SUPPRESS)  # the bundle of the 3D view, by the launcher
+    return parser.parse_args(words)
+
+
+def pictures(directory, dpi):
+    """(name, PNG) of each picture that `sprekk plot` draws, and what it says of those that it leaves out."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(
+            [sys.executable, "-B", str(ROOT / "apps" / "plot"), str(directory), "--output", folder, "--dpi", str(dpi)],
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
+        )
+        said = done.stderr.strip().replace("sprekk plot: ", "")
+        if done.returncode:
+            raise PlotError(said)
+        return [(Path(line).stem, Path(line).read_bytes()) for line in done.stdout.splitlines()], said
+
+
+def report(options):
+    import checks
+    import figures
+    import page
+    import read
+    import scene
+    import view
+
+    directory = options.directory
+    if not directory.is_dir():
+        raise PlotError(f"{directory}: no such directory")
+    content = read.results(directory)
+    entries = scene.Scene(directory, ROOT / "docs" / "reference.md")
+    drawn, left_out = pictures(directory, options.dpi)
+    viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
+    html = page.of_run(
+        directory.resolve().name,
+        content,
+        entries,
+        checks.of_run(directory, content, entries),
+        figures.of_run(content),
+        drawn,
+        left_out,
+        view.of_run(directory) if viewer else None,
+        viewer,
+    )
+    file = options.output or directory / "report.html"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(html, encoding="utf-8")
+    return file
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        print(report(options))
+    except (PlotError, OSError) as error:
+        print(f"sprekk report: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""What speaks for a result and what against it: convergence, laws of contact, balances."""
+from collections import namedtuple
+
+import numpy as np
+from numbers_in_words import number, quantity
+
+Check = namedtuple("Check", "name verdict words")  # verdict: "passed", "failed", or "noted" where there is no bound
+MOST_UNBALANCED = 1e-6  # of the largest reaction
+WORST_VIOLATION = 1e-6  # of the largest displacement or traction
+WELL_ESTIMATED = 0.05  # a relative error
+JUDGED_STEPS = 200  # written steps; more take long to read
+
+
+def of_run(directory, content, scene):
+    steps = content["steps"]
+    yield completion(content)
+    yield convergence(steps)
+    yield halvings(steps)
+    if any("fractures" in step for step in steps) and scene.entries.get("Materials"):
+        yield contact(directory, content)
+    yield from forces(steps, scene)
+    yield from fluid(steps)
+    yield from estimates(steps[-1])
+
+
+def completion(content):
+    reason = f": {content['reason']}" if content.get("reason") else ""
+    done = content["status"] == "completed"
+    return Check("run", "passed" if done else "failed", f"{content['status']}, {len(content['steps'])} steps{reason}")
+
+
+def convergence(steps):
+    failed = [str(k) for k, step in enumerate(steps, 1) if not step["converged"]]
+    if failed:
+        return Check("convergence", "failed", f"step {', '.join(failed[:5])} did not converge")
+    left = max((value for step in steps for value in step["measures"].values() if value is not None), default=0)
+    most = max(step["newton_iterations"] for step in steps)
+    return Check(
+        "convergence",
+        "passed",
+        f"all steps; at most {most} Newton iterations in one; largest relative residual "
+        f"at the end of a step {number(left)}",
+    )
+
+
+def halvings(steps):
+    cut = sum(step["cuts"] > 0 for step in steps)
+    words = f"{cut} of {len(steps)} steps were halved" if cut else "no step was halved"
+    return Check("time steps", "noted" if cut else "passed", words)
+
+
+def contact(directory, content):
+    """By the files that the run wrote, independently of the solver."""
+    import read
+    import violation
+
+    name = "laws of contact and friction"
+    written = read.written_steps(directory, "fractures")
+    if not written or not all("mean_slip" in f for f in content["steps"][-1].get("fractures", {}).values()):
+        return Check(name, "noted", "not judged: the run wrote no states of fractures")
+    if len(written) > JUDGED_STEPS:
+        return Check(name, "noted", f"not judged: more than {JUDGED_STEPS} written steps")
+    try:
+        _, _, worst, _ = violation.largest(directory, content, violation.Input(directory / "effective_input.xml"))
+    except (ValueError, KeyError, TypeError) as error:  # a law that it does not know, or numbers by expressions
+        return Check(name, "noted", f"not judged: {error}")
+    k = int(np.argmax(worst))
+    verdict = "passed" if worst[k] <= WORST_VIOLATION else "failed"
+    return Check(
+        name,
+        verdict,
+        f"largest violation {number(float(worst[k]))} ({violation.PARTS[k]}), relative to the "
+        "largest displacement or traction",
+    )
+
+
+def forces(steps, scene):
+    """Where nothing but prescribed displacements loads the rock, reactions balance each other."""
+    reactions = steps[-1].get("reactions", {})
+    if not reactions:
+        return
+    total = np.sum(list(reactions.values()), axis=0)
+    largest = np.max(np.abs(list(reactions.values())))
+    loads = [entry for entry in ("traction", "body force", "gravity", "periodic") if scene.has(entry)]
+    if loads:
+        yield Check(
+            "balance of forces",
+            "noted",
+            f"the reactions sum up to ({', '.join(map(number, total))}), which the "
+            f"other loads carry ({', '.join(loads)})",
+        )
+    else:
+        relative = np.max(np.abs(total)) / largest if largest > 0 else 0
+        yield Check(
+            "balance of forces",
+            "passed" if relative <= MOST_UNBALANCED else "failed",
+            f"the reactions sum up to {number(relative)} of the largest",
+        )
+
+
+def fluid(steps):
+    for key, what, unit in (("inflows", "fluid", "m³/s"), ("heat_inflows", "heat", "W")):
+        last = steps[-1]
+        if key not in last and not (what == "fluid" and "wells" in last):
+            continue
+        through = sum(np.sum(value) for value in last.get(key, {}).values())
+        wells = sum(well["rate"] for well in last.get("wells", {}).values()) if what == "fluid" else 0
+        yield Check(
+            f"balance of {what}",
+            "noted",
+            f"at the end {quantity(through)} {unit} come in through boundaries and "
+            f"{quantity(wells)} {unit} through wells; their sum, {quantity(through + wells)} {unit}, is stored",
+        )
+
+
+def estimates(step):
+    for name, estimate in step.get("error_estimate", {}).items():
+        if isinstance(estimate, dict) and "relative" in estimate:
+            good = estimate["relative"] <= WELL_ESTIMATED
+            yield Check(
+                f"estimated error of the {name}",
+                "passed" if good else "noted",
+                f"{number(100 * estimate['relative'])} %" + ("" if good else ": a finer mesh is advisable"),
+            )

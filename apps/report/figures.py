@@ -1,0 +1,110 @@
+"""Key figures: tables of what the last step holds, and of what the run cost."""
+from collections import namedtuple
+
+from numbers_in_words import number, quantity, unit_of
+
+Table = namedtuple("Table", "title columns rows note")
+MOST_ROWS = 30
+NOISE = 1e-9  # of the largest of a column: rounding
+
+OF_FRACTURES = [
+    ("area", "length or area", "m"),
+    ("fraction_slip", "slipping part", ""),
+    ("fraction_open", "open part", ""),
+    ("mean_slip", "mean slip", "m"),
+    ("max_slip", "largest slip", "m"),
+    ("max_opening", "largest opening", "m"),
+    ("slip_tendency", "slip tendency", ""),
+    ("max_fracture_pressure", "largest pressure", "Pa"),
+    ("moment", "moment", "N m"),
+    ("moment_magnitude", "moment magnitude", ""),
+]
+
+
+def column(title, values, base):
+    """The title with a unit, and texts."""
+    largest = max((abs(value) for value in values if value is not None), default=0)
+    factor, unit = unit_of(largest, base) if base else (1, "")
+    values = [0 if value is not None and abs(value) <= NOISE * largest else value for value in values]
+    return f"{title} ({unit})" if unit else title, [
+        number(None if value is None else value / factor) for value in values
+    ]
+
+
+def singles(content, step):
+    """Of traces, polygons and ellipses each, as `fractures` of a step has it of their sets; none where the run tells
+    none."""
+    columns = step.get("single_fractures", {})
+    return {
+        one["name"]: {"area": one["area"], **{key: values[k] for key, values in columns.items()}}
+        for k, one in enumerate(content.get("single_fractures", []))
+        if columns
+    }
+
+
+def of_fractures(fractures, dim):
+    """Those that have slipped most first."""
+    names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
+    shown = names[:MOST_ROWS]
+    columns = [("fracture", shown)]
+    for key, title, base in OF_FRACTURES:
+        if any(key in fractures[name] for name in shown):
+            if key == "area":
+                base, title = ("m²", "area") if dim == 3 else ("m", "length")
+            if key == "moment" and dim == 2:
+                base, title = "N", "moment per depth"
+            columns.append(column(title, [fractures[name].get(key) for name in shown], base))
+    if not shown or len(columns) == 1:
+        return
+    note = f"{len(names) - len(shown)} more slip less" if len(names) > len(shown) else ""
+    yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), note)
+
+
+def of_boundaries(step):
+    reactions = step.get("reactions", {})
+    if reactions:
+        axes = ["x", "y", "z"][: len(next(iter(reactions.values())))]
+        unit = "N/m" if len(axes) == 2 else "N"
+        columns = [column("", values, "")[1] for values in zip(*reactions.values())]
+        yield Table(
+            "Reactions of boundaries",
+            ["boundary", *(f"{axis} ({unit})" for axis in axes)],
+            list(zip(reactions, *columns)),
+            "forces on the rock",
+        )
+
+
+def of_wells(step):
+    wells = step.get("wells", {})
+    if wells:
+        rows = [(name, number(well.get("rate")), quantity(well.get("pressure"), "Pa")) for name, well in wells.items()]
+        yield Table("Wells", ["well", "rate (m³/s)", "pressure"], rows, "")
+
+
+def of_costs(content):
+    mesh = content.get("mesh", {})
+    fields = content.get("blocks", {}).get("fields", [])
+    rows = [
+        ("cells", f"{mesh.get('cells', 0)}"),
+        ("nodes", f"{mesh.get('nodes', 0)}"),
+        ("fracture faces", f"{mesh.get('fracture_faces', 0)}"),
+        *((f"unknowns, {field['name']}", str(field["unknowns"])) for field in fields),
+        ("ranks", str(content.get("ranks", 1))),
+        ("largest memory of a rank", f"{content.get('memory', {}).get('peak_bytes_largest_rank', 0) / 2**20:.0f} MiB"),
+        ("solver", content.get("solver", {}).get("choice", "")),
+    ]
+    yield Table("Size", ["", ""], rows, "")
+    timing = sorted(content.get("timing", {}).items(), key=lambda item: -item[1]["seconds"])[:12]
+    rows = [
+        (name.replace("_", " "), str(part["count"]), f"{part['seconds']:.2f}", f"{part['cpu_seconds']:.2f}")
+        for name, part in timing
+    ]
+    yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may hold others")
+
+
+def of_run(content):
+    """Tables of results, tables of costs."""
+    last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
+    dim = content.get("mesh", {}).get("dimension", 3)
+    fractures = singles(content, last) or last.get("fractures", {})
+    return [*of_fractures(fractures, dim), *of_wells(last), *of_boundaries(last)], list(of_costs(content))

@@ -1,0 +1,133 @@
+"""The page of a report: one HTML file without references to others, for screens, phones and paper."""
+import base64
+import html
+import json
+from pathlib import Path
+
+from numbers_in_words import quantity
+
+CAPTIONS = {
+    "bulk": "Rock, deformed: displacement, von Mises stress and largest compressive stress",
+    "fractures": "Fractures: tangential jump, slip, opening, tractions and contact state",
+    "maps": "Where fractures slip and open, and which directions tend to slip",
+    "flow": "Pressure and flow in rock and fractures",
+    "temperature": "Temperature and heat flux in the rock",
+    "error": "Where the estimated error sits",
+    "loops": "Mean traction against mean jump of fractures, over all steps",
+    "mohr": "Stress on fracture faces beside the strength of the joints",
+    "series": "Over time",
+    "magnitudes": "How many fractures slipped with at least a magnitude",
+    "convergence": "Iterations of each step, and what was left at its end",
+}
+OPEN_ON_PAPER = (
+    "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((d) => { d.open = true; }))"
+)
+VERDICTS = {"passed": "✓", "failed": "✗", "noted": "○"}
+
+
+def text(words):
+    return html.escape(str(words), quote=False)
+
+
+def table(content):
+    head = "".join(f"<th>{text(column)}</th>" for column in content.columns)
+    head = f"<thead><tr>{head}</tr></thead>" if any(content.columns) else ""
+    rows = "".join("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>" for row in content.rows)
+    note = f"<p class='note'>{text(content.note)}</p>" if content.note else ""
+    return f"<h3>{text(content.title)}</h3><div class='wide'><table>{head}<tbody>{rows}</tbody></table></div>{note}"
+
+
+def summary(results, scene):
+    mesh, steps = results.get("mesh", {}), results["steps"]
+    body = {2: "A plane section of rock", 3: "A body of rock"}.get(mesh.get("dimension"), "Rock")
+    physics = [
+        words
+        for section, words in (("Flow", "with a fluid that flows through it"), ("Heat", "with heat"))
+        if section in scene.entries
+    ]
+    fractures = scene.entries.get("Fractures", {})
+    many = (
+        f"{len(fractures)} fracture{'s' if len(fractures) != 1 else ''} or sets of them"
+        if fractures
+        else "no fractures"
+    )
+    return (
+        f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {mesh.get('cells', 0)} cells, has {many} "
+        f"({mesh.get('fracture_faces', 0)} faces). {len(steps)} step{'s' if len(steps) != 1 else ''} up to "
+        f"t = {quantity(steps[-1]['time'], 's')}."
+    )
+
+
+def scene_in_words(scene):
+    """For each section what it says beside defaults, indented as it is nested."""
+    parts = []
+    for names, path, entries in scene.blocks():
+        place = " › ".join((*path[:-1], ", ".join(names)))
+        inner = "".join(f"<dt>{text(name)}</dt><dd>{text(value)}</dd>" for name, value in entries)
+        parts.append(f"<section class='entries'><h4>{text(place)}</h4><dl>{inner}</dl></section>")
+    return "".join(parts)
+
+
+def checks_list(checks):
+    items = "".join(
+        f"<li class='{check.verdict}'><b>{VERDICTS[check.verdict]} {text(check.name)}</b> {text(check.words)}</li>"
+        for check in checks
+    )
+    return f"<ul class='checks'>{items}</ul>"
+
+
+def figure(name, png):
+    data = base64.b64encode(png).decode()
+    caption = text(CAPTIONS.get(name, name.replace("probe_", "Probe ")))
+    return (
+        f"<figure><img alt='{caption}' src='data:image/png;base64,{data}'><figcaption>{caption}</figcaption></figure>"
+    )
+
+
+def view_part(view, viewer):
+    """The 3D view, or why there is none; the script comes last in the page."""
+    if viewer is None:
+        return (
+            "<p class='note'>This report has no 3D view: its viewer could not be built when the report was written.</p>",
+            "",
+        )
+    if view is None:
+        return "<p class='note'>The run wrote no grids, so there is no 3D view.</p>", ""
+    data = json.dumps(view).replace("</", "<\\/")
+    place = (
+        f"<div id='view'></div><div id='view-controls'></div>"
+        f"<p class='note'>At t = {text(quantity(view['time'], 's'))}. Drag to turn, pinch or scroll to zoom, shift-drag to move.</p>"
+    )
+    return place, f"<script type='application/json' id='view-data'>{data}</script><script>{viewer}</script>"
+
+
+def of_run(name, results, scene, checks, tables, drawn, left_out, view, viewer):
+    style = (Path(__file__).parent / "page.css").read_text()
+    found, costs = tables
+    convergence = [picture for picture in drawn if picture[0] == "convergence"]
+    place, script = view_part(view, viewer)
+    parts = [
+        (
+            "scene",
+            "Scene",
+            f"<p>{text(summary(results, scene))}</p><details><summary>All that is not a default</summary>{scene_in_words(scene)}</details>",
+        ),
+        ("checks", "Checks", checks_list(checks)),
+        ("figures", "Key figures", "".join(map(table, found)) or "<p>None.</p>"),
+        ("turn", "View to turn", place),
+        (
+            "pictures",
+            "Pictures",
+            "".join(figure(*one) for one in drawn if one not in convergence)
+            + (f"<p class='note'>{text(left_out)}</p>" if left_out else ""),
+        ),
+        ("convergence", "Convergence", "".join(figure(*one) for one in convergence)),
+        ("costs", "Size and time", "".join(map(table, costs))),
+    ]
+    links = "".join(f"<a href='#{key}'>{title}</a>" for key, title, _ in parts)
+    body = "".join(f"<section id='{key}'><h2>{title}</h2>{inner}</section>" for key, title, inner in parts)
+    return (
+        f"<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>"
+        f"<link rel='icon' href='data:,'><title>{text(name)} – Sprekk</title><style>{style}</style></head><body><header><h1>{text(name)}</h1>"
+        f"<nav>{links}</nav></header><main>{body}</main><script>{OPEN_ON_PAPER}</script>{script}</body></html>\n"
+    )

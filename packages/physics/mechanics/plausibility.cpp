@@ -1,0 +1,302 @@
+// What scenes ask of mechanics and hardly mean.
+#include "assembly/geometry.hpp"
+#include "base/over_ranks.hpp"
+#include "base/text.hpp"
+#include "mesh/extents.hpp"
+#include "physics/entry_of_place.hpp"
+#include "physics/scene.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::physics {
+
+using mesh::norm;
+using mesh::operator-;
+
+namespace {
+
+constexpr Real huge = std::numeric_limits<Real>::max();
+
+/// A value and where it is.
+struct Extreme {
+  Real value = -huge;
+  mesh::Vector x{};
+};
+
+/// The largest over all ranks, element by element, of the lowest rank that has it.
+void take_largest(const Comm& comm, std::vector<Extreme>& all) {
+  std::vector<Real> value, x;
+  std::vector<int> rank;
+  for (const auto& one : all) value.push_back(one.value);
+  const auto most = base::max_over_ranks(comm, value);
+  for (std::size_t k = 0; k < all.size(); ++k) rank.push_back(value[k] == most[k] ? comm.getRank() : comm.getSize());
+  rank = base::min_over_ranks(comm, rank);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (const Real component : all[k].x) x.push_back(rank[k] == comm.getRank() ? component : 0);
+  x = base::sum_over_ranks(comm, x);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = {most[k], {x[3 * k], x[3 * k + 1], x[3 * k + 2]}};
+}
+
+/// Calls look(), which errors of expressions end: a step that gets there tells them. Not collective.
+template <class Look>
+void looking(const Look& look) {
+  try {
+    look();
+  } catch (const Error&) {
+  }
+}
+
+/// At most twelve of the times, the last among them.
+std::vector<Real> some_of(const std::vector<Real>& times) {
+  constexpr std::size_t most = 12;
+  std::vector<Real> some;
+  const std::size_t n = times.size(), stride = (n + most - 1) / most;
+  for (std::size_t k = (n - 1) % stride; k < n; k += stride) some.push_back(times[k]);
+  return some;
+}
+
+/// Calls use(face centre, piece of rock) for owned faces on which a condition holds.
+template <class Use>
+void for_each_face_of(const mesh::Mesh& mesh, const BoundaryCondition& condition, const Use& use) {
+  for (const auto& face : mesh.boundary_faces)
+    if (face.owned && mesh.boundary_names[face.boundary] == condition.boundary &&
+        (!condition.region || mesh.region_names[mesh.cell_region[face.cell]] == *condition.region))
+      use(mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face)), mesh.cell_piece[face.cell]);
+}
+
+/// The largest displacement in direction i that conditions give at time t, and the negative of the smallest, [2 piece]
+/// and [2 piece + 1] of the pieces of rock between fractures: these may slide past each other.
+std::vector<Extreme> displacements(const Setting& setting, int i, Real t) {
+  std::vector<Extreme> all(2 * setting.mesh.n_pieces);
+  looking([&] {
+    for (const auto& [name, condition] : setting.scene.boundary_conditions) {
+      if (condition.displacement.empty() || condition.displacement[i].text() == "free") continue;
+      for_each_face_of(setting.mesh, condition, [&](const mesh::Vector& x, int piece) {
+        const Real u = condition.displacement[i](x, t);
+        for (const int side : {0, 1})
+          if (auto& extreme = all[2 * piece + side]; (side ? -u : u) > extreme.value) extreme = {side ? -u : u, x};
+      });
+    }
+  });
+  take_largest(*setting.mesh.comm, all);
+  return all;
+}
+
+/// Displacements on a piece of rock that differ by more than 5 % of the distance between them.
+std::string strain_doubt(const Setting& setting, const std::vector<Real>& times) {
+  constexpr Real most = 0.05;
+  struct {
+    Real strain = 0, t = 0, difference = 0, distance = 0;
+  } worst;
+  for (const Real t : times)
+    for (int i = 0; i < setting.mesh.dim(); ++i) {
+      const auto all = displacements(setting, i, t);
+      for (std::size_t k = 0; k < all.size(); k += 2) {
+        if (all[k].value == -huge) continue;
+        const Real difference = all[k].value + all[k + 1].value, distance = norm(all[k].x - all[k + 1].x);
+        if (difference > worst.strain * distance && distance > 0)
+          worst = {difference / distance, t, difference, distance};
+      }
+    }
+  if (worst.strain <= most) return "";
+  return implausible(setting.scene.origin + ": Sprekk > Boundary conditions",
+                     fmt::format("displacements at t = {:.4g} s differ by {:.3g} m over {:.3g} m of rock, {:.3g} %",
+                                 worst.t, worst.difference, worst.distance, 100 * worst.strain),
+                     "strains are taken as small, and rock fails long before 5 %",
+                     "check the unit of the displacements and of the lengths");
+}
+
+/// The least Young's modulus of the rocks that are numbers; 0 if none is.
+Real least_modulus(const Scene& scene) {
+  Real least = 0;
+  for (const auto& [name, material] : scene.materials) {
+    if (material.type != "elastic" || !material.has_elasticity() || !material.is_uniformly_elastic()) continue;
+    const Real E = material.elasticity({}).youngs_modulus();
+    least = least == 0 ? E : std::min(least, E);
+  }
+  return least;
+}
+
+/// Stresses above Young's modulus.
+std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
+  const auto& [scene, mesh, start] = setting;
+  const Real E = least_modulus(scene);
+  if (E == 0) return "";
+  Real stress = 0;
+  const auto compare = [&](Real value) { stress = std::max(stress, std::abs(value)); };
+  looking([&] {
+    for (const auto& [name, condition] : scene.boundary_conditions)
+      for (const auto& component : condition.traction)
+        for_each_face_of(mesh, condition, [&](const mesh::Vector& x, int) {
+          for (const Real t : times) compare(component(x, t));
+        });
+    const auto initial = initial_stress(scene, mesh.region_names);
+    for (LocalIndex cell = 0; cell < mesh.n_owned_cells && !initial.empty(); ++cell)
+      for (const auto& component : initial.value[mesh.cell_region[cell]])
+        compare(component(mesh::cell_centre(mesh, cell), 0));
+  });
+  const Real most = base::max_over_ranks(*mesh.comm, stress);
+  if (most <= E) return "";
+  return implausible(scene.origin + ": Sprekk > Materials",
+                     fmt::format("Young's modulus is {:.4g} Pa, and there is a stress of {:.4g} Pa", E, most),
+                     "that strains the rock by more than 100 %",
+                     E < 1e4 ? "write the unit behind the modulus, as in \"50 GPa\"" : "check both units");
+}
+
+/// Stiffnesses of joints that are GPa/m or MPa/m without their prefix, beside the rock's.
+std::vector<std::string> stiffness_doubts(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const Real E = least_modulus(scene), size = mesh::largest_extent(mesh);
+  std::vector<std::string> all;
+  for (const auto& [name, material] : scene.materials)
+    for (const char* entry : {"tangential stiffness", "normal stiffness"}) {
+      const auto& value = material.entry(entry);
+      if (material.type != "joint" || !value || !value->is_constant()) continue;
+      const Real K = (*value)({}, 0);
+      if (E < 1e6 || K < 0.1 || K > 1e4 || K * size > 1e-6 * E) continue;
+      all.push_back(implausible(fmt::format("{}: Sprekk > Materials > {} > \"{}\"", scene.origin, name, entry),
+                                fmt::format("is {:.4g} Pa/m beside rock of {:.4g} Pa", K, E),
+                                "the joint has next to no resistance", "write the unit, as in \"10 GPa/m\""));
+    }
+  return all;
+}
+
+/// Coefficients above 1.5, angles that are radians, dilation beyond friction, damage without lengths.
+std::vector<std::string> joint_doubts(const Scene& scene) {
+  std::vector<std::string> all;
+  for (const auto& [name, joint] : scene.materials) {
+    if (joint.type != "joint" || joint.source) continue;  // with a source it has been looked at
+    const auto tell = [&](const std::string& entry, const std::string& what, const std::string& why,
+                          const std::string& advice) {
+      all.push_back(implausible(fmt::format("{}: Sprekk > Materials > {} > \"{}\"", scene.origin, name, entry), what,
+                                why, advice));
+    };
+    const auto number = [&](const std::string& entry) {
+      const auto& value = joint.entry(entry);
+      return value && value->is_constant() ? (*value)({}, 0) : 0;
+    };
+    if (const Real mu = number("friction coefficient"); mu > 1.5)
+      tell("friction coefficient", fmt::format("is {:.4g}", mu), "rock has 0.2 to 1.2",
+           "for faces that must not slip make the joint stiff, or leave the fracture out; an angle is a \"friction "
+           "angle\"");
+    for (const char* entry : {"friction angle", "residual friction angle", "basic friction angle", "dilation angle"})
+      if (const Real angle = number(entry); angle > 0 && angle < 0.02 * (entry[0] == 'd' ? 1 : 50))
+        tell(entry, fmt::format("is {:.4g} degrees", angle),
+             "that is next to nothing, and an angle in radians would be",
+             "write the unit, as in \"30 deg\" or \"0.52 rad\"");
+    const Real slope =
+        number("friction angle") > 0 ? std::tan(number("friction angle") * M_PI / 180) : number("friction coefficient");
+    if (const Real dilation = number("dilation angle");
+        joint.friction == "Coulomb" && slope > 0 && std::tan(dilation * M_PI / 180) > slope)
+      tell("dilation angle", fmt::format("is {:.4g} degrees", dilation),
+           fmt::format("that is above the friction angle, {:.4g} degrees: sliding would yield work",
+                       std::atan(slope) * 180 / M_PI),
+           "friction contains dilation; give a smaller angle");
+    const auto is_infinite = [&](const char* entry) {
+      const auto& value = joint.entry(entry);
+      return !value || (value->is_constant() && std::isinf((*value)({}, 0)));
+    };
+    if (joint.damage != "none" && is_infinite("damage length of friction") && is_infinite("damage length of dilation"))
+      tell("damage", fmt::format("is \"{}\"", joint.damage), "without a length it damages nothing",
+           "give \"damage length of friction\" or \"damage length of dilation\"");
+  }
+  return all;
+}
+
+/// The largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
+Real largest_principal(const std::vector<Real>& s) {
+  const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
+  const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+  const Real p = std::sqrt((a * a + b * b + c * c + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
+  if (p == 0) return mean;
+  const Real det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+  return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
+}
+
+/// Initial stress in tension somewhere.
+std::string tension_doubt(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const auto initial = initial_stress(scene, mesh.region_names);
+  if (initial.empty()) return "";
+  std::vector<Extreme> highest(1);
+  std::array<Real, 2> volumes{};  // of cells in tension, of all
+  Real compression = 0;
+  looking([&] {
+    for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
+      const auto x = mesh::cell_centre(mesh, cell);
+      std::vector<Real> stress;
+      for (const auto& component : initial.value[mesh.cell_region[cell]]) stress.push_back(component(x, 0));
+      const Real principal = largest_principal(stress);
+      if (principal > highest[0].value) highest[0] = {principal, x};
+      volumes[0] += principal > 0;
+      volumes[1] += 1;
+      for (int i = 0; i < 3; ++i) compression = std::max(compression, std::abs(stress[i]));
+    }
+  });
+  take_largest(*mesh.comm, highest);
+  const auto& most = highest[0];
+  volumes = base::sum_over_ranks(*mesh.comm, volumes);
+  compression = base::max_over_ranks(*mesh.comm, compression);
+  if (most.value <= 1e-6 * compression) return "";
+  return implausible(
+      scene.origin + ": Sprekk > Bulk",
+      fmt::format("the initial stress is tension in {:.3g} % of the cells, {:.4g} Pa at ({:.4g}, {:.4g}, "
+                  "{:.4g})",
+                  100 * volumes[0] / volumes[1], most.value, most.x[0], most.x[1], most.x[2]),
+      "rock at rest is compressed, which has a negative sign here",
+      "check signs and, of a \"lithostatic stress\", the \"surface\"");
+}
+
+/// Fractures beyond their strength at the start.
+std::string strength_doubt(const Setting& setting) {
+  const auto& mesh = setting.mesh;
+  if (initial_stress(setting.scene, mesh.region_names).empty()) return "";
+  const auto starts = starts_of_faces(setting);
+  std::vector<Real> beyond(mesh.single_fractures.size(), 0), all(beyond);
+  for (std::size_t f = 0; f < starts.size(); ++f) {
+    const auto& [t, bound] = starts[f];
+    const auto& face = mesh.fracture_faces[f];
+    all[face.single] += face.area;
+    if (std::hypot(t[1], t[2]) > (1 + 1e-9) * bound || (t[0] > 0 && bound <= 0)) beyond[face.single] += face.area;
+  }
+  beyond = base::sum_over_ranks(*mesh.comm, beyond);
+  all = base::sum_over_ranks(*mesh.comm, all);
+  std::vector<std::string> names;
+  Real area = 0, total = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    area += beyond[k];
+    total += all[k];
+    if (beyond[k] > 0) names.push_back(mesh.single_fractures[k].name);
+  }
+  if (names.empty()) return "";
+  constexpr std::size_t told = 8;
+  const auto n = names.size();
+  if (n > told) names.resize(told);
+  return implausible(setting.scene.origin + ": the initial state",
+                     fmt::format("{} beyond the strength of the joint ({:.3g} % of the area): \"{}\"{}",
+                                 n == 1 ? "a fracture is" : fmt::format("{} fractures are", n), 100 * area / total,
+                                 fmt::join(names, "\", \""), n > told ? ", ..." : ""),
+                     "they slip or open in the first step without any load",
+                     "check the initial stress, the pressure and the friction, or take that step as part of the start");
+}
+
+}  // namespace
+
+std::vector<std::string> Mechanics::plausibility(const Setting& setting, const std::vector<Real>& times) {
+  if (!is_in(setting.scene)) return {};
+  const auto some = some_of(times);
+  std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some), tension_doubt(setting)};
+  const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+  add(stiffness_doubts(setting));
+  add(joint_doubts(setting.scene));
+  if (!setting.mesh.fracture_names.empty()) all.push_back(strength_doubt(setting));
+  std::erase(all, "");
+  return all;
+}
+
+}  // namespace sprekk::physics

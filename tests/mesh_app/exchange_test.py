@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+"""Fracture networks in files of geographic information systems and drawings: exchange_test.py PROGRAM ROOT MPIEXEC
+
+Needs Debian's python3-gdal; without it it ends with status 77, which ctest shows as skipped."""
+import importlib.util
+import json
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "regression"))
+
+if importlib.util.find_spec("osgeo") is None:
+    print(f"skipped: {sys.executable} has no osgeo; it comes with apt-get install python3-gdal")
+    sys.exit(77)
+
+import numpy as np  # noqa: E402
+from program import ROOT, ProgramTest, main  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "apps" / "mesh"))
+import exchange  # noqa: E402
+from description import Network  # noqa: E402
+from osgeo import ogr, osr  # noqa: E402
+from shapes import NetworkError  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "apps" / "plot"))
+from conformity import DEFAULTS, SQUARE, as_xml  # noqa: E402
+
+TRACES = {"F1": [[0.2, 0.5], [0.8, 0.5]], "F2": [[0.5, 0.2], [0.5, 0.6], [0.6, 0.8]]}
+
+
+class ExchangeTest(ProgramTest):
+    def geojson(self, features, name="net.geojson", **members):
+        """`features`: (kind of geometry, coordinates, attributes)."""
+        content = {
+            "type": "FeatureCollection",
+            **members,
+            "features": [
+                {"type": "Feature", "properties": attributes, "geometry": kind and {"type": kind, "coordinates": x}}
+                for kind, x, attributes in features
+            ],
+        }
+        path = self.folder / name
+        path.write_text(json.dumps(content))
+        return path
+
+    def write_by_ogr(self, driver, name, epsg=None, kind=ogr.wkbLineString, rows=TRACES):
+        path = self.folder / name
+        system = osr.SpatialReference()
+        if epsg:
+            system.ImportFromEPSG(epsg)
+        source = ogr.GetDriverByName(driver).CreateDataSource(str(path))
+        layer = source.CreateLayer("traces" if driver != "DXF" else "entities", system if epsg else None, kind)
+        if driver != "DXF":
+            layer.CreateField(ogr.FieldDefn("NAME", ogr.OFTString))
+            layer.CreateField(ogr.FieldDefn("friction", ogr.OFTReal))
+        for k, (title, points) in enumerate(rows.items()):
+            feature, line = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(kind)
+            for point in points:
+                line.AddPoint(*map(float, point)) if kind == ogr.wkbLineString25D else line.AddPoint_2D(
+                    *map(float, point)
+                )
+            feature.SetGeometry(line)
+            if driver != "DXF":
+                feature.SetField("NAME", title)
+                feature.SetField("friction", 0.5 + k)
+            layer.CreateFeature(feature)
+        return path
+
+    def in_unit(self, drawing, unit):
+        """The drawing, which says that it is in this unit of DXF."""
+        text, count = re.subn(r"(\$INSUNITS\s+70\s+)\d+", rf"\g<1>{unit}", drawing.read_text())
+        self.assertEqual(count, 1)
+        drawing.write_text(text)
+        return drawing
+
+    def expect_traces(self, found, names=True):
+        self.assertEqual(len(found), len(TRACES))
+        for outline, (name, points) in zip(found, TRACES.items()):
+            self.assertTrue(np.allclose(outline.points, points), outline)
+            if names:
+                self.assertEqual(outline.name, name)
+
+    def refused(self, path, *words, dim=2):
+        with self.assertRaises(NetworkError) as caught:
+            exchange.read(path, dim)
+        for word in (str(path), *words):
+            self.assertIn(word, str(caught.exception))
+
+    def test_geojson(self):
+        lines = [
+            ("LineString", x, {"name": name, "id": 10 + k, "friction coefficient": 0.4 + k})
+            for k, (name, x) in enumerate(TRACES.items())
+        ]
+        found = exchange.read(self.geojson([*lines, ("Point", [0.1, 0.1], {})], crs=None), 2)
+        self.expect_traces(found)
+        self.assertEqual([row.number for row in found], ["10", "11"])
+        self.assertEqual(
+            [row.properties for row in found], [{"friction coefficient": "0.4"}, {"friction coefficient": "1.4"}]
+        )
+        self.assertIn("feature 2", found[1].title)
+        several = exchange.read(
+            self.geojson([("MultiLineString", list(TRACES.values()), {"name": "both"})], crs=None), 2
+        )
+        self.assertEqual([row.name for row in several], ["both", "both"])
+
+    def test_files_of_other_programs(self):
+        """Written by GDAL: a shapefile with a projected system or none, a GeoPackage, polylines of a drawing."""
+        self.expect_traces(exchange.read(self.write_by_ogr("ESRI Shapefile", "utm.shp", 25832), 2))
+        self.expect_traces(exchange.read(self.write_by_ogr("ESRI Shapefile", "local.shp"), 2))
+        self.expect_traces(exchange.read(self.write_by_ogr("GPKG", "net.gpkg", 25832), 2))
+        drawing = self.in_unit(self.write_by_ogr("DXF", "net.dxf"), 6)
+        found = exchange.read(drawing, 2)
+        self.expect_traces(found, names=False)
+        self.assertEqual([row.properties for row in found], [{}, {}])
+        self.assertEqual(
+            sorted(Path(file).suffix for file in exchange.files_of(str(self.folder / "utm.shp"))),
+            [".dbf", ".prj", ".shp", ".shx"],
+        )
+        self.assertEqual(exchange.read(self.folder / "utm.shp", 2)[1].properties, {"friction": "1.5"})
+
+    def test_polygons(self):
+        ring = [[0.2, 0.2, 0.5], [0.8, 0.2, 0.5], [0.8, 0.8, 0.6], [0.2, 0.8, 0.6], [0.2, 0.2, 0.5]]
+        (found,) = exchange.read(self.geojson([("Polygon", [ring], {})], crs=None), 3)
+        self.assertTrue(np.allclose(found.points, ring[:-1]))
+        (found,) = exchange.read(self.geojson([("LineString", ring, {})], crs=None), 3)
+        self.assertTrue(np.allclose(found.points, ring[:-1]))
+        for kind, x, why in (
+            ("Polygon", [[p[:2] for p in ring]], "has no z"),
+            ("LineString", ring[:-1], "not closed"),
+            ("Polygon", [ring, [[0.4, 0.4, 0.5], [0.5, 0.4, 0.5], [0.5, 0.5, 0.5], [0.4, 0.4, 0.5]]], "with holes"),
+        ):
+            self.refused(self.geojson([(kind, x, {})], crs=None), "feature 1", why, dim=3)
+        self.refused(self.geojson([("Polygon", [ring], {})], crs=None), "is a polygon; in 2D fractures are lines")
+
+    def test_coordinates_must_be_metric(self):
+        lines = [("LineString", x, {}) for x in TRACES.values()]
+        self.refused(self.geojson(lines), "longitude and latitude in degrees", "\"crs\": null")
+        self.refused(
+            self.geojson(lines, crs={"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}),
+            "in degrees",
+            "UTM",
+        )
+        self.expect_traces(
+            exchange.read(self.geojson(lines, crs={"type": "name", "properties": {"name": "EPSG:25832"}}), 2),
+            names=False,
+        )
+        self.refused(self.write_by_ogr("ESRI Shapefile", "degrees.shp", 4326), "WGS 84", "in degrees")
+        self.refused(self.write_by_ogr("ESRI Shapefile", "feet.shp", 2263), "US survey foot")
+        drawing = self.write_by_ogr("DXF", "net.dxf")
+        self.refused(self.in_unit(drawing, 4), "in the unit 4 of DXF", "set $INSUNITS to 6")
+        for unit in (6, 0):
+            self.expect_traces(exchange.read(self.in_unit(drawing, unit), 2), names=False)
+
+    def test_damaged_files(self):
+        self.refused(self.folder / "absent.shp", "No such file")
+        broken = self.folder / "net.geojson"
+        broken.write_text("{\"type\": \"FeatureCollection\", ")
+        self.refused(broken, "cannot be read")
+        self.refused(self.geojson([], crs=None), "has no fracture")
+        self.refused(
+            self.geojson([(None, None, {}), ("LineString", [[0.5, 0.5], [0.5, 0.5]], {})], crs=None),
+            "feature 1: has no geometry",
+            "feature 2: has 1 different points",
+        )
+
+    def test_network(self):
+        """In a scene: a file by its ending, in the place of a CSV; what belongs to a shapefile counts as input, too."""
+        path = self.write_by_ogr("ESRI Shapefile", "net.shp")
+        domain = {"corners": [], "faces": {}, **SQUARE}
+        network = Network(as_xml("network", {**DEFAULTS, "domain": domain, "fractures": {"set": {"file": str(path)}}}))
+        self.assertEqual([feature.group for feature in network.fractures], ["set", "set"])
+        self.assertTrue(np.allclose(network.fractures[1].points, TRACES["F2"]))
+        self.assertEqual(len(network.files), 3)
+
+
+if __name__ == "__main__":
+    main()

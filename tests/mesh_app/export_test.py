@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Fractures with results for geographic information systems: export_test.py PROGRAM ROOT MPIEXEC
+
+Needs Debian's python3-gdal, python3-numpy, python3-matplotlib and python3-vtk9; without one of them it ends with
+status 77, which ctest shows as skipped."""
+import contextlib
+import importlib.util
+import io
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "regression"))
+
+MISSING = [name for name in ("osgeo", "matplotlib", "numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
+if MISSING:
+    print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
+    sys.exit(77)
+
+import numpy as np  # noqa: E402
+from program import ROOT, ProgramTest, main  # noqa: E402
+
+sys.path[:0] = [str(ROOT / folder) for folder in ("apps/mesh", "apps/export", "apps/plot")]
+spec = importlib.util.spec_from_file_location("sprekk_export", ROOT / "apps" / "export" / "__main__.py")
+app = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(app)
+
+import exchange  # noqa: E402
+import features  # noqa: E402
+
+
+class ExportTest(ProgramTest):
+    def export(self, file, *words, expect=0):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = app.main([str(self.folder / "out"), "-o", str(self.folder / file), *words])
+        self.assertEqual(status, expect, err.getvalue())
+        if expect:
+            return err.getvalue()
+        return json.loads((self.folder / file).read_text())["features"] if file.endswith("json") else None
+
+    def test_traces(self):
+        """Lines from end to end, without the points of the mesh; values are those of the results; shapefiles say the
+        same."""
+        steps = self.run_scene("verification/crossing_2d.xml")["steps"]
+        found = {feature["properties"]["name"]: feature for feature in self.export("net.geojson")}
+        self.assertEqual(sorted(found), sorted(steps[-1]["fractures"]))
+        for name, wanted in steps[-1]["fractures"].items():
+            values, points = found[name]["properties"], np.array(found[name]["geometry"]["coordinates"])
+            self.assertEqual(points.shape, (2, 2))
+            self.assertAlmostEqual(np.linalg.norm(points[1] - points[0]), wanted["area"], 9)
+            for ours, theirs in (
+                ("length", "area"),
+                ("slip_mean", "mean_slip"),
+                ("slip_max", "max_slip"),
+                ("open_max", "max_opening"),
+                ("part_slip", "fraction_slip"),
+                ("part_open", "fraction_open"),
+            ):
+                self.assertAlmostEqual(values[ours], wanted[theirs], 12, ours)
+            self.assertTrue(np.isclose(values["normal_tr"], wanted["mean_traction"]["local"][0], rtol=1e-9))
+        self.export("net.shp", "--crs", "EPSG:25832")
+        again = exchange.read(str(self.folder / "net.shp"), 2)
+        for row in again:
+            self.assertTrue(np.allclose(row.points, found[row.name]["geometry"]["coordinates"]))
+            self.assertAlmostEqual(float(row.properties["slip_max"]), found[row.name]["properties"]["slip_max"], 9)
+        self.assertEqual(len(exchange.read(str(self.folder / "net.geojson"), 2)), len(found))
+
+    def test_shapefiles_keep_large_numbers(self):
+        """Their numbers have a width."""
+        (wanted,) = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=2")["steps"][-1]["fractures"].values()
+        self.export("net.shp")
+        (row,) = exchange.read(str(self.folder / "net.shp"), 2)
+        self.assertLess(wanted["mean_traction"]["local"][0], -1e6)
+        self.assertTrue(np.isclose(float(row.properties["normal_tr"]), wanted["mean_traction"]["local"][0], rtol=1e-12))
+        self.assertTrue(np.isclose(float(row.properties["slip_mean"]), wanted["mean_slip"], rtol=1e-9))
+
+    def test_planes(self):
+        """An outline of the fracture with its corners alone; read again it is the polygon of the scene."""
+        steps = self.run_scene("seed/immersed_3d.xml", "Mesh.cells={6, 6, 6}", "Time.steps=1")["steps"]
+        (one,) = self.export("net.geojson", "--time", "1")
+        ((name, wanted),) = steps[-1]["fractures"].items()
+        self.assertEqual(one["properties"]["name"], name)
+        self.assertAlmostEqual(one["properties"]["area"], wanted["area"], 9)
+        ring = np.array(one["geometry"]["coordinates"][0])
+        self.assertEqual(ring.shape, (5, 3))
+        from orientations import area_vector
+
+        self.assertAlmostEqual(np.linalg.norm(area_vector(ring[:-1])), wanted["area"], 9)
+        (again,) = exchange.read(str(self.folder / "net.geojson"), 3)
+        self.assertTrue(np.allclose(again.points, ring[:-1]))
+        self.export("net.shp")
+        (again,) = exchange.read(str(self.folder / "net.shp"), 3)
+        self.assertAlmostEqual(np.linalg.norm(area_vector(again.points)), wanted["area"], 9)
+
+    def test_bends_stay(self):
+        points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]])
+        self.assertEqual(features.corners_of(points, closed=False).tolist(), points[[0, 2, 3]].tolist())
+
+    def test_errors(self):
+        self.assertIn("holds no results.json", self.export("net.geojson", expect=1))
+        self.run_scene("verification/crossing_2d.xml", "Output.vtu=false")
+        self.assertIn("holds no fractures.pvd", self.export("net.geojson", expect=1))
+        self.assertIn("ends in none of .geojson", self.export("net.txt", expect=1))
+        self.assertIn("expected EPSG:NUMBER", self.export("net.geojson", "--crs", "utm", expect=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Numbers of single fractures of sets: fractures_test.py PROGRAM ROOT MPIEXEC"""
+import csv
+import math
+
+from networks import mesh_of
+from program import ROOT, ProgramTest, main
+
+MAPPED = "networks/mapped_2d.xml"
+GRANITE = 14854721950  # shear modulus of the library, Pa
+
+
+class Fractures(ProgramTest):
+    def run_mapped(self, *sets, ranks=1, expect=0):
+        path = mesh_of(self.folder, self.scene(MAPPED))
+        return self.run_scene(MAPPED, path, "Output.vtu=false", *sets, ranks=ranks, expect=expect)
+
+    def test_names_areas_directions(self):
+        r = self.run_mapped("Time.steps=1")
+        with open(ROOT / "xml/networks/mapped.csv") as file:
+            traces = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        singles = r["single_fractures"]
+        self.assertEqual([one["name"] for one in singles], [trace["name"] for trace in traces])
+        for one, trace in zip(singles, traces):
+            x0, y0, x1, y1 = (float(trace[key]) for key in ("x0", "y0", "x1", "y1"))
+            self.assertEqual(one["set"], "traces")
+            self.assertAlmostEqual(one["area"], math.hypot(x1 - x0, y1 - y0), delta=1e-9 * 100)
+            self.assertAlmostEqual(one["strike"], math.degrees(math.atan2(x1 - x0, y1 - y0)) % 180, delta=1e-6)
+            for i, middle in enumerate(((x0 + x1) / 2, (y0 + y1) / 2)):
+                self.assertAlmostEqual(one["centre"][i], middle, delta=1e-6)
+
+    def test_slip_tendency_of_uniform_stress(self):
+        """Fractures that neither slip nor yield leave the stress as it is: shear over compression is Mohr's."""
+        r = self.run_mapped("Materials.mapped joint.tangential stiffness=1e9 GPa/m", "Time.schedule={1e-9}")
+        for one, tendency in zip(r["single_fractures"], r["steps"][0]["single_fractures"]["slip_tendency"]):
+            nx, ny, _ = one["normal"]
+            compression, shear = 12 * nx * nx + 8 * ny * ny, abs((12 - 8) * nx * ny)
+            self.assertAlmostEqual(tendency, shear / compression, delta=1e-6)
+
+    def test_which_slip(self):
+        """In one command: in words on a terminal, and as a table."""
+        path = mesh_of(self.folder, self.scene(MAPPED))
+        out, _ = self.call("run", self.scene(MAPPED), "--set", path, "--output", "out", environment={"SPREKK_TERMINAL": "1"})
+        r = self.results()
+        last = r["steps"][-1]["single_fractures"]
+        slipping = {one["name"] for one, part in zip(r["single_fractures"], last["fraction_slip"]) if part > 0}
+        self.assertTrue(0 < len(slipping) < 12, slipping)
+        line = next(line for line in out.splitlines() if line.startswith("slip: "))
+        self.assertIn(f"slip: {len(slipping)} of 12 fractures", line)
+        self.assertEqual({word for word in line.split('"')[1::2]}, slipping)
+        with open(self.folder / "out" / "fractures.csv") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual({row["name"] for row in table if float(row["area_slip [m]"]) > 0}, slipping)
+        self.assertEqual([float(row["mean_slip [m]"]) for row in table], last["mean_slip"])
+
+    def test_moment_and_totals(self):
+        """The moment is G times slip times area; a set has the sums and means of its fractures."""
+        r = self.run_mapped()
+        areas = [one["area"] for one in r["single_fractures"]]
+        for step in r["steps"]:
+            each, of_set = step["single_fractures"], step["fractures"]["traces"]
+            for slip, area, moment in zip(each["mean_slip"], areas, each["moment"]):
+                self.assertAlmostEqual(moment, GRANITE * slip * area, delta=1e-12 * GRANITE)
+            self.assertAlmostEqual(sum(each["moment"]), of_set["moment"], delta=1e-9 * of_set["moment"] + 1e-9)
+            self.assertAlmostEqual(sum(a * s for a, s in zip(areas, each["mean_slip"])), sum(areas) * of_set["mean_slip"], delta=1e-12)
+            self.assertEqual(max(each["max_slip"]), of_set["max_slip"])
+            self.assertAlmostEqual(sum(each["area_slip"]), of_set["fraction_slip"] * of_set["area"], delta=1e-9)
+            self.assertNotIn("moment_magnitude", each)  # per metre of depth
+        self.assertGreater(of_set["moment"], 0)
+        self.assertEqual((r["units"]["moment"], r["units"]["mean_slip"], r["units"]["area_slip"]), ("N", "m", "m"))
+
+    def test_columns_are_entries_of_joints(self):
+        """A trace slips where its own friction is low; the material's holds where the cell is empty."""
+        tendency = self.run_mapped("Time.steps=1")["steps"][0]["single_fractures"]["slip_tendency"]
+        names = [one["name"] for one in self.results()["single_fractures"]]
+        table = ROOT / "xml/networks/mapped.csv"
+        lines = table.read_text().splitlines()
+        changed = [line if not line.startswith("C3") else line.replace(",0.35,", ",0.01,") for line in lines]
+        (self.folder / "mapped.csv").write_text("\n".join(changed) + "\n")
+        (self.folder / "mapped.xml").write_text((ROOT / "xml" / MAPPED).read_text())
+        path = mesh_of(self.folder, self.folder / "mapped.xml")
+        r = self.run_scene(str(self.folder / "mapped.xml"), path, "Output.vtu=false", "Time.steps=1")
+        after = r["steps"][0]["single_fractures"]
+        at = names.index("C3")
+        self.assertGreater(tendency[at], 0.02)
+        self.assertLess(after["slip_tendency"][at], 0.0101)
+        self.assertEqual(after["fraction_slip"][at], 1)
+
+    def test_wrong_columns(self):
+        scene = self.folder / "mapped.xml"
+        scene.write_text((ROOT / "xml" / MAPPED).read_text())
+        lines = (ROOT / "xml/networks/mapped.csv").read_text().splitlines()
+        for title, cell, words in (
+                ("friction coefficient", "-1", 'single fractures > A1 > "friction coefficient": is -1, must be'),
+                ("friction coeficient", "0.5", 'fracture "A1": "friction coeficient": is no entry of a joint. Did you mean "friction coefficient"?'),
+                ("friction coefficient", "0.5 m", 'single fractures > A1 > "friction coefficient"'),
+                ("material", "granit", 'fracture "A1": "material": is "granit"')):
+            table = [line.replace("friction coefficient", title) for line in lines]
+            table[2] = table[2].replace(",0.55,", f",{cell},")
+            if title != "friction coefficient":
+                table[3:] = [",".join(line.split(",")[:5]) for line in table[3:]]
+            (self.folder / "mapped.csv").write_text("\n".join(table) + "\n")
+            path = mesh_of(self.folder, scene)
+            for ranks in (1, 2):
+                _, err = self.call("check", scene, "--set", path, ranks=ranks, expect=1)
+                self.assertIn(words, err)
+
+    def test_columns_that_are_no_entries(self):
+        scene = self.folder / "mapped.xml"
+        scene.write_text((ROOT / "xml" / MAPPED).read_text())
+        text = (ROOT / "xml/networks/mapped.csv").read_text().replace("initial aperture [mm]", "geologist's remark")
+        (self.folder / "mapped.csv").write_text(text)
+        _, err = self.call("check", scene, "--set", mesh_of(self.folder, scene))
+        self.assertIn('columns of fractures are passed over that are no entries of a joint: "geologist\'s remark"', err)
+
+    def test_any_number_of_ranks(self):
+        results = [self.run_mapped(ranks=ranks) for ranks in (1, 2, 3)]
+        for r in results[1:]:
+            self.assertEqual([one["name"] for one in r["single_fractures"]], [one["name"] for one in results[0]["single_fractures"]])
+            for key, values in results[0]["steps"][-1]["single_fractures"].items():
+                flat = [[x for value in of for x in (value if isinstance(value, list) else [value])]
+                        for of in (values, r["steps"][-1]["single_fractures"][key])]
+                size = max(abs(x) for x in flat[0])
+                for one, other in zip(*flat):
+                    self.assertAlmostEqual(one, other, delta=1e-8 * size, msg=key)
+
+    def test_default_joint(self):
+        """Fractures without a section have it; a section may leave its material out; without one it is missing."""
+        crossing = "verification/crossing_2d.xml"
+        before = self.run_scene(crossing, "Output.vtu=false")["steps"][-1]["fractures"]
+        names = sorted(before)
+        text = self.scene(crossing).read_text()
+        start, end = text.index('<ParameterList name="Fractures">'), text.index('<ParameterList name="Boundary conditions">')
+        scene = self.folder / "default.xml"
+        material = text[start:end].split('name="material" type="string" value="')[1].split('"')[0]
+        inner = f'<Parameter name="material" type="string" value="{material}"/>'
+        scene.write_text(text[:start] + f'<ParameterList name="Fractures">{inner}</ParameterList>' + text[end:])
+        after = self.run_scene(str(scene), "Output.vtu=false")["steps"][-1]["fractures"]
+        self.assertEqual(sorted(after), names)
+        self.assertEqual(after, before)
+        scene.write_text(text[:start] + f'<ParameterList name="Fractures"><ParameterList name="{names[0]}"/></ParameterList>' + text[end:])
+        _, err = self.call("check", scene, expect=1)
+        self.assertIn(f'Fractures > {names[0]} > "material": missing; it is required', err)
+
+    def test_strike_and_dip(self):
+        """As the scene gives them; sections are called by their sets and names."""
+        scene = "networks/shapes_3d.xml"
+        path = mesh_of(self.folder, self.scene(scene), "Mesh file.network.relative size=0.5")
+        r = self.run_scene(scene, path, "Output.vtu=false", "Time.schedule={1e-3}")
+        steep, = (one for one in r["single_fractures"] if one["name"].endswith(" steep"))
+        self.assertEqual(steep["name"], steep["set"] + " steep")
+        self.assertAlmostEqual(steep["strike"], 30, delta=1e-5)
+        self.assertAlmostEqual(steep["dip"], 75, delta=1e-5)
+        self.assertAlmostEqual(steep["area"], math.pi * 3 * 2, delta=1e-6)
+
+    def test_magnitude_in_three_dimensions(self):
+        """2/3 (log10 M0 - 9.1), absent where nothing has slipped."""
+        r = self.run_scene("verification/regimes_3d.xml", "Output.vtu=false")
+        seen = 0
+        for step in r["steps"]:
+            each = step["single_fractures"]
+            for moment, magnitude in zip(each["moment"], each["moment_magnitude"]):
+                if moment > 0:
+                    self.assertAlmostEqual(magnitude, 2 / 3 * (math.log10(moment) - 9.1), delta=1e-12)
+                    seen += 1
+                else:
+                    self.assertIsNone(magnitude)
+        self.assertGreater(seen, 0)
+
+
+if __name__ == "__main__":
+    main()

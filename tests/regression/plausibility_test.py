@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Warnings of input that is allowed and hardly meant: plausibility_test.py PROGRAM ROOT MPIEXEC"""
+import re
+
+from networks import mesh_of
+from program import ROOT, ProgramTest, main
+
+SHEAR = str(ROOT / "docs" / "shear_test.xml")
+STRESS = ["Bulk.body force={0, 0}"]
+
+
+class Plausibility(ProgramTest):
+    def warnings(self, scene, *sets, ranks=1, expect=0, command="check", strict=False):
+        words = [word for one in sets for word in ("--set", one)]
+        if strict:
+            words.append("--strict")
+        if command == "run":
+            words += ["--output", "out", "--set", "Output.vtu=false"]
+        _, err = self.call(command, scene, *words, ranks=ranks, expect=expect)
+        return err
+
+    def test_plausible_scenes_have_none(self):
+        for scene in (SHEAR, self.scene("poro/injection_days_2d.xml"), self.scene("tutorial/network.xml")):
+            self.assertEqual(self.warnings(scene), "", scene)
+            self.assertEqual(self.warnings(scene, strict=True), "", scene)
+
+    def test_first_scene_of_the_readme(self):
+        scene = re.search(r"^\./sprekk run (\S+)", (ROOT / "README.md").read_text(), re.MULTILINE)[1]
+        mesh = mesh_of(self.folder, ROOT / scene) if 'name="network"' in (ROOT / scene).read_text() else "Output.every=1"
+        self.assertEqual(self.warnings(ROOT / scene, mesh, command="run", strict=True), "")
+
+    def test_what_where_why_what_to_do(self):
+        """Each with its words, on one rank and on two, and as an error where it is to be strict."""
+        cases = [
+            (["Boundary conditions.shear.displacement={0.2*x*ramp(t), free}"], "Sprekk > Boundary conditions: displacements at t = 1 s differ by 0.375 m over 1.88 m of rock, 20 %",
+             "strains are taken as small", "check the unit"),
+            (["Materials.granite.Young's modulus=50"], "Young's modulus is 50 Pa, and there is a stress of 5e+06 Pa", "more than 100 %", '"50 GPa"'),
+            (["Materials.rough joint.tangential stiffness=20"], 'rough joint > "tangential stiffness": is 20 Pa/m beside rock of 5e+10 Pa',
+             "next to no resistance", '"10 GPa/m"'),
+            (["Materials.rough joint.friction angle=0.61"], 'rough joint > "friction angle": is 0.61 degrees', "in radians", '"30 deg"'),
+            (["Materials.rough joint.dilation angle=40"], 'rough joint > "dilation angle": is 40 degrees', "above the friction angle, 35 degrees", "give a smaller angle"),
+            (["Mesh.fractures.shear plane.lower corner={0.5, 0.5}", "Boundary conditions.shear.displacement={0.2*ramp(t), free}"],
+             "displacements at t = 1 s differ by 0.2 m over 1 m of rock, 20 %", "strains are taken as small", "check the unit"),
+            (["Materials.rough joint.damage=isotropic"], 'rough joint > "damage": is "isotropic"', "damages nothing", '"damage length of friction"'),
+            (["Time.steps=1"], 'Sprekk > Time: 1 step goes over knots of the table "ramp", the first at t = 1 s', "loads count at the ends of steps", '"schedule"'),
+            ([*STRESS, "Bulk.initial stress={0, 5e6, 0, 0}"], "the initial stress is tension in 100 % of the cells, 5e+06 Pa", "negative sign", "check signs"),
+            ([*STRESS, "Bulk.initial stress={0, -5e6, 0, 4e6}"], 'a fracture is beyond the strength of the joint (100 % of the area): "shear plane"',
+             "slip or open in the first step", "check the initial stress"),
+        ]
+        for sets, *words in cases:
+            for ranks in (1, 2):
+                err = self.warnings(SHEAR, *sets, ranks=ranks)
+                for text in words:
+                    self.assertIn(text, err)
+                self.assertTrue(all(line.startswith("warning: ") for line in err.splitlines()), err)
+            err = self.warnings(SHEAR, *sets, strict=True, expect=1)
+            self.assertIn(words[0], err)
+            self.assertNotIn("warning", err)
+        err = self.warnings(SHEAR, "Time.steps=1", command="run", strict=True, expect=1)
+        self.assertIn("over knots", err)
+        self.assertEqual(self.results()["status"], "failed")
+
+    def test_coefficient(self):
+        err = self.warnings(self.scene("verification/cyclic_2d.xml"), "Materials.joint.friction coefficient=30")
+        for text in ('Materials > joint > "friction coefficient": is 30', "rock has 0.2 to 1.2", '"friction angle"'):
+            self.assertIn(text, err)
+
+    def test_just_below(self):
+        """The bounds themselves are no cause for a warning."""
+        for sets in (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],
+                     ["Time.schedule={1, 2}"], [*STRESS, "Bulk.initial stress={0, -5e6, 0, 3.5e6}"],
+                     ["Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.1"]):
+            err = self.warnings(SHEAR, *sets)
+            for text in ("differ by", "dilation angle\": is", "over knots", "beyond the strength", "damages nothing"):
+                self.assertNotIn(text, err)
+
+    def test_synonyms(self):
+        """What other programs call an entry is understood, if not taken."""
+        for name, meant in (("kn", "normal stiffness"), ("ks", "tangential stiffness"), ("shear stiffness", "tangential stiffness"),
+                            ("cohesion", "bond"), ("JRC", "joint roughness coefficient"), ("JCS", "joint wall strength"), ("mu", "friction coefficient"),
+                            ("phi", "friction angle"), ("psi", "dilation angle")):
+            err = self.warnings(SHEAR, f"Materials.rough joint.{name}=1", expect=1)
+            line = next(line for line in err.splitlines() if f'"{name}": unknown' in line)
+            self.assertIn(meant, line)
+
+
+if __name__ == "__main__":
+    main()

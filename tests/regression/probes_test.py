@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Tables of probes: probes_test.py PROGRAM ROOT MPIEXEC"""
+import csv
+import math
+import os
+import signal
+import subprocess
+import time
+
+import program
+from program import ProgramTest, main
+
+PATCH, INJECTION = "verification/uniaxial_2d.xml", "poro/injection_days_2d.xml"
+CYCLIC = "verification/cyclic_2d.xml"
+QUIET = "Output.vtu=false"
+NU, E, LOAD = 0.25, 10e9, 5e6  # of PATCH: plane strain, rollers in the west and in the south
+EXX, EYY = LOAD * NU * (1 + NU) / E, -LOAD * (1 - NU * NU) / E
+
+
+def probe(name, **entries):
+    return [f"Probes.{name}.{entry.replace('_', ' ')}={value}" for entry, value in entries.items()]
+
+
+class Probes(ProgramTest):
+    def table(self, name, output="out"):
+        """Columns by their titles."""
+        with open(self.folder / output / "probes" / f"{name}.csv") as file:
+            rows = list(csv.reader(file))
+        return {title: [float(row[k]) for row in rows[1:]] for k, title in enumerate(rows[0])}
+
+    def near(self, table, title, *exact):
+        self.assertEqual(len(table[title]), len(exact), table)
+        for value, wanted in zip(table[title], exact):
+            self.assertAlmostEqual(value, wanted, delta=1e-8 * max(abs(wanted), 1e-4), msg=title)
+
+    def test_uniform_strain(self):
+        """Points, lines, means, extremes and integrals of linear displacements and uniform stress, on all cells."""
+        probes = [*probe("here", point="{0.7, 1.9}", outputs="{displacement, stress}"),
+                  *probe("along", line="{0, 0, 2, 3}", points=5, outputs="{displacement}"),
+                  *probe("top", boundary="north", outputs="{displacement}"),
+                  *probe("most", boundary="north", outputs="{displacement}", value="maximum"),
+                  *probe("least", region="bulk", outputs="{displacement}", value="minimum"),
+                  *probe("all", region="bulk", outputs="{displacement, stress}", value="integral"),
+                  *probe("side", boundary="south", outputs="{reactions}")]
+        for cell, order in (("triangle", 1), ("quadrilateral", 1), ("triangle", 2), ("quadrilateral", 2)):
+            self.run_scene(PATCH, QUIET, f"Mesh.cell={cell}", f"Mesh.order={order}", *probes)
+            here = self.table("here")
+            self.near(here, "time [s]", 1)
+            self.near(here, "displacement x [m]", 0.7 * EXX)
+            self.near(here, "displacement y [m]", 1.9 * EYY)
+            self.near(here, "stress YY [Pa]", -LOAD)
+            self.near(here, "stress ZZ [Pa]", -LOAD * NU)
+            along = self.table("along")
+            self.near(along, "time [s]", *[1] * 5)
+            self.near(along, "distance [m]", *(math.hypot(2, 3) * k / 4 for k in range(5)))
+            self.near(along, "x [m]", 0, 0.5, 1, 1.5, 2)
+            self.near(along, "displacement x [m]", *(EXX * x for x in (0, 0.5, 1, 1.5, 2)))
+            self.near(self.table("top"), "mean displacement x [m]", EXX)
+            self.near(self.table("most"), "maximum displacement x [m]", 2 * EXX)
+            self.near(self.table("least"), "minimum displacement y [m]", 3 * EYY)
+            everything = self.table("all")
+            self.near(everything, "integral displacement y [m*m^2]", EYY * 3 * 3)
+            self.near(everything, "integral stress YY [Pa*m^2]", -LOAD * 6)
+            self.near(self.table("side"), "reactions y [N/m]", 2 * LOAD)
+
+    def test_space(self):
+        """The same in 3D, of each kind of cell: vertical stretch by a load on top."""
+        base = "verification/uniaxial_3d.xml"
+        for cell, order in (("tetrahedron", 1), ("hexahedron", 1), ("hexahedron", 2)):
+            self.run_scene(base, QUIET, f"Mesh.cell={cell}", f"Mesh.order={order}",
+                           *probe("low", point="{0.31, 0.4, 0.2}", outputs="{displacement}"),
+                           *probe("high", point="{0.31, 0.4, 0.6}", outputs="{displacement, stress}"))
+            low, high = self.table("low"), self.table("high")
+            self.assertAlmostEqual(high["displacement z [m]"][0], 3 * low["displacement z [m]"][0],
+                                   delta=1e-8 * abs(low["displacement z [m]"][0]))
+            self.assertLess(high["stress ZZ [Pa]"][0], 0)
+
+    def test_injection_in_days(self):
+        """Thirty days of injection: wells, fractures, lines and boundaries, as in results.json."""
+        r = self.run_scene(INJECTION)
+        well = self.table("well")
+        self.near(well, "time [d]", *range(1, 31))
+        self.assertEqual(r["time_unit"], {"name": "d", "seconds": 86400})
+        self.assertEqual(well["rate [m^2/s]"], [step["wells"]["injector"]["rate"] for step in r["steps"]])
+        self.assertEqual(well["pressure [Pa]"], [step["wells"]["injector"]["pressure"] for step in r["steps"]])
+        self.assertIn("in fault [m^2/s]", well)
+        fault = self.table("fault")
+        for title, key in (("max_slip [m]", "max_slip"), ("moment [N]", "moment"), ("slip_tendency [-]", "slip_tendency")):
+            self.assertEqual(fault[title], [step["fractures"]["fault"][key] for step in r["steps"]])
+        self.assertGreater(fault["max_slip [m]"][-1], 1e-5)
+        along = self.table("along the fault")
+        self.assertEqual(len(along["slip [m]"]), 30 * 23)
+        self.assertLessEqual(max(along["slip [m]"]), max(fault["max_slip [m]"]))
+        self.assertGreater(max(along["slip [m]"]), 0.5 * max(fault["max_slip [m]"]))
+        west = self.table("west side")
+        self.assertEqual(west["inflows [m^2/s]"], [step["inflows"]["west"] for step in r["steps"]])
+        self.assertEqual(west["reactions x [N/m]"], [step["reactions"]["west"][0] for step in r["steps"]])
+        self.assertGreater(self.table("ten metres above")["pressure [Pa]"][-1], 10e6)
+
+    def test_any_number_of_ranks(self):
+        tables = []
+        for ranks in (1, 2, 3):
+            self.run_scene(INJECTION, QUIET, "Time.steps=5", ranks=ranks)
+            tables.append({name: self.table(name) for name in ("well", "fault", "along the fault", "ten metres above", "west side")})
+        for other in tables[1:]:
+            for name, columns in tables[0].items():
+                self.assertEqual(list(columns), list(other[name]))
+                for title, values in columns.items():
+                    size = max(map(abs, values))
+                    for a, b in zip(values, other[name][title]):
+                        self.assertAlmostEqual(a, b, delta=1e-6 * size + 1e-18, msg=f"{name}: {title}")
+
+    def text(self, output, name="joint"):
+        return (self.folder / output / "probes" / f"{name}.csv").read_bytes()
+
+    def cyclic(self, *words, steps=8, output="out", expect=0):
+        sets = ["Output.checkpoints.steps=2", QUIET, *probe("joint", fracture="fracture", outputs="{slip, traction local}")]
+        if steps != 8:
+            sets += [f"Time.end={steps}", f"Time.steps={steps}"]
+        return self.call("run", self.scene(CYCLIC), "--output", output, *(word for one in sets for word in ("--set", one)), *words,
+                         expect=expect)
+
+    def test_restart(self):
+        """A run in two parts has the table of one that was not interrupted: no gap, no line twice."""
+        fracture = list(self.run_scene(CYCLIC, QUIET)["steps"][0]["fractures"])[0]
+        sets = ["Output.checkpoints.steps=2", QUIET, *probe("joint", fracture=fracture, outputs="{slip, traction local}")]
+        whole = self.run_scene(CYCLIC, *sets, output="whole")
+        times = [step["time"] for step in whole["steps"]]
+        middle = times[len(times) // 2 + 1]
+        words = [word for one in sets for word in ("--set", one)]
+        schedule = "{" + ", ".join(map(str, times[:len(times) // 2 + 2])) + "}"
+        self.call("run", self.scene(CYCLIC), "--output", "parts", *words, "--set", f"Time.schedule={schedule}")
+        self.assertEqual(self.table("joint", "parts")["time [s]"][-1], middle)
+        csv_file = self.folder / "parts" / "probes" / "joint.csv"
+        csv_file.write_bytes(csv_file.read_bytes() + b"99,1,2")  # as of a run that was killed in a later step
+        self.call("run", self.scene(CYCLIC), "--output", "parts", *words, "--restart")
+        self.assertEqual(self.text("parts"), self.text("whole"))
+        self.assertEqual((self.folder / "parts" / "probes.h5").read_bytes(), (self.folder / "whole" / "probes.h5").read_bytes())
+        self.call("run", self.scene(CYCLIC), "--output", "parts", *words, "--restart", "--set",
+                  "Probes.other.fracture=" + fracture, "--set", "Probes.other.outputs={slip}", expect=1)
+
+    def test_killed(self):
+        """What was written stays: whole lines of all whole steps."""
+        steps = 200
+        words = ["--set", f"Time.steps={steps}", "--set", QUIET]
+        for one in probe("here", point="{0.7, 1.9}", outputs="{displacement}"):
+            words += ["--set", one]
+        run = subprocess.Popen([str(program.PROGRAM), "run", str(self.scene(PATCH)), "--output", "out", *words], cwd=self.folder,
+                               env={**os.environ, **program.ALONE})
+        path = self.folder / "out" / "probes" / "here.csv"
+        while run.poll() is None and not (path.exists() and path.read_bytes().count(b"\n") > 5):
+            time.sleep(0.01)
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+        table = self.table("here")
+        self.assertGreaterEqual(len(table["time [s]"]), 5)
+        self.assertEqual(table["time [s]"], [(k + 1) / steps for k in range(len(table["time [s]"]))])
+        self.assertTrue(path.read_bytes().endswith(b"\n"))
+
+    def test_one_file_for_others(self):
+        """xarray reads all tables, with units and dimensions, without code of ours."""
+        try:
+            import h5netcdf  # noqa: F401
+            import xarray
+        except ImportError:
+            self.skipTest("needs python3-xarray and python3-h5netcdf")
+        self.run_scene(INJECTION, QUIET, "Time.steps=3")
+        path = self.folder / "out" / "probes.h5"
+        with xarray.open_dataset(path, group="along the fault", engine="h5netcdf") as line:
+            self.assertEqual(line["slip"].dims, ("time", "distance"))
+            self.assertEqual(line["slip"].shape, (3, 23))
+            self.assertEqual(line["slip"].attrs["units"], "m")
+            self.assertEqual(line["time"].attrs["units"], "d")
+            self.assertEqual([float(t) for t in line["time"]], [10, 20, 30])
+            along = self.table("along the fault")
+            self.assertEqual([float(x) for x in line["slip"].values.ravel()], along["slip [m]"])
+            self.assertEqual([float(x) for x in line["x"]], along["x [m]"][:23])
+        with xarray.open_dataset(path, group="well", engine="h5netcdf") as well:
+            self.assertEqual([float(p) for p in well["pressure"]], self.table("well")["pressure [Pa]"])
+
+    def test_errors(self):
+        """One line for each, naming the probe, the value and what there is; on every number of ranks, before a step."""
+        wrong = [(probe("p", point="{5, 5}", outputs="{stress}"), 'Probes > p: (5, 5, 0) is outside of the mesh'),
+                 (probe("p", point="{1, 1, 1}", outputs="{stress}"), 'Probes > p > "point": has 3 values, must have 2'),
+                 (probe("p", point="{1, 1}", outputs="{stres}"), '"outputs": is "stres", must be one of "displacement", "stress". Did you mean "stress"?'),
+                 (probe("p", point="{1, 1}"), 'Probes > p > "outputs": missing'),
+                 (probe("p", outputs="{stress}"), 'Probes > p: give one of "point", "line", "boundary", "region", "fracture", "well"'),
+                 (probe("p", boundary="up", outputs="{stress}"), '"boundary": is "up", must be one of'),
+                 (probe("p", fracture="fault", outputs="{slip}"), '"fracture": is "fault", must be one of'),
+                 (probe("p", well="deep"), 'Probes > p > "well": is "deep"'),
+                 (probe("a/b", point="{1, 1}", outputs="{stress}"), "Probes > a/b: its name becomes that of a file")]
+        for sets, words in wrong:
+            for ranks in (1, 2):
+                _, err = self.call("run", self.scene(PATCH), "--output", "out", *(word for one in sets for word in ("--set", one)),
+                                   ranks=ranks, expect=1)
+                self.assertIn(words, err)
+        _, err = self.call("check", self.scene(CYCLIC), "--set", "Probes.p.point={0.013, 0.017}", "--set", "Probes.p.outputs={slip}", expect=1)
+        self.assertIn("is on no fracture", err)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""What a report says: report_test.py PROGRAM ROOT MPIEXEC
+
+Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
+import base64
+import contextlib
+import importlib.util
+import io
+import json
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
+from program import ROOT, ProgramTest, main  # noqa: E402
+
+MISSING = [name for name in ("matplotlib", "numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
+if MISSING:
+    print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
+    sys.exit(77)
+
+sys.path[:0] = [str(ROOT / folder) for folder in ("apps/report", "apps/plot", "perf/contact")]
+spec = importlib.util.spec_from_file_location("sprekk_report", ROOT / "apps" / "report" / "__main__.py")
+report = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(report)
+
+import checks  # noqa: E402
+import figures  # noqa: E402
+import numbers_in_words  # noqa: E402
+import numpy as np  # noqa: E402
+import scene  # noqa: E402
+import view  # noqa: E402
+
+
+class ReportTest(ProgramTest):
+    def write(self, *words, expect=0):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            self.assertEqual(
+                report.main([str(self.folder / "out"), "--dpi", "40", *map(str, words)]), expect, err.getvalue()
+            )
+        return out.getvalue().strip() or err.getvalue()
+
+    def verdicts(self):
+        """Of the run as its files are now, by the name of the check."""
+        content = self.results()
+        entries = scene.Scene(self.folder / "out", ROOT / "docs/reference.md")
+        return {check.name: check for check in checks.of_run(self.folder / "out", content, entries)}
+
+    def change(self, change):
+        content = self.results()
+        change(content)
+        (self.folder / "out/results.json").write_text(json.dumps(content))
+
+
+class Pages(ReportTest):
+    def test_page_holds_all_there_is(self):
+        """Without a viewer: everything but the view, which it says; nothing is loaded from elsewhere."""
+        content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.error estimate=true")
+        page = Path(self.write()).read_text()
+        self.assertIn("has no 3D view", page)
+        self.assertEqual(len(re.findall("<img ", page)), 8)
+        self.assertEqual(re.findall(r"""(?:src|href)=['"](?!data:|#)[^'"]*""", page), [])
+        slip = content["steps"][-1]["fractures"]["shear plane"]["max_slip"]
+        self.assertIn(f"<td>{1e3 * slip:.4g}</td>", page)
+        for words in (
+            "8 steps up to",
+            "estimated error of the stress",
+            "Key figures",
+            "no step was halved",
+            "largest memory",
+        ):
+            self.assertIn(words, page)
+
+    def test_scene_in_words(self):
+        """What is no default, with units; sections that say the same are one."""
+        self.run_scene("poro/injection_2d.xml", "Time.steps=1", "Time.end=100")
+        entries = scene.Scene(self.folder / "out", ROOT / "docs/reference.md")
+        blocks = {path[:-1] + (", ".join(names),): dict(said) for names, path, said in entries.blocks()}
+        self.assertEqual(blocks["Materials", "granite"]["Young's modulus"], "40 GPa")
+        self.assertEqual(blocks["Materials", "rough joint"]["tangential stiffness"], "10 GPa/m")
+        self.assertEqual(blocks["Bulk",]["initial stress"], "(−25, −40, −30, 6) MPa")
+        self.assertNotIn("skin", blocks["Flow", "Wells", "injector"])  # a default
+        joined = [path for path in blocks if path[0] == "Fractures"]
+        self.assertEqual([path[1].count(",") for path in joined], [10])
+
+    def test_failed_run_is_reported(self):
+        self.run_scene(
+            ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", expect=3
+        )
+        page = Path(self.write()).read_text()
+        self.assertIn("did not converge", page)
+        self.assertIn("class='failed'", page)
+        self.assertIn("no bulk.png", page)
+
+    def test_wrong_folders(self):
+        self.assertIn("no such directory", self.write(expect=1))
+        (self.folder / "out").mkdir()
+        self.assertIn("holds no results.json", self.write(expect=1))
+
+
+class Checks(ReportTest):
+    def test_good_run_passes(self):
+        self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
+        found = self.verdicts()
+        self.assertEqual({check.verdict for check in found.values()}, {"passed", "noted"})
+        for name in ("run", "convergence", "time steps", "laws of contact and friction", "balance of forces"):
+            self.assertEqual(found[name].verdict, "passed", found[name])
+        wells = self.results()["steps"][-1]
+        stored = sum(wells["inflows"].values()) + wells["wells"]["injector"]["rate"]
+        self.assertIn(f"{numbers_in_words.number(stored)} m³/s, is stored", found["balance of fluid"].words)
+
+    def test_what_is_wrong_fails(self):
+        self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
+
+        def spoil(content):
+            content["status"], content["reason"] = "failed", "by hand"
+            content["steps"][0].update(converged=False, cuts=1)
+            content["steps"][-1]["reactions"]["west"][0] *= 1.001
+
+        self.change(spoil)
+        found = self.verdicts()
+        self.assertEqual(
+            {name for name, check in found.items() if check.verdict == "failed"},
+            {"run", "convergence", "balance of forces"},
+        )
+        self.assertIn("by hand", found["run"].words)
+        self.assertEqual(found["time steps"].verdict, "noted")
+        scene_file = self.folder / "out/effective_input.xml"
+        scene_file.write_text(
+            scene_file.read_text().replace(
+                'name="friction coefficient" type="double" value="0.5"',
+                'name="friction coefficient" type="double" value="0.1"',
+            )
+        )
+        self.assertEqual(self.verdicts()["laws of contact and friction"].verdict, "failed")
+
+    def test_other_loads_carry_reactions(self):
+        self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=2")
+        self.assertIn("(traction, body force)", self.verdicts()["balance of forces"].words)
+
+
+class Views(ReportTest):
+    def numbers(self, text, kind=np.float32):
+        return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+    def test_body(self):
+        """Values and places are those of the run's files."""
+        self.run_scene("verification/crossing_3d.xml")
+        shown = view.of_run(self.folder / "out")
+        rock, joints = shown["surfaces"]
+        self.assertEqual([rock["name"], joints["name"]], ["rock", "fractures"])
+        self.assertLess(rock["opacity"], joints["opacity"])
+        import read
+
+        grid = read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1])
+        slip = read.arrays(grid.GetCellData())["slip"]
+        field = next(f for f in joints["fields"] if f["name"].startswith("slip"))
+        factor = {"slip (m)": 1, "slip (mm)": 1e-3, "slip (µm)": 1e-6}[field["name"]]
+        self.assertAlmostEqual(float(np.max(self.numbers(field["values"]))) * factor / np.max(slip), 1, 6)
+        triangles = self.numbers(joints["triangles"], np.uint32)
+        self.assertEqual(len(self.numbers(field["values"])), len(triangles) // 3)
+        self.assertLess(triangles.max(), len(self.numbers(joints["points"])) // 3)
+        displacement = self.numbers(rock["displacement"]).reshape(-1, 3)
+        self.assertGreater(np.max(abs(displacement)), 0)
+
+    def test_plane(self):
+        """Traces are bands that keep their length, in front of the rock."""
+        self.run_scene("verification/crossing_2d.xml")
+        rock, joints = view.of_run(self.folder / "out")["surfaces"]
+        self.assertEqual(rock["opacity"], 1)
+        points = self.numbers(joints["points"]).reshape(-1, 3)
+        self.assertGreater(points[:, 2].min(), self.numbers(rock["points"]).reshape(-1, 3)[:, 2].max())
+        import read
+
+        lines = read.segments(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]))
+        lengths = [np.linalg.norm(np.diff(ends[:2], axis=0)) for ends in lines.corners()]
+        bands = points.reshape(-1, 4, 3)
+        self.assertTrue(np.allclose(np.linalg.norm(bands[:, 1] - bands[:, 0], axis=1), lengths, rtol=1e-5))
+
+    def test_large_surfaces_are_thinned(self):
+        """A wavy sheet: fewer triangles, about where it was, with the values of its points."""
+        n = 300
+        x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))
+        points = np.column_stack([x.ravel(), y.ravel(), 0.1 * np.sin(6 * x.ravel())])
+        k = np.arange(n * n).reshape(n, n)
+        square = np.stack([k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]], -1).reshape(-1, 4)
+        triangles = np.concatenate([square[:, :3], square[:, [0, 2, 3]]])
+        values = points[triangles].mean(axis=1)[:, 0]
+        content = view.content("rock", points, triangles, [view.field("x", values, "", "viridis", "cells")], points)
+        kept = self.numbers(content["points"]).reshape(-1, 3)
+        self.assertLessEqual(len(self.numbers(content["triangles"], np.uint32)) // 3, 1.05 * view.MOST_TRIANGLES)
+        self.assertTrue(np.allclose(kept[:, 2], 0.1 * np.sin(6 * kept[:, 0]), atol=1e-5))
+        self.assertTrue(np.allclose(self.numbers(content["fields"][0]["values"]), kept[:, 0], atol=1 / n))
+        self.assertTrue(np.allclose(np.ptp(kept, axis=0), np.ptp(points, axis=0), atol=1e-3))
+
+
+class Words(ReportTest):
+    def test_numbers(self):
+        self.assertEqual(numbers_in_words.quantity(2.5e6, "Pa"), "2.5 MPa")
+        self.assertEqual(numbers_in_words.quantity(30 * 86400.0, "s"), "30 d")
+        self.assertEqual(numbers_in_words.quantity(0.0, "m"), "0 m")
+        self.assertEqual(numbers_in_words.number(-1.5e-12), "−1.5 × 10⁻¹²")
+        self.assertEqual(numbers_in_words.in_unit("{0, ramp(t)}", "m"), "{0, ramp(t)} m")
+
+    def test_single_fractures_take_the_place_of_sets(self):
+        """Those that slipped most first."""
+        step = {
+            "fractures": {"set": {"area": 3.0, "max_slip": 2e-3}},
+            "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]},
+        }
+        content = {
+            "mesh": {"dimension": 2},
+            "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
+            "steps": [step],
+        }
+        (table,), _ = figures.of_run(content)
+        self.assertEqual(table.columns, ["fracture", "length (m)", "largest slip (mm)", "moment per depth (N)"])
+        self.assertEqual(table.rows, [("b", "2", "2", "5 × 10⁹"), ("a", "1", "1", "0")])
+        del content["single_fractures"]
+        (table,), _ = figures.of_run(content)
+        self.assertEqual([row[0] for row in table.rows], ["set"])
+
+    def test_rounding_is_zero_in_tables(self):
+        self.assertEqual(figures.column("slip", [2e-3, 3e-19, None], "m"), ("slip (mm)", ["2", "0", "–"]))
+
+
+if __name__ == "__main__":
+    main()
