@@ -34,7 +34,7 @@ std::string told(const std::string& lines) {
 }
 
 TEST(MshError, Fractures) {
-  EXPECT_THAT(refusal(told("1\n1 1\n")), HasSubstr("$Fractures, line 11: fracture 1: has 0 texts in quotes"));
+  EXPECT_THAT(refusal(told("1\n1 1\n")), HasSubstr("$Fractures, line 12: fracture 1: has 0 texts in quotes"));
   EXPECT_THAT(refusal(told("1\n1 1 \"a\" \"friction\"\n")), HasSubstr("fracture 1: has 2 texts in quotes"));
   EXPECT_THAT(refusal(told("1\n1 1 \"a\n")), HasSubstr("lacks a quotation mark"));
   EXPECT_THAT(refusal(told("1\n1 x \"a\"\n")), HasSubstr("the number of an entity is \"x\""));
