@@ -201,8 +201,7 @@ Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
 
 std::vector<contact::Support> Constraints::supports() const {
   std::vector<contact::Support> supports;
-  for (const auto& entry : held_.entries)
-    supports.push_back({static_cast<LocalIndex>(entry.unknown), entry.component});
+  for (const auto& entry : held_.entries) supports.push_back({static_cast<LocalIndex>(entry.unknown), entry.component});
   return supports;
 }
 

@@ -14,15 +14,15 @@
 
 namespace sprekk::assembly {
 
-using contact::RigidBlock;
-using contact::RigidFrame;
-using contact::RigidRow;
 using contact::add_product;
 using contact::negligible;
 using contact::null_space;
 using contact::reduce;
 using contact::rigid_modes;
 using contact::rigid_row;
+using contact::RigidBlock;
+using contact::RigidFrame;
+using contact::RigidRow;
 using contact::to_text;
 
 using mesh::GlobalMesh;

@@ -387,8 +387,8 @@ void System::watch_contact() {
     if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement = b;
   std::unique_ptr<contact::LoosePieces> pieces;
   if (displacement >= 0)
-    pieces = std::make_unique<contact::LoosePieces>(mesh_, layouts_[displacement], constraints_[displacement].supports(),
-                                                    cell_volumes(*mesh_));
+    pieces = std::make_unique<contact::LoosePieces>(mesh_, layouts_[displacement],
+                                                    constraints_[displacement].supports(), cell_volumes(*mesh_));
   const bool loose = pieces && pieces->possible();
   if (!loose && contact_blocks_.traction < 0) return;
   if (loose) pieces->set_stiffness(*diagonals_[displacement]);

@@ -142,10 +142,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   fields::BlockVector present_;      // [block] the same of the last jacobian()
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
-  contact::Blocks contact_blocks_;      // without a displacement where modules hold bodies
+  contact::Blocks contact_blocks_;   // without a displacement where modules hold bodies
   std::unique_ptr<contact::Contact> contact_;  // null where nothing touches and all is held
-  fields::BlockMatrix linear_;          // what the linear modules write
-  fields::BlockMatrix matrix_;          // df/dx; shares the blocks that only linear modules write
+  fields::BlockMatrix linear_;                 // what the linear modules write
+  fields::BlockMatrix matrix_;                 // df/dx; shares the blocks that only linear modules write
   std::vector<ScaleRelation> relations_;
   Scales scales_;
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x

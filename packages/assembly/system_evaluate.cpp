@@ -3,7 +3,6 @@
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -227,7 +226,8 @@ void System::find_schur() {
 
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
-  if (contact_ && contact_->pieces()) {  // before histories move on: afterwards faces that slid lie on the limit of sticking
+  if (contact_ &&
+      contact_->pieces()) {  // before histories move on: afterwards faces that slid lie on the limit of sticking
     contact_->find_loose(present_grips());
     contact_->remember(x);
   }
@@ -251,8 +251,8 @@ Real System::rounding(const BlockVector& x, const std::string& scale) const {
 /// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
 /// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
 /// rock. A traction row has jumps times the constant of the face law in it: where soft rock carries stiff rock far,
-/// their rounding is more than the deformation of the stiff one. But what flies off to displacements whose rounding hides
-/// the loads has not converged.
+/// their rounding is more than the deformation of the stiff one. But what flies off to displacements whose rounding
+/// hides the loads has not converged.
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   constexpr Real most_noise = 1e-5;  // of the loads
   refresh_ghosts(x, false);
@@ -273,7 +273,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // some rows let much less through than others
     const bool bounded = !balance && !traction;
-    Real stored = 0;                       // rounding of what the step stores
+    Real stored = 0;  // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
     const Real infinite = std::numeric_limits<Real>::infinity();
@@ -281,10 +281,13 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     Kokkos::parallel_reduce(
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
-          const Real size_of_row = row(i) < 0 ? -row(i) : row(i), weak = balance ? diagonal(i) * held_scale : free_scale;
+          const Real size_of_row = row(i) < 0 ? -row(i) : row(i),
+                     weak = balance ? diagonal(i) * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
-          const Real of_row = rounding_of_block * now(i) + stored,
-                     noise = mask(i) ? 0 : bounded && of_row > most_noise * scale ? most_noise * scale : of_row;
+          const Real of_row = rounding_of_block * now(i) + stored, noise = mask(i) ? 0
+                                                                           : bounded && of_row > most_noise * scale
+                                                                               ? most_noise * scale
+                                                                               : of_row;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },

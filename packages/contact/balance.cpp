@@ -55,7 +55,8 @@ std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
 }
 
 /// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
-std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx, bool mode) {
+std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx,
+                                   bool mode) {
   auto& du = *dx[blocks_.displacement];
   const int n = pieces_->n_groups();
   auto y = fields::create_like(x);

@@ -62,8 +62,8 @@ void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::
 /// The free motion to the nearest state; each pass adds the faces whose gap would fall below `least` [face], as they
 /// are seen from the last one, and those that would slide against their traction.
 std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
-                                                      const std::vector<LoosePieces::Slide>& slides,
-                                                      const std::vector<Real>& least) {
+                                                       const std::vector<LoosePieces::Slide>& slides,
+                                                       const std::vector<Real>& least) {
   constexpr int most_passes = 30;
   const Real length = equations_.sizes().displacement, slack = 0.1 * margin * length;
   auto there = fields::create_like(x);
