@@ -32,7 +32,12 @@ def arguments(words):
 
 def of_csv(path):
     """(name, figure)"""
+    import laboratory
     import loops
+    curves = laboratory.specimens(path)
+    if curves:
+        yield path.stem, laboratory.of_specimens(curves, path.stem)
+        return
     columns, tangential = read.point_csv(path)
     yield path.stem, loops.of_point(columns, tangential, path.stem)
 

@@ -90,6 +90,23 @@ int run_scene(model::RunOptions options, RCP<const Comm> comm) {
   return ending == model::Ending::completed ? 0 : ending == model::Ending::failed ? 3 : 4;
 }
 
+/// Prints the curves, then where slip jumped, and ends with an error if a step had no state.
+void drive_points(const model::RunOptions& options, const Comm& comm) {
+  const auto curves = model::drive_points(model::read_point_scene(comm, options.scene, options.overrides));
+  const bool speaks = comm.getRank() == 0;
+  if (speaks) model::write_csv(std::cout, curves);
+  std::cout.flush();
+  std::string failures;
+  for (const auto& curve : curves) {
+    for (const auto& state : curve.states)
+      if (speaks && !state.remark.empty())
+        std::cerr << "sprekk: " << (curve.specimen.empty() ? "" : curve.specimen + ": ") << "t = " << state.t << ": "
+                  << state.remark << '\n';
+    if (!curve.failure.empty()) failures += (failures.empty() ? "" : "\n") + curve.failure;
+  }
+  SPREKK_CHECK(failures.empty(), "{}", failures);
+}
+
 /// Runs the command; the exit status.
 int execute(const std::string& command, const Arguments& arguments, RCP<const Comm> comm) {
   const auto& options = arguments.options;
@@ -101,12 +118,7 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
     base::collectively(*comm, [&] {
       if (speaks) std::cout << model::mesh_info(arguments.mesh_file, arguments.fractures);
     });
-  if (command == "point") {
-    const auto states = model::drive_point(model::read_point_scene(*comm, options.scene, options.overrides));
-    if (speaks) model::write_csv(std::cout, states);
-    for (const auto& state : states)
-      if (speaks && !state.remark.empty()) std::cerr << "sprekk: t = " << state.t << ": " << state.remark << '\n';
-  }
+  if (command == "point") drive_points(options, *comm);
   if (command == "network") {
     const auto description = model::network_description(*comm, options.scene, options.overrides);
     if (speaks) std::cout << description;

@@ -3,256 +3,41 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
+#include "model/point_driver.hpp"
 #include "physics/material_library.hpp"
-#include "physics/mechanics/joint_material.hpp"
-
-#include <Sacado.hpp>
-#include <Teuchos_LAPACK.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <ostream>
 
 namespace sprekk::model {
 
 namespace {
 
-constexpr const char* axes[] = {"n", "t1", "t2"};
-
-/// "n", then "t" in 2D, "t1" and "t2" in 3D.
-const char* axis(std::size_t dim, std::size_t i) { return dim == 2 && i == 1 ? "t" : axes[i]; }
-
-/// Newton's method on R(w, lambda) = 0 and one control equation per component; unknowns w, lambda.
 template <int dim>
-class PointDriver {
- public:
-  explicit PointDriver(const PointScene& scene)
-      : point_(scene.point), law_(scene.materials.at(scene.point.material).joint({0, 0, 0}).law) {
-    for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
-    for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
-    law_.sliding_compliance = 0;  // it steers the iteration on meshes
-    if (!point_.initial_traction.empty()) press();
-  }
-
-  PointState step(Real t) {
-    for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
-    Real old[2 * dim];
-    std::copy_n(x_, 2 * dim, old);
-    std::string reason;
-    for (Start start : {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}}) {
-      for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
-        for (int i = 0; i < 2 * dim; ++i)
-          x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
-        if (start.elastic && !stretch()) break;
-        const std::string failure = solve(factor, start.damped);
-        if (failure.empty()) return accept(t);
-        if (reason.empty()) reason = failure;
-      }
+PointCurve drive(const PointPath& path, const Material& material, const Time& time) {
+  PointCurve curve;
+  const auto times = time.times();
+  std::string step;
+  try {
+    PointDriver<dim> driver(path, material);
+    curve.initial = driver.initial(time.start);
+    Real last = time.start;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      step = fmt::format("step {} of {}, ", k + 1, times.size());
+      for (auto& state : driver.advance(last, times[k])) curve.states.push_back(std::move(state));
+      last = times[k];
     }
-    std::string prescribed;
-    for (int i = 0; i < dim; ++i)
-      prescribed += fmt::format("{}{} {} = {}", i ? ", " : "", control(i), axis(dim, i), d_[i]);
-    throw Error(fmt::format("point: t = {}: no state found for {}: {}", t, prescribed, reason));
+  } catch (const Error& error) {
+    curve.failure = step + error.what();
   }
+  return curve;
+}
 
- private:
-  /// Starts from the initial traction, and the jump that the joint has under it.
-  void press() {
-    auto at = laws::contact<dim>(point_.initial_traction[0], laws::norm(p_old_), p_old_, p_old_, {kept_.data()});
-    SPREKK_CHECK(at.lambda_n <= 0, "point: the initial traction is {} along the normal; it must press, or be 0",
-                 at.lambda_n);
-    std::copy_n(point_.initial_traction.begin(), dim, base_);
-    Real shear[dim - 1];
-    std::copy_n(base_ + 1, dim - 1, shear);
-    at.shear = laws::norm(shear);
-    SPREKK_CHECK(at.shear <= law_.bound(at), "point: the initial traction shears by {}; the joint bears {}", at.shear,
-                 law_.bound(at));
-    rest_[0] = law_.normal_gap(at);
-    for (int i = 1; i < dim; ++i) rest_[i] = p_old_[i - 1] + law_.compliance(at) * base_[i];
-    std::copy_n(rest_, dim, x_);
-    std::copy_n(base_, dim, x_ + dim);
-  }
-
-  /// Where Newton's method starts, the last state, that stretched, or one without traction, and whether its steps are
-  /// damped. These and the factor on the typical stiffness steer the iteration; which solution is found, if there are
-  /// several, depends on them.
-  struct Start {
-    bool damped = false, released = false, elastic = false;
-  };
-
-  /// Moves x to where what is prescribed only stretches a joint with a bond: a state that is whole comes before one that
-  /// is broken. False where there is none such to be expected.
-  bool stretch() {
-    bool stretched = false;
-    for (int i = 0; i < dim && law_.is_bonded(); ++i) {
-      const Real compliance = i == 0 ? law_.gap.closure.initial_compliance() : law_.elastic.initial_compliance();
-      if (compliance == 0) continue;
-      if (control(i) == "jump") x_[dim + i] += (rest_[i] + d_[i] - x_[i]) / compliance;
-      if (control(i) == "traction") x_[i] += (d_[i] - x_[dim + i]) * compliance;
-      stretched = true;
-    }
-    return stretched;
-  }
-
-  const std::string& control(int i) const { return point_.control[i]; }
-
-  /// The stiffness of the column, else of the joint, else what the prescribed values suggest.
-  Real typical_stiffness() const {
-    Real k = 0, length = 0, stress = 0;
-    for (int i = 0; i < dim; ++i) {
-      if (control(i) == "column") k = std::max(k, stiffness_[i]);
-      Real& size = control(i) == "traction" ? stress : length;
-      size = std::max(size, std::abs(d_[i]));
-    }
-    for (const Real compliance : {law_.elastic.initial_compliance(), law_.gap.closure.initial_compliance()})
-      if (k == 0 && compliance > 0) k = 1 / compliance;
-    if (k == 0 && length > 0) k = stress / length;
-    return k == 0 ? 1 : k;
-  }
-
-  /// Sizes of jump and traction at x, which changes are judged by; c is a typical stiffness.
-  void scales(Real c, Real (&scale)[2 * dim]) const {
-    Real length = 1e-300;
-    for (int i = 0; i < dim; ++i)
-      length = std::max({length, std::abs(x_[i]), std::abs(x_[dim + i]) / c,
-                         control(i) == "traction" ? std::abs(d_[i]) / c : std::abs(d_[i])});
-    for (int i = 0; i < dim; ++i) {
-      scale[i] = length;
-      scale[dim + i] = std::max((i == 0 ? c_.normal : c_.tangential) * length, std::abs(x_[dim + i]));
-    }
-  }
-
-  /// Moves x to the state at the prescribed values; returns why there is none, or nothing. The constants of the
-  /// projection are those of the typical stiffness times the factor; a damped step is halved until the residual falls.
-  std::string solve(Real factor, bool damped) {
-    const Real c = typical_stiffness();
-    c_ = laws::augmentation(law_, c * factor);
-    for (int i = 0; i < dim; ++i) {
-      if (control(i) == "jump") x_[i] = rest_[i] + d_[i];
-      if (control(i) == "traction") x_[dim + i] = d_[i];
-    }
-    Real f[2 * dim], J[4 * dim * dim], scale[2 * dim];
-    for (int iteration = 0; iteration < 50; ++iteration) {
-      const auto state = evaluate(f, J);
-      scales(c, scale);
-      const Real size = size_of(f, scale);
-      int info = 0, pivots[2 * dim];
-      Teuchos::LAPACK<int, Real>().GESV(2 * dim, 1, J, 2 * dim, pivots, f, 2 * dim, &info);
-      Real change = 0, x[2 * dim], step[2 * dim];
-      std::copy_n(x_, 2 * dim, x);
-      std::copy_n(f, 2 * dim, step);
-      for (int i = 0; i < 2 * dim; ++i) {
-        if (info != 0 || !(std::abs(step[i]) < 1e10 * scale[i])) return undetermined(state);
-        change = std::max(change, std::abs(step[i]) / scale[i]);
-      }
-      for (Real length = 1; length > 0.01; length /= 2) {
-        for (int i = 0; i < 2 * dim; ++i) x_[i] = x[i] - length * step[i];
-        if (!damped || change <= 1e-12) break;
-        evaluate(f, J);
-        if (size_of(f, scale) < size) break;
-      }
-      if (change <= 1e-12) return {};
-    }
-    return "Newton's method does not converge";
-  }
-
-  /// The residual, each of its entries in its unit over that unit's size.
-  Real size_of(const Real (&f)[2 * dim], const Real (&scale)[2 * dim]) const {
-    Real square = 0;
-    for (int i = 0; i < dim; ++i) {
-      const Real control_scale = control(i) == "jump" ? scale[i] : scale[dim + i];
-      square += std::pow(f[i] / scale[dim + i], 2) + std::pow(f[dim + i] / control_scale, 2);
-    }
-    return std::sqrt(square);
-  }
-
-  /// Why the equations of a contact state do not determine jump and traction.
-  std::string undetermined(laws::ContactState state) const {
-    const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
-    if (state == laws::ContactState::open) return "an open joint bears no traction, its jump has no bound";
-    if (state == laws::ContactState::slip && pulled)
-      return "the shear traction exceeds the friction bound, the joint slides without bound";
-    if (control(0) == "jump" && law_.gap.closure.initial_compliance() == 0)
-      return "the faces touch and do not close, the normal jump does not determine the normal traction";
-    if (state == laws::ContactState::stick && law_.elastic.initial_compliance() == 0)
-      return "a rigid joint sticks, the jump does not determine the shear traction";
-    return "the prescribed values do not determine jump and traction";
-  }
-
-  /// f and its column-major Jacobian J at x.
-  laws::ContactState evaluate(Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
-    using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
-    Fad w[dim], lambda[dim], R[dim];
-    for (int i = 0; i < dim; ++i) {
-      w[i] = Fad(2 * dim, i, x_[i]);
-      lambda[i] = Fad(2 * dim, dim + i, x_[dim + i]);
-    }
-    const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R, {kept_.data()});
-    for (int i = 0; i < dim; ++i) {
-      const Fad moved = w[i] - rest_[i];
-      const Fad controlled = control(i) == "jump"       ? Fad(moved - d_[i])
-                             : control(i) == "traction" ? Fad(lambda[i] - d_[i])
-                                                        : Fad(lambda[i] - base_[i] - stiffness_[i] * (d_[i] - moved));
-      f[i] = R[i].val();
-      f[dim + i] = controlled.val();
-      for (int j = 0; j < 2 * dim; ++j) {
-        J[j * 2 * dim + i] = R[i].dx(j);
-        J[j * 2 * dim + dim + i] = controlled.dx(j);
-      }
-    }
-    return state;
-  }
-
-  PointState accept(Real t) {
-    Real f[2 * dim], J[4 * dim * dim];
-    const auto state = evaluate(f, J);
-    Real w[dim], lambda[dim], elastic[dim], plastic[dim];
-    std::copy_n(x_, dim, w);
-    std::copy_n(x_ + dim, dim, lambda);
-    laws::split_jump<dim>(law_, state, w, lambda, p_old_, elastic, plastic, {kept_.data()});
-    if (state == laws::ContactState::stick) {
-      for (int i = 1; i < dim; ++i) plastic[i] = p_old_[i - 1];
-    }
-    Real now[dim - 1];
-    std::copy_n(plastic + 1, dim - 1, now);
-    const auto at = laws::converged<dim>(law_, state, w, lambda, now, p_old_, {kept_.data()});
-    const std::string remark = state == laws::ContactState::slip ? runaway(at) : "";
-    law_.commit(at, {kept_.data()});
-    std::copy_n(now, dim - 1, p_old_);
-    laws::split_jump<dim>(law_, state, w, lambda, p_old_, elastic, plastic, {kept_.data()});
-    std::copy_n(now, dim - 1, plastic + 1);
-    return {t, state, {w, w + dim}, {elastic, elastic + dim}, {plastic, plastic + dim}, {lambda, lambda + dim}, remark};
-  }
-
-  /// Says so if slip weakens the joint faster than column and joint unload, where the slip of the step begins.
-  std::string runaway(const laws::Contact<Real>& end) const {
-    auto begin = end;
-    begin.slip_of_step = 0;
-    begin.plastic_slip = laws::norm(p_old_);
-    std::copy_n(p_old_, dim - 1, begin.plastic_jump);
-    const Real falls = physics::weakening(law_, begin);
-    const Real compliance = law_.compliance(end) + (control(1) == "column" ? 1 / stiffness_[1] : 0);
-    if (!(falls * compliance > 1)) return "";
-    return fmt::format(
-        "slip of {:.4g} at once: its bound falls by {:.4g} Pa/m at first, and what shears the joint unloads by "
-        "{:.4g} Pa/m; this state obeys the law, others between may do so",
-        end.slip_of_step, falls, 1 / compliance);
-  }
-
-  const PointPath& point_;
-  laws::Joint law_;
-  laws::Augmentation c_;
-  std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // what the laws keep of the point
-  Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
-  Real base_[dim] = {}, rest_[dim] = {};  // the initial traction, and the jump under it
-};
-
-template <int dim>
-std::vector<PointState> drive(const PointScene& scene) {
-  PointDriver<dim> driver(scene);
-  std::vector<PointState> states;
-  for (Real t : scene.time.times()) states.push_back(driver.step(t));
-  return states;
+/// As a field of CSV.
+std::string in_quotes(const std::string& text) {
+  std::string quoted = "\"";
+  for (char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
 }
 
 }  // namespace
@@ -296,39 +81,85 @@ void PointScene::describe(base::Section& s) {
   s.expressions_call(tables, expressions);
   s.named_sections(materials, "Materials", "joints, by names of your choice");
   s.section(time, "Time", "steps");
-  s.section(point, "Point", "what drives the point");
+  std::optional<PointPath> one;
+  s.section(one, "Point", "what drives the point");
+  s.named_sections(specimens, "Specimens", "several points instead of one, by names of your choice");
   if (!s.complete()) return;
-  physics::add_library_materials(materials, {point.material});
-  const std::string wrong = physics::wrong_material(point.material, "joint", materials);
-  if (!wrong.empty()) s.fail_inside("Point > \"material\": " + wrong);
-  if (!wrong.empty() || point.control.size() != 3) return;
-  for (const auto& [entry, what] : materials.at(point.material).only_in_2d())
-    s.fail_inside(fmt::format("Materials > {} > \"{}\": {}", point.material, entry, what));
+  if (one && !specimens.empty()) s.fail_inside("Specimens: are there beside \"Point\"; leave one of them out");
+  if (!one && specimens.empty())
+    s.fail_inside("Point: missing, and so are \"Specimens\"; a scene of points needs either");
+  if (one) point = *one;
+  for (const auto& [place, path] : paths()) check_material(s, place, *path);
+}
+
+void PointScene::check_material(base::Section& s, const std::string& place, const PointPath& path) {
+  physics::add_library_materials(materials, {path.material});
+  const std::string wrong = physics::wrong_material(path.material, "joint", materials);
+  if (!wrong.empty()) s.fail_inside(fmt::format("{} > \"material\": {}", place, wrong));
+  if (!wrong.empty() || path.control.size() != 3) return;
+  for (const auto& [entry, what] : materials.at(path.material).only_in_2d())
+    s.fail_inside(fmt::format("Materials > {} > \"{}\": {}", path.material, entry, what));
+}
+
+std::vector<std::pair<std::string, const PointPath*>> PointScene::paths() const {
+  std::vector<std::pair<std::string, const PointPath*>> all;
+  for (const auto& [name, path] : specimens) all.emplace_back("Specimens > " + name, &path);
+  if (all.empty()) all.emplace_back("Point", &point);
+  return all;
 }
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
   auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
-  SPREKK_CHECK(list.isParameter("Point") || !list.isParameter("Bulk"),
+  SPREKK_CHECK(list.isParameter("Point") || list.isParameter("Specimens") || !list.isParameter("Bulk"),
                "{}: is a scene for `sprekk run`: it has the section \"Bulk\" and no \"Point\"", path);
   const auto errors = base::apply_overrides(list, path, overrides);
-  return base::read<PointScene>(list, path, "Sprekk", errors);
+  auto scene = base::read<PointScene>(list, path, "Sprekk", errors);
+  scene.file = path;
+  return scene;
+}
+
+std::vector<PointCurve> drive_points(const PointScene& scene) {
+  std::vector<PointCurve> curves;
+  for (const auto& [place, path] : scene.paths()) {
+    const auto& material = scene.materials.at(path->material);
+    auto curve =
+        path->control.size() == 2 ? drive<2>(*path, material, scene.time) : drive<3>(*path, material, scene.time);
+    if (!curve.failure.empty()) curve.failure = fmt::format("{}: Sprekk > {}: {}", scene.file, place, curve.failure);
+    if (!scene.specimens.empty()) curve.specimen = place.substr(std::string("Specimens > ").size());
+    curves.push_back(std::move(curve));
+  }
+  return curves;
 }
 
 std::vector<PointState> drive_point(const PointScene& scene) {
-  return scene.point.control.size() == 2 ? drive<2>(scene) : drive<3>(scene);
+  auto curves = drive_points(scene);
+  SPREKK_CHECK(curves.size() == 1, "{}: has {} specimens, not one point", scene.file, curves.size());
+  SPREKK_CHECK(curves[0].failure.empty(), "{}", curves[0].failure);
+  return std::move(curves[0].states);
 }
 
-void write_csv(std::ostream& out, const std::vector<PointState>& states) {
-  out << "t,state";
-  const std::size_t dim = states.empty() ? 0 : states.front().jump.size();
+void write_csv(std::ostream& out, const std::vector<PointCurve>& curves) {
+  std::size_t dim = 2;
+  bool are_named = false;
+  for (const auto& curve : curves) {
+    dim = std::max(dim, curve.initial.jump.size());
+    are_named = are_named || !curve.specimen.empty();
+  }
+  out << (are_named ? "specimen,t,state" : "t,state");
   for (const char* name : {"jump", "elastic_jump", "plastic_jump", "traction"})
     for (std::size_t i = 0; i < dim; ++i) out << ',' << name << '_' << axis(dim, i);
-  out << '\n';
-  for (const auto& s : states) {
+  out << ",strength\n";
+  const auto write = [&](const PointCurve& curve, const PointState& s) {
+    if (are_named) out << in_quotes(curve.specimen) << ',';
     out << fmt::format("{:.17g},{}", s.t, static_cast<int>(s.contact));
     for (const auto* values : {&s.jump, &s.elastic, &s.plastic, &s.traction})
-      for (Real value : *values) out << fmt::format(",{:.17g}", value);
-    out << '\n';
+      for (std::size_t i = 0; i < dim; ++i) out << fmt::format(",{:.17g}", i < values->size() ? (*values)[i] : 0);
+    out << fmt::format(",{:.17g}\n", s.strength);
+  };
+  for (const auto& curve : curves) {
+    if (curve.initial.jump.empty()) continue;
+    write(curve, curve.initial);
+    for (const auto& s : curve.states) write(curve, s);
   }
 }
 

@@ -81,6 +81,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
   if [[ ${{words[0]}} == run && " ${{words[*]}} " != *" --output "* ]]; then words+=(--output "$folder"); fi
 fi
 if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} "${{words[@]:1}}"; fi
+if [[ ${{words[0]}} == fit ]]; then exec {python} -B {root}/apps/fit --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
 BUILDS = re.compile(r"\./sprekk (build|test|fuzz)\b")
@@ -89,7 +90,7 @@ PLOT_PYTHON = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "pyt
 
 def prepare(folder, root, binary, mpiexec):
     """Gives the folder what a user has: the scenes and pages, ./sprekk, and the program where a build puts it."""
-    for name in ("xml", "docs", "tests/data"):
+    for name in ("xml", "docs", "tests/data", "perf/experiments"):
         shutil.copytree(root / name, folder / name)
     launcher = folder / "sprekk"
     launcher.write_text(LAUNCHER.format(**{name: shlex.quote(str(value)) for name, value in {
@@ -113,8 +114,11 @@ def commands(block):
 
 def missing_program(command):
     """What the command needs and this machine lacks, or None."""
-    if command.startswith(("./sprekk plot", "./sprekk mesh")):
-        modules = "matplotlib, numpy, vtkmodules" if "plot" in command else "gmsh, matplotlib, numpy, shapely"
+    needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely",
+             "fit": "matplotlib, numpy, scipy"}
+    words = command.split()
+    if words[0] == "./sprekk" and words[1] in needs:
+        modules = needs[words[1]]
         found = subprocess.run([PLOT_PYTHON, "-c", "import " + modules], stderr=subprocess.DEVNULL).returncode == 0
         return None if found else f"one of {modules} for {PLOT_PYTHON}"
     words = [word for word in shlex.split(command) if "=" not in word]

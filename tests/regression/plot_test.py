@@ -61,6 +61,22 @@ class Pictures(PlotTest):
         path.write_text(self.call("point", self.scene(scene), *(w for o in overrides for w in ("--set", o)))[0])
         return path
 
+    def test_specimens_of_a_laboratory(self):
+        path = self.csv("point/shear_tests.xml")
+        self.draw(path)
+        self.expect_pictures(["point.png"])
+        (name, figure), = plot.of_csv(path)
+        shear, dilation, stress = figure.axes
+        names = ["0.5 MPa", "1 MPa", "1 MPa, 5 GPa/m", "1 MPa, constant volume", "2 MPa"]
+        self.assertEqual([line.get_label() for line in shear.lines], names)
+        load = dict(zip(names, zip(shear.lines, dilation.lines, stress.lines)))["1 MPa"]
+        for line, initial in zip(load, (0, -0.02, 0)):  # MPa, mm under the initial load, MPa
+            self.assertAlmostEqual(line.get_ydata()[0], initial, 12)
+        self.assertAlmostEqual(max(load[0].get_ydata()), 1.19175, delta=0.003)  # the peak strength by Barton's formula
+        self.assertTrue(np.allclose(load[2].get_xdata(), 1))
+        volume = dict(zip(names, dilation.lines))["1 MPa, constant volume"]
+        self.assertTrue(np.allclose(volume.get_ydata(), -0.02))
+
     def figures(self, directory, *words):
         """The figures of a run by name."""
         with contextlib.redirect_stderr(io.StringIO()):
@@ -93,7 +109,8 @@ class Pictures(PlotTest):
         self.assertEqual(name, "point")
         self.expect_labels(figure, "tangential jump (mm)", "shear traction (Pa)", "normal traction (Pa)")
         x, y = figure.axes[0].lines[0].get_data()
-        self.assertEqual(len(x), 80)
+        self.assertEqual(len(x), 81)  # the initial state and 80 steps
+        self.assertEqual((x[0], y[0]), (0, 0))
         self.assertAlmostEqual(max(y), 0.18, 12)
         self.assertAlmostEqual(x[-1], 320, 9)  # mm
 

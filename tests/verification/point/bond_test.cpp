@@ -13,7 +13,7 @@ Real softening(Real w) { return strength * (end - w) / (end - strength / K); }
 /// Pulled along the softening branch, released and pulled again along the secant, pressed without interpenetration
 /// beyond the elastic closure, and apart at 2 G/T.
 TEST(Bond, SoftensInTensionAndUnloadsAlongTheSecant) {
-  const auto states = drive("bond.xml");
+  const auto states = drive("bond.xml", {"Time.steps=11"});
   const Real secant = softening(7e-6) / 7e-6;
   const Real expected[] = {3e-6 * K, softening(7e-6), secant * 3.5e-6, -1e-6 * K, softening(7e-6), softening(9e-6), 0,
                            0,        -1e-6 * K};
@@ -23,6 +23,26 @@ TEST(Bond, SoftensInTensionAndUnloadsAlongTheSecant) {
   EXPECT_EQ(states[7].contact, ContactState::open);
   EXPECT_NEAR(states[9].traction[1], 0.5 * 2e6, 1e-3);  // friction alone is left
   EXPECT_NEAR(states[10].traction[1], 0.5 * 2e6, 1e-3);
+}
+
+/// The scene's own steps reach the strength.
+TEST(Bond, TheCurveHasItsPeak) {
+  Real largest = 0;
+  for (const auto& s : drive("bond.xml")) largest = std::max(largest, s.traction[0]);
+  EXPECT_NEAR(largest, strength, 1e-9 * strength);
+}
+
+/// A tension that the bond does not bear ends the curve; what is before it is there, and the reason has the strength.
+TEST(Bond, KeepsTheStatesBeforeItBreaks) {
+  const auto curves = model::drive_points(
+      model::read_point_scene(*Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/point/bond.xml",
+                              {"Point.control={traction, jump}", "Point.path={3e6*t, 0}", "Time.steps=11"}));
+  ASSERT_EQ(curves.size(), 1u);
+  ASSERT_EQ(curves[0].states.size(), 3u);
+  EXPECT_NEAR(curves[0].states.back().traction[0], 9e6, 1e-3);
+  for (const char* word : {"xml/point/bond.xml: Sprekk > Point: step 4 of 11, t = 4:", "tension of 1.2e+07 Pa",
+                           "tensile strength, 1e+07 Pa"})
+    EXPECT_NE(curves[0].failure.find(word), std::string::npos) << curves[0].failure;
 }
 
 /// The area under the curve is the fracture energy, also with releases on the way.
@@ -40,8 +60,8 @@ TEST(Bond, DissipatesTheFractureEnergy) {
   }
 }
 
-/// One that softens faster than the joint unloads has two states below its strength, whole and lost: it is whole, however
-/// long the steps are.
+/// One that softens faster than the joint unloads has two states below its strength, whole and lost: it is whole,
+/// however long the steps are.
 TEST(Bond, HoldsUpToItsStrengthIfItIsBrittle) {
   for (const std::string steps : {"1", "2", "5"}) {
     const auto pulled = [&](const std::string& path) {
@@ -52,8 +72,9 @@ TEST(Bond, HoldsUpToItsStrengthIfItIsBrittle) {
     EXPECT_NEAR(pulled("4e-6*t").traction[0], 4e-6 * K, 1e-9 * strength) << steps;
     EXPECT_EQ(pulled("6e-6*t").contact, ContactState::open) << steps;
   }
-  const auto sheared = drive("bond.xml", {"Materials.cemented joint.shear fracture energy=20", "Time.end=1",
-                                          "Point.control={traction, jump}", "Point.path={-4e6, 15e-6*t}", "Time.steps=1"});
+  const auto sheared =
+      drive("bond.xml", {"Materials.cemented joint.shear fracture energy=20", "Time.end=1",
+                         "Point.control={traction, jump}", "Point.path={-4e6, 15e-6*t}", "Time.steps=1"});
   EXPECT_NEAR(sheared[0].traction[1], 15e6, 1e-9 * strength);  // of 2 + 20 MPa
 }
 

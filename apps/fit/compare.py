@@ -1,0 +1,96 @@
+"""Measured columns against computed outputs along a third, and the residuals of all of them."""
+from dataclasses import dataclass
+
+import numpy as np
+import units
+from measured import FitError, column
+
+UNITS = {"t": "s", "strength": "Pa", "jump": "m", "elastic_jump": "m", "plastic_jump": "m", "traction": "Pa"}
+
+
+@dataclass
+class Pair:
+    """A column of the CSV and the output that it is compared with, or its negative, or its change since the start."""
+    name: str
+    output: str
+    sign: int
+    values: np.ndarray  # measured, as the output is signed; SI
+    is_change: bool = False
+
+    def computed(self, curve):
+        values = curve[self.output]
+        return values - values[0] if self.is_change else values
+
+
+def pair(path, columns, text, option, outputs):
+    """Of `COLUMN=OUTPUT`, the output with a minus or `change of` before it, or both."""
+    name, equals, output = (word.strip() for word in text.rpartition("="))
+    if not equals:
+        raise FitError(f'--{option} {text}: must be "COLUMN=OUTPUT", e.g. "shear stress=traction_t"')
+    sign = -1 if output.startswith("-") else 1
+    output = output.removeprefix("-").strip()
+    is_change = output.startswith("change of ")
+    output = output.removeprefix("change of ").strip()
+    if output not in outputs or output == "state":
+        raise FitError(f'--{option} {text}: the point driver has no output "{output}"; it has '
+                       + ", ".join(o for o in outputs if o != "state"))
+    values, powers = column(path, columns, name)
+    unit = UNITS[output if output in UNITS else output.rpartition("_")[0]]
+    is_load_step = output == "t" and powers == units.of_unit("-")[1]
+    if units.of_unit(unit)[1] != powers and not is_load_step:
+        raise FitError(f'{path}: column "{name}": its unit is not that of {output}, {unit} or a multiple')
+    return Pair(name, output, sign, sign * values, is_change)
+
+
+class Comparison:
+    """What is measured along `along`, beside the curves of a point driver. Rows beyond `until`, in SI, are predicted."""
+
+    def __init__(self, path, along, matched, until=np.inf):
+        self.path, self.along, self.matched = path, along, matched
+        x = along.values
+        known = [np.isfinite(x) & np.isfinite(p.values) for p in matched]
+        self.rows = [rows & (abs(x) <= abs(until)) for rows in known]
+        self.later = [rows & (abs(x) > abs(until)) for rows in known]
+        for p, rows in zip(matched, self.rows):
+            if np.sum(rows) < 2:
+                raise FitError(f'{path}: column "{p.name}" has {np.sum(rows)} numbers beside those of "{along.name}", needs 2')
+        known = x[np.isfinite(x)]
+        if np.any(np.diff(known) <= 0):
+            k = int(np.argmax(np.diff(known) <= 0))
+            raise FitError(f'{path}: column "{along.name}" does not increase from {known[k]:.6g} to {known[k + 1]:.6g} (SI units, '
+                           f'as {along.output} is signed); compare along one that does, e.g. the time')
+        self.weights = [1 / (np.ptp(p.values[rows]) or np.max(np.abs(p.values[rows])) or 1)
+                        for p, rows in zip(matched, self.rows)]
+
+    def beside(self, curve, p, rows):
+        """The computed values where there are measured ones; not finite beyond the end of the computed path."""
+        x = self.along.computed(curve)
+        kept = np.concatenate([[True], np.diff(np.maximum.accumulate(x)) > 0]) if len(x) else []
+        if len(x) == 0 or np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):
+            return np.full(np.sum(rows), np.nan)
+        slack = 1e-9 * np.max(np.abs(x))
+        wanted = self.along.values[rows]
+        values = np.interp(wanted, x[kept], p.computed(curve)[kept])
+        return np.where((wanted < x[0] - slack) | (wanted > x[-1] + slack), np.nan, values)
+
+    def differences(self, curve, rows=None):
+        """Computed less measured, for each matched column; SI. In the rows that are fitted, or in others."""
+        return [self.beside(curve, p, which) - p.values[which] for p, which in zip(self.matched, rows or self.rows)]
+
+    def residuals(self, curve):
+        return np.concatenate([w * d for w, d in zip(self.weights, self.differences(curve))])
+
+    def weigh_by_scatter(self, curve):
+        """Each column counts by its own scatter about the curve, at least a thousandth of its range."""
+        for k, (p, d) in enumerate(zip(self.matched, self.differences(curve))):
+            least = 1e-3 * (np.ptp(p.values[self.rows[k]]) or 1)
+            self.weights[k] = 1 / max(float(np.sqrt(np.mean(d**2))), least)
+
+    def why_not(self, curve):
+        """Why a curve cannot be compared."""
+        x = self.along.computed(curve)
+        known = self.along.values[np.isfinite(self.along.values)]
+        if np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):
+            return f"{self.along.output} does not increase along the computed path"
+        return (f'{self.along.output} reaches from {x[0]:.6g} to {x[-1]:.6g} on the computed path, "{self.along.name}" '
+                f"from {known[0]:.6g} to {known[-1]:.6g} (SI units); make the scene's path as long")

@@ -1,0 +1,56 @@
+"""Laboratory tests of several specimens: shear against displacement, dilation, stress paths with the strength."""
+import csv
+
+import numpy as np
+from read import PlotError
+from style import FAINT, MOST_CURVES, Quantity, give_room, look, plt
+
+
+def specimens(path):
+    """{name: {column: values}} of a CSV of `sprekk point` of several specimens; None of any other."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    if not rows or rows[0][:3] != ["specimen", "t", "state"]:
+        return None
+    curves = {}
+    try:
+        for row in rows[1:]:
+            curves.setdefault(row[0], []).append([float(word) for word in row[1:]])
+        tables = {name: np.array(values).T for name, values in curves.items()}
+    except ValueError as error:
+        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+    if not tables or any(len(table) != len(rows[0]) - 1 for table in tables.values()):
+        raise PlotError(f"{path}: has no rows, or incomplete ones")
+    return {name: dict(zip(rows[0][1:], table)) for name, table in tables.items()}
+
+
+def size(curve, kind):
+    """The tangential part: signed in 2D, its length in 3D."""
+    parts = [values for column, values in curve.items() if column.startswith(f"{kind}_t")]
+    return parts[0] if len(parts) == 1 else np.linalg.norm(parts, axis=0)
+
+
+def of_specimens(curves, title):
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 3.4))
+    figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+    slip = Quantity("tangential jump", "m", *(size(c, "jump") for c in curves.values()))
+    shear = Quantity("shear traction", "Pa", *(size(c, "traction") for c in curves.values()))
+    opening = Quantity("normal jump", "m", *(c["jump_n"] for c in curves.values()))
+    compression = Quantity("compression", "Pa", *(c["traction_n"] for c in curves.values()))
+    for k, (name, curve) in enumerate(curves.items()):
+        line = {key: look(k % MOST_CURVES)[key] for key in ("color", "linestyle")}
+        left.plot(slip(size(curve, "jump")), shear(size(curve, "traction")), label=name, **line)
+        middle.plot(slip(size(curve, "jump")), opening(curve["jump_n"]), **line)
+        right.plot(compression(-curve["traction_n"]), shear(size(curve, "traction")), **line)
+    peaks = np.array([[-c["traction_n"][k], c["strength"][k]] for c in curves.values() for k in [np.argmax(c["strength"])]])
+    order = np.argsort(peaks[:, 0], kind="stable")
+    right.plot(compression(peaks[order, 0]), shear(peaks[order, 1]), "o", color=FAINT, markersize=4,
+               markerfacecolor="none", label="largest strength")
+    left.set(xlabel=slip.label, ylabel=shear.label, title="shear")
+    middle.set(xlabel=slip.label, ylabel=opening.label, title="dilation and closure")
+    right.set(xlabel=compression.label, ylabel=shear.label, title="stress path")
+    right.legend(*(a + b for a, b in zip(left.get_legend_handles_labels(), right.get_legend_handles_labels())),
+                 loc="upper left", bbox_to_anchor=(1, 1))
+    for ax in (left, middle, right):
+        give_room(ax)
+    return figure

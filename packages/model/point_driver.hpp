@@ -1,0 +1,393 @@
+// Newton's method for the state of one point of a joint, step by step along a path.
+#pragma once
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "model/point.hpp"
+#include "physics/mechanics/joint_material.hpp"
+
+#include <Sacado.hpp>
+#include <Teuchos_LAPACK.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::model {
+
+inline constexpr const char* axes[] = {"n", "t1", "t2"};
+
+/// "n", then "t" in 2D, "t1" and "t2" in 3D.
+inline const char* axis(std::size_t dim, std::size_t i) { return dim == 2 && i == 1 ? "t" : axes[i]; }
+
+/// Newton's method on R(w, lambda) = 0 and one control equation per component; unknowns w, lambda.
+template <int dim>
+class PointDriver {
+ public:
+  PointDriver(const PointPath& point, const Material& material) : point_(point), law_(material.joint({0, 0, 0}).law) {
+    for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
+    for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
+    law_.sliding_compliance = 0;  // it steers the iteration on meshes
+    if (!point_.initial_traction.empty()) press();
+  }
+
+  /// The state before the first step: without traction, or under the initial one.
+  PointState initial(Real t) {
+    Real f[2 * dim], J[4 * dim * dim];
+    c_ = laws::augmentation(law_, typical_stiffness());
+    return state(t, evaluate(f, J));
+  }
+
+  /// The states from the last time `from` to t: one, or where slip jumps also those before and after the jump.
+  std::vector<PointState> advance(Real from, Real t) {
+    std::vector<PointState> states;
+    for (int jumps = 0; jumps < most_jumps; ++jumps) {
+      const Memory begin = memory();
+      const auto next = step(t);
+      const Memory end = memory();
+      const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t) : Jump{};
+      if (!(jump.size > least_jump * distance(begin.plastic, end.plastic))) {
+        remember(end);
+        states.push_back(next);
+        return states;
+      }
+      if (jump.from > from) states.push_back(jump.before);
+      states.push_back(jump.after);
+      from = jump.to;
+    }
+    states.push_back(step(t));
+    return states;
+  }
+
+ private:
+  static constexpr int most_jumps = 8;      // of slip in a step
+  static constexpr Real resolution = 1e-9;  // of the time at which slip jumps, in steps
+  static constexpr Real least_jump = 1e-6;  // of the slip of the step
+  static constexpr int samples = 32;        // of the slip of a step
+
+  /// What a step changes.
+  struct Memory {
+    Real x[2 * dim], plastic[dim - 1];
+    std::vector<Real> kept;
+  };
+  Memory memory() const {
+    Memory memory;
+    std::copy_n(x_, 2 * dim, memory.x);
+    std::copy_n(p_old_, dim - 1, memory.plastic);
+    memory.kept = kept_;
+    return memory;
+  }
+  void remember(const Memory& memory) {
+    std::copy_n(memory.x, 2 * dim, x_);
+    std::copy_n(memory.plastic, dim - 1, p_old_);
+    std::copy(memory.kept.begin(), memory.kept.end(), kept_.begin());
+  }
+
+  /// Slip that jumps between two times, which are next to each other.
+  struct Jump {
+    Real from = 0, to = 0, size = 0;
+    PointState before = {}, after = {};
+  };
+
+  /// The first jump on the way from the state `begin`, at the time `from`, to t; leaves the driver behind it. The time
+  /// is found by bisection, up to it slip does not jump.
+  Jump jump_of_slip(const Memory& begin, Real from, Real t) {
+    Jump jump{from, t};
+    while (jump.to - jump.from > resolution * (t - from)) {
+      const Real middle = jump.from + (jump.to - jump.from) / 2;
+      remember(begin);
+      (slip_jumps_by(middle) ? jump.to : jump.from) = middle;
+    }
+    remember(begin);
+    jump.before = jump.from > from ? step(jump.from) : state(from, laws::ContactState::stick);
+    for (Real gap = jump.to - jump.from;; gap *= 4) {  // in a step so short rounding may still find a state near
+      Real old[dim - 1];
+      std::copy_n(p_old_, dim - 1, old);
+      jump.after = step(jump.to);
+      jump.size = distance(old, p_old_);
+      if (jump.after.slip_jumps || jump.to == t) break;
+      jump.before = jump.after;
+      jump.from = jump.to;
+      jump.to = std::min(t, jump.to + gap);
+    }
+    jump.after.remark = jump_in_words(jump);
+    return jump;
+  }
+  bool slip_jumps_by(Real t) {
+    try {
+      return step(t).slip_jumps;
+    } catch (const Error&) {
+      return true;
+    }
+  }
+  static Real distance(const Real (&a)[dim - 1], const Real (&b)[dim - 1]) {
+    Real difference[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) difference[i] = a[i] - b[i];
+    return laws::norm(difference);
+  }
+
+  static std::string jump_in_words(const Jump& jump) {
+    const auto shear = [](const PointState& at) {
+      Real tangential[dim - 1];
+      std::copy_n(at.traction.begin() + 1, dim - 1, tangential);
+      return laws::norm(tangential);
+    };
+    return fmt::format(
+        "slip jumps by {:.4g} m, the shear traction from {:.4g} to {:.4g} Pa: friction falls faster with slip than "
+        "what shears the joint unloads; both states obey the law, none between them does",
+        jump.size, shear(jump.before), shear(jump.after));
+  }
+
+  /// The state at t, from the last one on.
+  PointState step(Real t) {
+    for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
+    Real old[2 * dim];
+    std::copy_n(x_, 2 * dim, old);
+    std::string reason;
+    for (Start start : {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}}) {
+      for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
+        for (int i = 0; i < 2 * dim; ++i)
+          x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
+        if (start.elastic && !stretch()) break;
+        const std::string failure = solve(factor, start.damped);
+        if (failure.empty()) return accept(t);
+        if (reason.empty()) reason = failure;
+      }
+    }
+    std::string prescribed;
+    for (int i = 0; i < dim; ++i)
+      prescribed += fmt::format("{}{} {} = {}", i ? ", " : "", control(i), axis(dim, i), d_[i]);
+    const std::string beyond = beyond_strength();
+    throw Error(fmt::format("t = {}: no state found for {}: {}", t, prescribed, beyond.empty() ? reason : beyond));
+  }
+
+  /// Starts from the initial traction, and the jump that the joint has under it.
+  void press() {
+    auto at = laws::contact<dim>(point_.initial_traction[0], laws::norm(p_old_), p_old_, p_old_, {kept_.data()});
+    SPREKK_CHECK(at.lambda_n <= 0, "the initial traction is {} along the normal; it must press, or be 0", at.lambda_n);
+    std::copy_n(point_.initial_traction.begin(), dim, base_);
+    Real shear[dim - 1];
+    std::copy_n(base_ + 1, dim - 1, shear);
+    at.shear = laws::norm(shear);
+    SPREKK_CHECK(at.shear <= law_.bound(at), "the initial traction shears by {}; the joint bears {}", at.shear,
+                 law_.bound(at));
+    rest_[0] = law_.normal_gap(at);
+    for (int i = 1; i < dim; ++i) rest_[i] = p_old_[i - 1] + law_.compliance(at) * base_[i];
+    std::copy_n(rest_, dim, x_);
+    std::copy_n(base_, dim, x_ + dim);
+  }
+
+  /// Where Newton's method starts, the last state, that stretched, or one without traction, and whether its steps are
+  /// damped. These and the factor on the typical stiffness steer the iteration; which solution is found, if there are
+  /// several, depends on them.
+  struct Start {
+    bool damped = false, released = false, elastic = false;
+  };
+
+  /// Moves x to where what is prescribed only stretches a joint with a bond: a state that is whole comes before one
+  /// that is broken. False where there is none such to be expected.
+  bool stretch() {
+    bool stretched = false;
+    for (int i = 0; i < dim && law_.is_bonded(); ++i) {
+      const Real compliance = i == 0 ? law_.gap.closure.initial_compliance() : law_.elastic.initial_compliance();
+      if (compliance == 0) continue;
+      if (control(i) == "jump") x_[dim + i] += (rest_[i] + d_[i] - x_[i]) / compliance;
+      if (control(i) == "traction") x_[i] += (d_[i] - x_[dim + i]) * compliance;
+      stretched = true;
+    }
+    return stretched;
+  }
+
+  const std::string& control(int i) const { return point_.control[i]; }
+
+  /// The stiffness of the column, else of the joint, else what the prescribed values suggest.
+  Real typical_stiffness() const {
+    Real k = 0, length = 0, stress = 0;
+    for (int i = 0; i < dim; ++i) {
+      if (control(i) == "column") k = std::max(k, stiffness_[i]);
+      Real& size = control(i) == "traction" ? stress : length;
+      size = std::max(size, std::abs(d_[i]));
+    }
+    for (const Real compliance : {law_.elastic.initial_compliance(), law_.gap.closure.initial_compliance()})
+      if (k == 0 && compliance > 0) k = 1 / compliance;
+    if (k == 0 && length > 0) k = stress / length;
+    return k == 0 ? 1 : k;
+  }
+
+  /// Sizes of jump and traction at x, which changes are judged by; c is a typical stiffness.
+  void scales(Real c, Real (&scale)[2 * dim]) const {
+    Real length = 1e-300;
+    for (int i = 0; i < dim; ++i)
+      length = std::max({length, std::abs(x_[i]), std::abs(x_[dim + i]) / c,
+                         control(i) == "traction" ? std::abs(d_[i]) / c : std::abs(d_[i])});
+    for (int i = 0; i < dim; ++i) {
+      scale[i] = length;
+      scale[dim + i] = std::max((i == 0 ? c_.normal : c_.tangential) * length, std::abs(x_[dim + i]));
+    }
+  }
+
+  /// Moves x to the state at the prescribed values; returns why there is none, or nothing. The constants of the
+  /// projection are those of the typical stiffness times the factor; a damped step is halved until the residual falls.
+  std::string solve(Real factor, bool damped) {
+    const Real c = typical_stiffness();
+    c_ = laws::augmentation(law_, c * factor);
+    for (int i = 0; i < dim; ++i) {
+      if (control(i) == "jump") x_[i] = rest_[i] + d_[i];
+      if (control(i) == "traction") x_[dim + i] = d_[i];
+    }
+    Real f[2 * dim], J[4 * dim * dim], scale[2 * dim];
+    for (int iteration = 0; iteration < 50; ++iteration) {
+      const auto state = evaluate(f, J);
+      scales(c, scale);
+      const Real size = size_of(f, scale);
+      int info = 0, pivots[2 * dim];
+      Teuchos::LAPACK<int, Real>().GESV(2 * dim, 1, J, 2 * dim, pivots, f, 2 * dim, &info);
+      Real change = 0, x[2 * dim], step[2 * dim];
+      std::copy_n(x_, 2 * dim, x);
+      std::copy_n(f, 2 * dim, step);
+      for (int i = 0; i < 2 * dim; ++i) {
+        if (info != 0 || !(std::abs(step[i]) < 1e10 * scale[i])) return undetermined(state);
+        change = std::max(change, std::abs(step[i]) / scale[i]);
+      }
+      for (Real length = 1; length > 0.01; length /= 2) {
+        for (int i = 0; i < 2 * dim; ++i) x_[i] = x[i] - length * step[i];
+        if (!damped || change <= 1e-12) break;
+        evaluate(f, J);
+        if (size_of(f, scale) < size) break;
+      }
+      if (change <= 1e-12) return {};
+    }
+    return "Newton's method does not converge";
+  }
+
+  /// The residual, each of its entries in its unit over that unit's size.
+  Real size_of(const Real (&f)[2 * dim], const Real (&scale)[2 * dim]) const {
+    Real square = 0;
+    for (int i = 0; i < dim; ++i) {
+      const Real control_scale = control(i) == "jump" ? scale[i] : scale[dim + i];
+      square += std::pow(f[i] / scale[dim + i], 2) + std::pow(f[dim + i] / control_scale, 2);
+    }
+    return std::sqrt(square);
+  }
+
+  /// Why the equations of a contact state do not determine jump and traction.
+  std::string undetermined(laws::ContactState state) const {
+    const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
+    if (state == laws::ContactState::open) return "an open joint bears no traction, its jump has no bound";
+    if (state == laws::ContactState::slip && pulled)
+      return "the shear traction exceeds the friction bound, the joint slides without bound";
+    if (control(0) == "jump" && law_.gap.closure.initial_compliance() == 0)
+      return "the faces touch and do not close, the normal jump does not determine the normal traction";
+    if (state == laws::ContactState::stick && law_.elastic.initial_compliance() == 0)
+      return "a rigid joint sticks, the jump does not determine the shear traction";
+    return "the prescribed values do not determine jump and traction";
+  }
+
+  /// f and its column-major Jacobian J at x.
+  laws::ContactState evaluate(Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
+    using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+    Fad w[dim], lambda[dim], R[dim];
+    for (int i = 0; i < dim; ++i) {
+      w[i] = Fad(2 * dim, i, x_[i]);
+      lambda[i] = Fad(2 * dim, dim + i, x_[dim + i]);
+    }
+    const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R, {kept_.data()});
+    for (int i = 0; i < dim; ++i) {
+      const Fad moved = w[i] - rest_[i];
+      const Fad controlled = control(i) == "jump"       ? Fad(moved - d_[i])
+                             : control(i) == "traction" ? Fad(lambda[i] - d_[i])
+                                                        : Fad(lambda[i] - base_[i] - stiffness_[i] * (d_[i] - moved));
+      f[i] = R[i].val();
+      f[dim + i] = controlled.val();
+      for (int j = 0; j < 2 * dim; ++j) {
+        J[j * 2 * dim + i] = R[i].dx(j);
+        J[j * 2 * dim + dim + i] = controlled.dx(j);
+      }
+    }
+    return state;
+  }
+
+  PointState accept(Real t) {
+    Real f[2 * dim], J[4 * dim * dim];
+    const auto contact = evaluate(f, J);
+    Real w[dim], lambda[dim], elastic[dim], plastic[dim];
+    std::copy_n(x_, dim, w);
+    std::copy_n(x_ + dim, dim, lambda);
+    laws::split_jump<dim>(law_, contact, w, lambda, p_old_, elastic, plastic, {kept_.data()});
+    if (contact == laws::ContactState::stick) {
+      for (int i = 1; i < dim; ++i) plastic[i] = p_old_[i - 1];
+    }
+    Real now[dim - 1];
+    std::copy_n(plastic + 1, dim - 1, now);
+    const auto at = laws::converged<dim>(law_, contact, w, lambda, now, p_old_, {kept_.data()});
+    const bool jumps = contact == laws::ContactState::slip && runs_away(at);
+    law_.commit(at, {kept_.data()});
+    std::copy_n(now, dim - 1, p_old_);
+    auto accepted = state(t, contact);
+    accepted.slip_jumps = jumps;
+    return accepted;
+  }
+
+  /// Jump and traction as they are, with the plastic jump of the last step.
+  PointState state(Real t, laws::ContactState contact) const {
+    Real w[dim], lambda[dim], elastic[dim], plastic[dim];
+    std::copy_n(x_, dim, w);
+    std::copy_n(x_ + dim, dim, lambda);
+    laws::split_jump<dim>(law_, contact, w, lambda, p_old_, elastic, plastic, {kept_.data()});
+    std::copy_n(p_old_, dim - 1, plastic + 1);
+    return {t,
+            contact,
+            {w, w + dim},
+            {elastic, elastic + dim},
+            {plastic, plastic + dim},
+            {lambda, lambda + dim},
+            strength(lambda[0])};
+  }
+
+  /// The bound on |lambda_t| under a normal traction, after the slip so far.
+  Real strength(Real lambda_n) const {
+    auto at = at_rest();
+    at.lambda_n = std::min(lambda_n, Real(0));
+    return std::max(law_.bound(at), Real(0));
+  }
+
+  /// The contact with all that has been slipped, and no slip since.
+  laws::Contact<Real> at_rest() const {
+    laws::Contact<Real> at;
+    at.history = {kept_.data()};
+    at.plastic_slip = laws::norm(p_old_);
+    for (int i = 0; i < dim - 1; ++i) at.plastic_jump[i] = at.last_plastic_jump[i] = p_old_[i];
+    return at;
+  }
+
+  /// Whether on the way of the slip of a step friction falls faster than column and joint unload: then no states lead
+  /// from its begin to its end.
+  bool runs_away(const laws::Contact<Real>& end) const {
+    const Real compliance = law_.compliance(end) + (control(1) == "column" ? 1 / stiffness_[1] : 0);
+    for (int k = 0; k <= samples; ++k) {
+      auto at = end;
+      const Real part = Real(k) / samples;
+      at.slip_of_step = part * end.slip_of_step;
+      for (int i = 0; i < dim - 1; ++i) at.plastic_jump[i] = p_old_[i] + part * (end.plastic_jump[i] - p_old_[i]);
+      at.plastic_slip = std::hypot(at.plastic_jump[0], at.plastic_jump[1]);
+      if (physics::weakening(law_, at) * compliance > 1) return true;
+    }
+    return false;
+  }
+
+  /// Which strength the prescribed tension exceeds, with numbers; or nothing.
+  std::string beyond_strength() const {
+    if (control(0) != "traction" || !law_.is_bonded()) return "";
+    const Real strength = law_.cohesion(at_rest()).strength;
+    if (!(strength > 0) || !(d_[0] > strength)) return "";
+    return fmt::format("the tension of {:.6g} Pa exceeds the tensile strength, {:.6g} Pa now", d_[0], strength);
+  }
+
+  const PointPath& point_;
+  laws::Joint law_;
+  laws::Augmentation c_;
+  std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // what the laws keep of the point
+  Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
+  Real base_[dim] = {}, rest_[dim] = {};  // the initial traction, and the jump under it
+};
+
+}  // namespace sprekk::model
