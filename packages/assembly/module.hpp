@@ -85,9 +85,10 @@ struct History {
 
 /// What results.json tells of an output on fracture faces, of each fracture: its mean over the area, "mean_NAME", of
 /// vectors in it by the name of the frame; the largest value, "max_NAME"; or of a state the shares of the area in which
-/// it is 0, 1, ..., "fraction_CLASS".
+/// it is 0, 1, ..., "fraction_CLASS". A bound of the relative error of NAME is told as its largest value,
+/// "error_of_NAME", and once more for all fractures at the end of the run.
 struct Summary {
-  enum Kind { none, mean, mean_and_max, fractions };
+  enum Kind { none, mean, mean_and_max, fractions, error_bound };
   Kind kind = none;
   std::string name = "";                  ///< spaces become underscores
   std::string frame = "";                 ///< of vectors

@@ -118,9 +118,13 @@ json fracture_summary(const mesh::Mesh& mesh, const std::vector<OutputField>& ou
       const auto sums = statistics(mesh, is).sum;
       each([&](std::size_t k, json& j) { j["fraction_" + told.classes[c]] = sums[k] / area[k]; });
     }
-    if (told.kind != Summary::mean && told.kind != Summary::mean_and_max) continue;
+    if (told.kind == Summary::none || told.kind == Summary::fractions) continue;
     const auto s = statistics(mesh, output);
     const auto name = with_underscores(told.name);
+    if (told.kind == Summary::error_bound) {
+      each([&](std::size_t k, json& j) { j["error_of_" + name] = s.maximum[k]; });
+      continue;
+    }
     each([&](std::size_t k, json& j) {
       if (told.frame.empty()) j["mean_" + name] = s.sum[k] / area[k];
       for (int c = 0; c < output.n_components && !told.frame.empty(); ++c)
@@ -166,6 +170,13 @@ json block_summary(const assembly::System& system) {
                                      {"entries", sums[0]},
                                      {"bytes", sums[1]}});
     }
+  for (const auto& [field, values] : system.histories()) {
+    const auto bytes = static_cast<long long>(values.size() * sizeof(Real));
+    summary["histories"].push_back({{"name", field.name},
+                                    {"entity", fields::name_of(field.entity)},
+                                    {"components", field.n_components},
+                                    {"bytes", base::sum_over_ranks(comm, bytes)}});
+  }
   for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
   for (const auto& group : system.local_groups()) {
     json names = json::array();
@@ -264,6 +275,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
       if (told_.insert(warning).second) warnings_.push_back(warning);
   });
   step["fractures"] = fracture_summary(model_.mesh(), outputs);
+  add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   if (estimator_) {
     const auto estimate = (*estimator_)(outputs);
@@ -276,6 +288,17 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)))
     write_json();
   return counts_of_classes(*model_.mesh().comm, outputs);
+}
+
+/// Those of this state, the largest of all fractures.
+void Results::add_error_bounds(const json& fractures, const std::vector<OutputField>& outputs) {
+  for (const auto& output : outputs) {
+    if (output.summary.kind != Summary::error_bound) continue;
+    const auto name = with_underscores(output.summary.name);
+    Real largest = 0;
+    for (const auto& fracture : fractures) largest = std::max(largest, fracture.at("error_of_" + name).get<Real>());
+    json_["error_bounds"][name] = error_bounds_[output.summary.name] = largest;
+  }
 }
 
 /// Those of conditions, by boundaries or regions, and what modules have to tell.

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <chrono>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -38,12 +39,15 @@ class Results {
   std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
   /// What may be wrong with the states added since the last call, each text once in the life of the results.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+  /// How far quantities of the last state may be from exact ones, relative, by their names.
+  const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
   /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
   /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
 
  private:
   nlohmann::json reactions() const;
+  void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
@@ -58,6 +62,7 @@ class Results {
   int n_steps_ = 0, n_written_ = 0;
   std::set<std::string> told_;
   std::vector<std::string> warnings_;
+  std::map<std::string, Real> error_bounds_;
   std::chrono::steady_clock::time_point last_write_;
 };
 

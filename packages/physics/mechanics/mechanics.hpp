@@ -82,6 +82,8 @@ struct Mechanics : Physics<Mechanics> {
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
+  static std::vector<std::string> warnings_of_state(const Setting& setting,
+                                                    const std::vector<assembly::OutputField>& outputs);
   static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
 };
 
