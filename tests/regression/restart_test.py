@@ -79,7 +79,7 @@ class Restart(ProgramTest):
                 (CROSSING, 2, ("1, 2", ", 3"), HISTORY), (CROSSING, 3, ("1, 2", ", 3"), []),
                 (MASONRY, 2, ("1, 2", ", 3, 4"), ["Materials.other.Young's modulus=1e-6"]),
                 (FLOATING, 1, ("1, 2, 3", ", 4, 5"), []),
-                (TURNS, 1, (", ".join(map(str, range(1, 29))), ", 29, 30"), []), (TURNS, 3, ("1, 2, 3, 4, 5, 6", ", 7, 8"), []),
+                (TURNS, 1, (", ".join(map(str, range(1, 81))), ", 81, 82"), []), (TURNS, 3, ("1, 2, 3, 4, 5, 6", ", 7, 8"), []),
                 (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),
                 (INJECTION, 2, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}", "Solver.Linear solver.type=iterative", "Time.scheme=BDF2"]),
                 (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),
