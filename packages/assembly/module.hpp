@@ -94,9 +94,10 @@ struct Derived {
 /// What results.json tells of an output on fracture faces, of each fracture: its mean over the area, "mean_NAME", of
 /// vectors in it by the name of the frame; the largest value, "max_NAME"; its integral over the area, "NAME", of an
 /// output that is no array of files; or of a state the area, and its shares, in which it is 0, 1, ..., "area_CLASS" and
-/// "fraction_CLASS".
+/// "fraction_CLASS". A bound of the relative error of NAME is told as its largest value, "error_of_NAME", and once more
+/// for all fractures at the end of the run.
 struct Summary {
-  enum Kind { none, mean, mean_and_max, fractions, integral };
+  enum Kind { none, mean, mean_and_max, fractions, integral, error_bound };
   Kind kind = none;
   std::string name = "";                  ///< spaces become underscores
   std::string frame = "";                 ///< of vectors

@@ -3,7 +3,19 @@
 
 #include "base/types.hpp"
 
+#include <type_traits>
+
 namespace sprekk::laws {
+
+/// x without derivatives.
+template <class T>
+KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return x;
+  } else {
+    return x.val();
+  }
+}
 
 /// Numbers of one face, each `stride` after the one before.
 template <class Number>
@@ -26,13 +38,15 @@ struct Contact {
   T lambda_n = 0;                  ///< normal traction, Pa: for the bound the projected one
   T shear = 0;                     ///< |lambda_t|, Pa
   T plastic_slip = 0;              ///< |u_t^p|, m
-  T slip_of_step = 0;              ///< |u_t^p - last_plastic_jump|, m
+  T slip_of_step = 0;              ///< |u_t^p - last_plastic_jump|, m; of iterates also less than 0
   T separation = 0;                ///< w_n - g, m, by which the faces are apart; bonds alone may ask for it
   T friction_left = 1;             ///< what damage leaves of friction; for laws that apply it themselves
   T dilation_left = 1;             ///< the same of dilation
   T plastic_jump[2] = {0, 0};      ///< u_t^p, m
+  T slip_direction[2] = {0, 0};    ///< unit vector of the step's slip, which is that of the shear traction
   T wear = 1;                      ///< k, by which slip counts in damage; damage alone may ask for it
   Real last_plastic_jump[2] = {};  ///< u_t^p at the end of the last step, m
+  int dim = 2;                     ///< of space
   bool open = false;               ///< bears no traction; known at the end of a step alone
   History history = {};            ///< the numbers of the law that is asked
 

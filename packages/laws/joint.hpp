@@ -9,7 +9,6 @@
 #include "laws/joint_kinds.hpp"
 
 #include <cmath>
-#include <type_traits>
 
 namespace sprekk::laws {
 
@@ -22,16 +21,6 @@ KOKKOS_INLINE_FUNCTION T norm(const T (&v)[n]) {
   T square = v[0] * v[0];
   for (int i = 1; i < n; ++i) square += v[i] * v[i];
   return square > 0 ? T(sqrt(square)) : T(0);
-}
-
-/// x without derivatives.
-template <class T>
-KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
-  if constexpr (std::is_arithmetic_v<T>) {
-    return x;
-  } else {
-    return x.val();
-  }
 }
 
 /// One of the kinds of each role.
@@ -160,24 +149,32 @@ struct JointLaw {
     worn.wear = driver.wear(at);
     return worn.after(before_bond() + laws::n_history(bond), [&](const auto& own) { return damage.left(own); });
   }
-  KOKKOS_INLINE_FUNCTION int n_history() const {
-    return before_bond() + laws::n_history(bond) + laws::n_history(damage);
+  /// How many numbers it keeps of a face.
+  KOKKOS_INLINE_FUNCTION int n_history(int dim = 3) const {
+    return before_bond() + laws::n_history(bond) + (dim == 2 ? n_history_2d(damage) : laws::n_history(damage));
   }
   /// Moves the numbers of a face to the end of a step; `at` is its end, with the numbers of its beginning.
   KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& kept) const {
-    int offset = 0;
-    const auto move = [&](const auto& law) {
+    at.wear = driver.wear(at);
+    for_each_part([&](const auto& law, int offset) {
       if (laws::n_history(law) == 0) return;
       at.after(offset, [&](const auto& own) { return laws::commit(law, own, kept.from(offset)), 0; });
+    });
+  }
+  /// Calls visit(law, where its numbers begin) for the parts that may keep numbers.
+  template <class Visit>
+  KOKKOS_INLINE_FUNCTION void for_each_part(const Visit& visit) const {
+    int offset = 0;
+    const auto next = [&](const auto& law) {
+      visit(law, offset);
       offset += laws::n_history(law);
     };
-    at.wear = driver.wear(at);
-    move(gap.dilation);
-    move(gap.closure);
-    move(friction);
-    move(elastic);
-    move(bond);
-    move(damage);
+    next(gap.dilation);
+    next(gap.closure);
+    next(friction);
+    next(elastic);
+    next(bond);
+    next(damage);
   }
 
  private:
@@ -224,6 +221,7 @@ template <int dim, class T>
 KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, const T (&p)[dim - 1],
                                           const Real (&p_old)[dim - 1], const History& history) {
   Contact<T> at;
+  at.dim = dim;
   at.lambda_n = lambda_n;
   at.plastic_slip = size;
   at.history = history;
@@ -246,6 +244,7 @@ KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState stat
     shear[i] = lambda[i + 1];
   }
   at.slip_of_step = norm(step);
+  for (int i = 0; i < dim - 1 && at.slip_of_step > 0; ++i) at.slip_direction[i] = step[i] / at.slip_of_step;
   at.shear = norm(shear);
   at.separation = w[0] - law.normal_gap(at);
   at.open = state == ContactState::open;
@@ -293,7 +292,8 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
-/// it is where p is along z. The same holds for p - p_old, which is along z in solutions.
+/// it is where p is along z. As the slip of the step laws get the part of p - p_old along z: in solutions that is its
+/// length, and it is smooth where slip begins.
 ///
 /// `history` holds what the laws have kept of the face.
 template <int dim, class T, class Law>
@@ -315,7 +315,10 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     T shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) shear[i] = lambda[i + 1];
     at.shear = norm(shear);
-    at.slip_of_step = length_along(step, z, size, c.tangential);
+    for (int i = 0; i < dim - 1 && size > 0; ++i) {
+      at.slip_direction[i] = z[i] / size;
+      at.slip_of_step += step[i] * at.slip_direction[i];
+    }
   }
   T b = 0;
   Cohesion<T> cohesion;
@@ -346,9 +349,7 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
   }
-  const Real none[dim - 1] = {};
-  const bool back = turn_along(p, p_old, z, size, at.plastic_slip);
-  if ((remembers && turn_along(step, none, z, size, at.slip_of_step)) || back) is_open();
+  if (turn_along(p, p_old, z, size, at.plastic_slip)) is_open();
   for (int i = 0; i < dim - 1; ++i) R[i + 1] = lambda[i + 1] - b * z[i] / size;
   return ContactState::slip;
 }

@@ -14,6 +14,7 @@
 #include "laws/damage/none.hpp"
 #include "laws/dilation/constant_angle.hpp"
 #include "laws/dilation/decaying_angle.hpp"
+#include "laws/dilation/limited.hpp"
 #include "laws/dilation/mobilised.hpp"
 #include "laws/friction/barton_choubey.hpp"
 #include "laws/friction/composed.hpp"
@@ -46,7 +47,8 @@ using FrictionKinds = Kinds<
 using DilationKinds = Kinds<
     ConstantDilation,
     MobilisedDilation,
-    DecayingDilation>;
+    DecayingDilation,
+    LimitedDilation>;
 
 /// How compression closes the joint: T opening(Contact<T>), m, negative; Real initial_compliance(), m/Pa.
 using ClosureKinds = Kinds<

@@ -3,6 +3,7 @@
 
 #include "base/bounds.hpp"
 #include "base/types.hpp"
+#include "laws/contact.hpp"
 
 #include <cmath>
 #include <optional>
@@ -39,6 +40,22 @@ struct Parameter {
   Entry entry;
 };
 
+/// A number that the law K tells of a face, by the contact at the end of a step and what it keeps of the face then, for
+/// outputs; 0 before the first slip and load.
+template <class K>
+struct Quantity {
+  std::string name, unit, meaning;
+  Real (*value)(const K&, const Contact<Real>&);
+  std::string error_of = {};  ///< what it bounds the relative error of, if it does
+};
+
+/// That of laws whose first number is it.
+template <class K>
+Quantity<K> accumulated_slip() {
+  return {"accumulated slip", "m", "length of the path that was slipped while the faces touched",
+          [](const K&, const Contact<Real>& at) -> Real { return at.history[0]; }};
+}
+
 inline Real tangent_of_degrees(Real angle) { return std::tan(angle * 3.14159265358979323846 / 180); }
 inline Real reciprocal(Real value) { return 1 / value; }
 
@@ -47,6 +64,26 @@ template <class K, class = void>
 constexpr int history_size = 0;
 template <class K>
 constexpr int history_size<K, std::void_t<decltype(K::n_history)>> = K::n_history;
+
+/// The same in 2D: its static n_history_2d, if it has one, which only the law may whose numbers are the last.
+template <class K, class = void>
+constexpr int history_size_2d = history_size<K>;
+template <class K>
+constexpr int history_size_2d<K, std::void_t<decltype(K::n_history_2d)>> = K::n_history_2d;
+
+/// What a law tells of a face: its static quantities(), or nothing.
+template <class K, class = void>
+constexpr bool tells_quantities = false;
+template <class K>
+constexpr bool tells_quantities<K, std::void_t<decltype(K::quantities())>> = true;
+template <class K>
+std::vector<Quantity<K>> quantities_of() {
+  if constexpr (tells_quantities<K>) {
+    return K::quantities();
+  } else {
+    return {};
+  }
+}
 
 /// Whether a friction law applies itself what damage leaves: its static takes_damage. Else its bound is multiplied by
 /// it.
@@ -154,6 +191,16 @@ KOKKOS_INLINE_FUNCTION int n_history(const K& law) {
     return law.n_history();
   } else {
     return history_size<K>;
+  }
+}
+
+/// The same in 2D.
+template <class K>
+KOKKOS_INLINE_FUNCTION int n_history_2d(const K& law) {
+  if constexpr (is_one_of_several<K>) {
+    return law.visit([](const auto& one) { return history_size_2d<std::decay_t<decltype(one)>>; });
+  } else {
+    return history_size_2d<K>;
   }
 }
 

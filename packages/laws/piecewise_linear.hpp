@@ -5,7 +5,7 @@
 
 namespace sprekk::laws {
 
-/// The curve through n points (x_k, y_k), x_k >= 0 rising, constant outside.
+/// The curve through n points (x_k, y_k), x_k rising, constant outside.
 template <int n>
 struct PiecewiseLinear {
   static constexpr int size = n;

@@ -29,8 +29,8 @@ inline constexpr PiecewiseLinear<7> mobilised_roughness{
     {0.3, 0.6, 1, 2, 4, 10, 100}, {0, 0.75, 1, 0.85, 0.7, 0.5, 0}, 0.003};
 
 /// The part of the residual friction that slip has mobilised: before 0.3 the table's roughness is negative, so that no
-/// friction is mobilised without slip.
-inline constexpr PiecewiseLinear<2> mobilised_friction{{0, 0.3}, {0, 1}, 0.003};
+/// friction is mobilised without slip. For the negative slip of iterates the line goes on.
+inline constexpr PiecewiseLinear<2> mobilised_friction{{-0.3, 0.3}, {-1, 1}, 0.003};
 
 inline Entry roughness_entry() {
   return Entry{"joint roughness coefficient", "-", base::at_least(0),

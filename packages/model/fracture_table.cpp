@@ -69,21 +69,25 @@ class Adder {
     const auto& told = output.summary;
     for (std::size_t c = 0; c < told.classes.size(); ++c) add_class(output, static_cast<Real>(c), told.classes[c]);
     if (told.kind == Summary::none || told.kind == Summary::fractions) return;
+    const auto name = with_underscores(told.name);
+    if (told.kind == Summary::error_bound) return add_maxima(output, "error_of_" + name);
     const int n = output.n_components;
     const bool is_mean = told.kind != Summary::integral;
     auto values = groups_.integrals(n, [&](LocalIndex f, int c) { return output.values[f * n + c]; });
     for (std::size_t i = 0; i < values.size() && is_mean; ++i) values[i] /= area_[i / n];
     for (const auto& derived : told.derived) add_derived(derived, n, values);
-    const auto name = with_underscores(told.name);
     columns_.push_back({is_mean ? "mean_" + name : name, told.frame, is_mean ? output.unit : told.unit, n, values});
-    if (told.kind != Summary::mean_and_max) return;
-    auto maxima = groups_.maxima(output.values);
-    for (std::size_t k = 0; k < maxima.size(); ++k)
-      if (area_[k] == 0) maxima[k] = none;  // without a face, all of it joined to others
-    columns_.push_back({"max_" + name, "", output.unit, 1, maxima});
+    if (told.kind == Summary::mean_and_max) add_maxima(output, "max_" + name);
   }
 
  private:
+  void add_maxima(const OutputField& output, const std::string& name) {
+    auto maxima = groups_.maxima(output.values);
+    for (std::size_t k = 0; k < maxima.size(); ++k)
+      if (area_[k] == 0) maxima[k] = none;  // without a face, all of it joined to others
+    columns_.push_back({name, "", output.unit, 1, maxima});
+  }
+
   void add_class(const OutputField& output, Real number, const std::string& name) {
     auto areas = groups_.integrals(1, [&](LocalIndex f, int) { return Real(output.values[f] == number); });
     columns_.push_back({"area_" + name, "", columns_.front().unit, 1, areas});

@@ -140,6 +140,13 @@ json block_summary(const assembly::System& system) {
                                      {"entries", sums[0]},
                                      {"bytes", sums[1]}});
     }
+  for (const auto& [field, values] : system.histories()) {
+    const auto bytes = static_cast<long long>(values.size() * sizeof(Real));
+    summary["histories"].push_back({{"name", field.name},
+                                    {"entity", fields::name_of(field.entity)},
+                                    {"components", field.n_components},
+                                    {"bytes", base::sum_over_ranks(comm, bytes)}});
+  }
   for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
   for (const auto& group : system.local_groups()) {
     json names = json::array();
@@ -247,6 +254,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
       if (told_.insert(warning).second) warnings_.push_back(warning);
   });
   add_fractures(step, outputs);
+  add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   add_probes(step, outputs);
   if (estimator_) {
@@ -285,6 +293,17 @@ void Results::add_probes(const json& step, const std::vector<OutputField>& outpu
                     io::TimeUnit{unit, json_["time_unit"]["seconds"]}, std::move(earlier_rows_));
   }
   series_->add(std::move(row));
+}
+
+/// Those of this state, the largest of all fractures.
+void Results::add_error_bounds(const json& fractures, const std::vector<OutputField>& outputs) {
+  for (const auto& output : outputs) {
+    if (output.summary.kind != Summary::error_bound) continue;
+    const auto name = with_underscores(output.summary.name);
+    Real largest = 0;
+    for (const auto& fracture : fractures) largest = std::max(largest, fracture.at("error_of_" + name).get<Real>());
+    json_["error_bounds"][name] = error_bounds_[output.summary.name] = largest;
+  }
 }
 
 /// Those of conditions, by boundaries or regions, and what modules have to tell.

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <chrono>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -41,6 +42,8 @@ class Results {
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Which single fractures are in which state after the last step, a line for each state. Stored data.
   std::vector<std::string> fracture_digest() const;
+  /// How far quantities of the last state may be from exact ones, relative, by their names.
+  const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
   /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
   /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
@@ -49,6 +52,7 @@ class Results {
   nlohmann::json reactions();
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
+  void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
@@ -68,6 +72,7 @@ class Results {
   int n_steps_ = 0, n_written_ = 0;
   std::set<std::string> told_;
   std::vector<std::string> warnings_;
+  std::map<std::string, Real> error_bounds_;
   std::chrono::steady_clock::time_point last_write_;
 };
 

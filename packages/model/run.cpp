@@ -196,6 +196,7 @@ Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, ba
     log.warning("step to t = {} failed at t = {} after {} cuts: {}", times[k], report.time, report.cuts, report.reason);
     return Ending::failed;
   }
+  for (const auto& [name, bound] : results.error_bounds()) log.info("{}: known to +-{:.2g} %", name, 100 * bound);
   results.finish("completed");
   return Ending::completed;
 }

@@ -243,6 +243,16 @@ def drift():
                 exact=exact.turns(8), tolerance=1e-9)
 
 
+def histories():
+    """Laws that remember: what they keep of faces is checked as well."""
+    for name in ("damage_cycles_2d", "damage_turns_3d"):
+        yield Scene(name.replace("_", " "), f"contact/{name}.xml", quick=True)
+        yield Scene(f"{name.replace('_', ' ')}, work", f"contact/{name}.xml",
+                    (JOINT + "damage driver=frictional work", JOINT + "reference stress=0.3"))
+    yield Scene("bond softens", "verification/cyclic_2d.xml",
+                (JOINT + "bond=linear softening", JOINT + "cohesion=0.05", JOINT + "shear fracture energy=1"))
+
+
 def scenes():
-    for part in (seed, networks, blocks, extremes, units, patches, no_answer, all_change, drift):
+    for part in (seed, networks, blocks, extremes, units, patches, no_answer, all_change, drift, histories):
         yield from part()

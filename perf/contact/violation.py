@@ -1,22 +1,30 @@
 """How far a state of the fractures is from the laws of contact and friction, computed from what a run wrote.
 
 The conditions are (10)-(14) of Wollmann (2024); see docs/theory.md, section 2. Nothing of the solver is used: jumps,
-tractions, plastic jumps and states come from fractures.pvd, the laws of the joints from effective_input.xml."""
+tractions, plastic jumps, states and histories come from fractures.pvd, the laws of the joints from effective_input.xml
+(joint_laws.py). Where a law has a history, that of the end of the step counts, and how it moved in the step is checked."""
 import math
 import xml.etree.ElementTree as xml
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import cached_property
 
 import numpy as np
 
 import read  # of apps/plot
+from joint_laws import JointLaw
 
 OPEN, STICK, SLIP = 0, 1, 2
-PARTS = ("penetration", "tension", "gap under load", "beyond friction", "direction")
+PARTS = ("penetration", "tension", "gap under load", "beyond friction", "direction", "history")
+HISTORIES = ("accumulated slip", "opening by slip", "largest compression", "damage of bond", "damage history",
+             "error of damage history", "damage of friction", "damage of dilation")
+FIRST_KINDS = {"friction": "Coulomb", "closure": "Barton-Bandis", "dilation": "constant angle", "tangential elasticity": "linear",
+               "bond": "none", "damage": "none", "damage driver": "slip"}
 BULK_STEPS = 20  # of the steps written, as many are looked at for the largest displacement
 
 
 @dataclass
 class Joint:
+    """With the laws that exact solutions and energies are known for."""
     stiffness: float
     friction: float
     dilation: float  # tan(theta)
@@ -36,9 +44,14 @@ class Input:
 
     def __init__(self, path):
         self.root = xml.parse(path).getroot()
-        self.joints = [self._joint(self.text("Fractures", name, "material")) for name in self.names("Fractures")]
+        self.laws = [self._law(self.text("Fractures", name, "material")) for name in self.names("Fractures")]
         rocks = [self.rock(name) for name in self.names("Materials") if self.text("Materials", name, "type") == "elastic"]
         self.modulus = min(rock["E"] for rock in rocks)
+
+    @cached_property
+    def joints(self):
+        """[fracture]; an error where a joint has other laws."""
+        return [self._joint(self.text("Fractures", name, "material")) for name in self.names("Fractures")]
 
     def _list(self, *path):
         node = self.root
@@ -76,12 +89,15 @@ class Input:
         given["E"] = given["G"] * (3 * given["lam"] + 2 * given["G"]) / (given["lam"] + given["G"])
         return given
 
+    def _law(self, name):
+        return JointLaw(lambda entry, default: self.number("Materials", name, entry, default=default),
+                        lambda role: self.text("Materials", name, role) or FIRST_KINDS[role])
+
     def _joint(self, name):
         def number(entry, default):
             return self.number("Materials", name, entry, default=default)
-        for role, kind in (("friction", "Coulomb"), ("closure", "Barton-Bandis"), ("dilation", "constant angle"),
-                           ("tangential elasticity", "linear"), ("bond", "none"), ("damage", "none")):
-            if self.text("Materials", name, role) not in (None, kind):
+        for role, kind in FIRST_KINDS.items():
+            if role != "damage driver" and self.text("Materials", name, role) not in (None, kind):
                 raise ValueError(f"joint {name}: only {role} {kind} is known here")
         angle = number("friction angle", None)
         friction = number("friction coefficient", None) if angle is None else math.tan(math.radians(angle))
@@ -100,8 +116,28 @@ class Faces:
     plastic: np.ndarray
     traction: np.ndarray
     pressure: np.ndarray = field(default=None)  # of the fluid, where there is some
-    bound: np.ndarray = field(default=None)  # mu N
+    told: dict = field(default_factory=dict)  # the fields of histories, 0 where a joint has none
+    bound: np.ndarray = field(default=None)  # of friction and bond
     distance: np.ndarray = field(default=None)  # w_n - g
+    strength: np.ndarray = field(default=None)  # tension that a bond bears
+
+    @property
+    def normal(self):
+        return self.traction[:, 0]
+
+    @property
+    def slip(self):
+        return np.linalg.norm(self.plastic[:, 1:], axis=1)
+
+    def on(self, which):
+        """Some of the faces, before their bounds are known."""
+        return Faces(self.time, **{f.name: getattr(self, f.name)[which] for f in fields(Faces)[1:8]},
+                     told={name: values[which] for name, values in self.told.items()})
+
+    @classmethod
+    def at_rest(cls, like):
+        zeros = {f.name: np.zeros_like(getattr(like, f.name)) for f in fields(cls)[1:8]}
+        return cls(0, **zeros, told={name: np.zeros_like(values) for name, values in like.told.items()})
 
 
 def sorted_by_place(centre, fracture, extent):
@@ -110,7 +146,7 @@ def sorted_by_place(centre, fracture, extent):
     return np.lexsort((place[:, 2], place[:, 1], place[:, 0], fracture))
 
 
-def faces(time, file, joints, extent):
+def faces(time, file, laws, extent):
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
     points = read.vtk_to_numpy(grid.GetPoints().GetData())
@@ -118,13 +154,13 @@ def faces(time, file, joints, extent):
     order = sorted_by_place(centre, data["fracture"], extent)
     f = Faces(time, centre[order], data["fracture"].astype(int)[order], data["state"].astype(int)[order],
               *(data[name][order] for name in ("jump local", "plastic jump local", "traction local")),
-              data["fluid pressure"][order] if "fluid pressure" in data else np.zeros(len(order)))
-    slip, normal = np.linalg.norm(f.plastic[:, 1:], axis=1), f.traction[:, 0]
-    f.bound, f.distance = np.empty(len(slip)), np.empty(len(slip))
-    for k, joint in enumerate(joints):
+              data["fluid pressure"][order] if "fluid pressure" in data else np.zeros(len(order)),
+              {name: data[name][order] for name in HISTORIES if name in data})
+    f.bound, f.distance, f.strength = np.empty((3, len(order)))
+    for k, law in enumerate(laws):
         on = f.fracture == k
-        f.bound[on] = joint.friction * np.maximum(-normal[on], 0)
-        f.distance[on] = f.jump[on, 0] - joint.closed_gap(slip[on], normal[on])
+        some = f.on(on)
+        f.bound[on], f.distance[on], f.strength[on] = law.bound(some), some.jump[:, 0] - law.closed_gap(some), law.tension(some)
     return f
 
 
@@ -145,21 +181,26 @@ def history(directory, input_):
     for _, file in bulk[::-(len(bulk) // -BULK_STEPS)] + bulk[-1:]:
         displacement = read.arrays(read.grid(file).GetPointData())["displacement"]
         length = max(length, np.linalg.norm(displacement, axis=1).max())
-    steps = [faces(time, file, input_.joints, extent) for time, file in read.written_steps(directory, "fractures")]
+    steps = [faces(time, file, input_.laws, extent) for time, file in read.written_steps(directory, "fractures")]
     traction = max(max(np.linalg.norm(step.traction, axis=1).max(), np.abs(step.pressure).max()) for step in steps)
     return steps, Scales(length, max(traction, 1e-9 * input_.modulus * length / extent), extent)
 
 
-def violation(step, before, scales):
+def violation(step, before, scales, laws=(), path=None):
     """The largest violation over the faces, one number for each of PARTS, relative to the scales. `before` are the faces
-    at the start of the step, None where the increment of the plastic jump is not known."""
+    at the start of the step, None where the increment of the plastic jump is not known; the laws, [fracture], and the path
+    so far are for histories."""
     shear = np.linalg.norm(step.traction[:, 1:], axis=1)
     load = np.maximum(-step.traction[:, 0], 0) / scales.traction
-    worst = [(-step.distance).max() / scales.length, step.traction[:, 0].max() / scales.traction,
+    worst = [(-step.distance).max() / scales.length, (step.normal - step.strength).max() / scales.traction,
              np.minimum(load, np.maximum(step.distance, 0) / scales.length).max(),
-             (shear - step.bound).max() / scales.traction, 0]
+             (shear - step.bound).max() / scales.traction, 0, 0]
     if before is not None:
         worst[4] = _wrong_increment(step, before, shear, scales)
+        for k, law in enumerate(laws):
+            on = step.fracture == k
+            along = (tuple(part[on] for part in segment) for segment in path) if path else None
+            worst[5] = max(worst[5], law.wrong_histories(step.on(on), before.on(on), along).max(initial=0) / scales.length)
     return np.maximum(worst, 0)
 
 
@@ -182,19 +223,28 @@ def largest(directory, results, input_):
     steps, scales = history(directory, input_)
     numbered = list(enumerate(results["steps"]))
     at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before
-    worst, skipped, last = np.zeros(len(PARTS)), 0, -1
+    worst, skipped, last, path = np.zeros(len(PARTS)), 0, -1, []
     for k, step in enumerate(steps):
         if round(step.time, 9) not in at:  # the run was ended before results.json told of it
             break
         number = at[round(step.time, 9)]
         before = steps[k - 1] if k else None
-        if number == 0:  # from rest
-            before = Faces(0, *(np.zeros_like(getattr(step, name)) for name in (
-                "centre", "fracture", "state", "jump", "plastic", "traction")))
+        if number == 0:
+            before = Faces.at_rest(step)
         known = number == last + 1 and results["steps"][number]["substeps"] == 1
-        worst = np.maximum(worst, violation(step, before if known else None, scales))
+        path = [*path, _segment(step, before, input_.laws)] if known and path is not None else None
+        worst = np.maximum(worst, violation(step, before if known else None, scales, input_.laws, path))
         skipped, last = skipped + (not known), number
     return steps, scales, worst, skipped
+
+
+def _segment(step, before, laws):
+    """Of the path of plastic jumps, and what a unit of it counts: nothing on faces that are open."""
+    weight = np.zeros(len(step.state))
+    for k, law in enumerate(laws):
+        on = step.fracture == k
+        weight[on] = np.where(step.state[on] == OPEN, 0, law.weight(step.on(on)))
+    return before.plastic[:, 1:], step.plastic[:, 1:], weight
 
 
 def differing(one, other, scales, tolerance=1e-9):

@@ -66,16 +66,16 @@ def made(options, network):
 
 
 def scene_of(network):
-    return ROOT / "xml/networks" / network.file
+    return ROOT / "xml/networks" / network.file  # or the file itself, if its path is absolute
 
 
 def words(entries):
     return [word for entry in entries for word in ("--set", entry)]
 
 
-def start(options, network, mesh, ranks, *sets):
+def start(options, network, mesh, ranks, *sets, directory=None):
     """Runs it, and fills in what went wrong in words."""
-    run = Run(network, mesh.parent / ("_".join(str(value).replace("=", "_") for value in (ranks, *sets)).replace(" ", "_")))
+    run = Run(network, mesh.parent / (directory or "_".join(str(value).replace("=", "_") for value in (ranks, *sets)).replace(" ", "_")))
     entries = network.sets + tuple(options.set) + (f"Mesh file.path={mesh}", *sets)
     command = [str(options.binary), "run", str(scene_of(network)), "--output", str(run.directory)] + words(entries)
     begin = time.monotonic()

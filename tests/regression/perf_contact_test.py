@@ -73,6 +73,51 @@ class Violation(ProgramTest):
         self.assertAlmostEqual(joint.closed_gap(p, -N), 0.01 + np.tan(np.radians(10)) * p - 0.1 * N / (0.5 + N), places=14)
         self.assertTrue(np.allclose(slip.bound, 0.6 * N, rtol=1e-14))
 
+    def law(self, entries, **kinds):
+        return violation.JointLaw(lambda name, default: entries.get(name, default), lambda role: kinds.get(role) or violation.FIRST_KINDS[role])
+
+    def faces(self, load, slip=0.0, **told):
+        """One face under compression that has slipped."""
+        row = np.array([[-load, 0.0]])
+        return violation.Faces(1, row, np.zeros(1), np.array([2]), row, np.array([[0.0, slip]]), row, np.zeros(1),
+                               {name.replace("_", " "): np.array([value]) for name, value in told.items()})
+
+    def test_laws_at_known_values(self):
+        rough = {"joint roughness coefficient": 10, "joint wall strength": 100e6, "residual friction angle": 30, "joint length": 0.1,
+                 "sample length": 0.1}
+        mobilised = self.law(rough, friction="mobilised Barton-Choubey")
+        self.assertAlmostEqual(mobilised.peak_slip, 0.9141763792e-3, places=12)
+        for over, tau in ((0.15, .2679491924), (0.45, .7673269880), (0.8, 1.0913085011), (1.5, 1.1302943864), (50, .7147570420)):
+            faces = self.faces(1e6, accumulated_slip=over * mobilised.peak_slip)
+            self.assertAlmostEqual(mobilised.bound(faces)[0] / 1e6, tau, places=9)
+        composed = self.law({"basic friction coefficient": 0.5, "asperity angle": np.degrees(0.05),
+                             "asperity friction coefficient": 0.3, "transition stress": 40e6, "transition exponent": 1.5,
+                             "residual part of friction": 0.3, "residual part of dilation": 0.6, "damage length of friction": 1,
+                             "damage length of dilation": 1}, friction="composed", damage="isotropic")
+        for over, worn, mu in ((.15, 0, .6149016982), (.15, .7, .5818025154), (.4, 2.5, .5759320923), (.8, .7, .6813819466)):
+            self.assertAlmostEqual(composed.bound(self.faces(over * 40e6, damage_history=worn))[0] / (over * 40e6), mu, places=9)
+        bandis = self.law({"joint roughness coefficient": 10, "joint wall strength": 100e6, "joint aperture": 0.2e-3}, closure="Bandis")
+        for load, closed in ((1e6, .036158318), (5e6, .087903172), (20e6, .120139547)):
+            self.assertAlmostEqual(-1e3 * bandis.closed_gap(self.faces(load))[0], closed, places=8)
+        weak = self.law({"friction coefficient": 0.6, "residual friction coefficient": 0.4, "weakening distance": 0.2},
+                        friction="slip weakening")
+        self.assertAlmostEqual(weak.bound(self.faces(0.3, accumulated_slip=0.1))[0], 0.15, places=14)
+
+    def test_a_wrong_history_is_seen(self):
+        steps = self.steps("contact/damage_turns_3d.xml", "Time.end=20", "Time.steps=20")
+        worn, before = steps[-1], steps[-2]
+        path = [violation._segment(step, start, self.input.laws) for step, start in zip(steps, [violation.Faces.at_rest(steps[0]), *steps])]
+
+        def history(step):
+            return dict(zip(violation.PARTS, violation.violation(step, before, self.scales, self.input.laws, path)))["history"]
+        self.assertGreater(worn.told["damage history"].min(), 0.1)
+        self.assertLess(history(worn), 1e-10)
+        worn.told["damage history"] += 0.01
+        self.assertAlmostEqual(history(worn), 0.01 / self.scales.length, places=4)
+        worn.told["damage history"] -= 0.01
+        worn.plastic[:, 1:] += 0.001  # a step that the history does not know of
+        self.assertGreater(history(worn), 1e-4 / self.scales.length)
+
     def test_states_that_differ(self):
         one = self.steps("contact/all_change_2d.xml")
         other = copy.deepcopy(one)

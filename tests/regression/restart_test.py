@@ -17,6 +17,7 @@ from program import ProgramTest, main
 N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
 CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
 MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
+TURNS = "contact/damage_turns_3d.xml"  # histories by direction, more of them than there is room for
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
 HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
            "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
@@ -78,6 +79,7 @@ class Restart(ProgramTest):
                 (CROSSING, 2, ("1, 2", ", 3"), HISTORY), (CROSSING, 3, ("1, 2", ", 3"), []),
                 (MASONRY, 2, ("1, 2", ", 3, 4"), ["Materials.other.Young's modulus=1e-6"]),
                 (FLOATING, 1, ("1, 2, 3", ", 4, 5"), []),
+                (TURNS, 1, (", ".join(map(str, range(1, 81))), ", 81, 82"), []), (TURNS, 3, ("1, 2, 3, 4, 5, 6", ", 7, 8"), []),
                 (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),
                 (INJECTION, 2, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}", "Solver.Linear solver.type=iterative", "Time.scheme=BDF2"]),
                 (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),

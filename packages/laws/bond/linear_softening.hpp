@@ -35,6 +35,14 @@ struct SofteningBond {
                                    "G_II that slip dissipates per area, beside friction, until the bond is lost"}
                                  .may_be_absent()}};
   }
+  static std::vector<Quantity<SofteningBond>> quantities() {
+    return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up",
+             [](const SofteningBond& law, const Contact<Real>& at) {
+               const Real used =
+                   at.history[0] * use(law.tensile, law.energy) + at.history[1] * use(law.shear, law.shear_energy);
+               return used < 1 ? used : 1;
+             }}};
+  }
 
   template <class T>
   KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {

@@ -24,6 +24,10 @@ struct BartonBandisCycles : BartonBandisClosure {
                                               "r: of the closure under the largest compression so far"}});
     return all;
   }
+  static std::vector<Quantity<BartonBandisCycles>> quantities() {
+    return {{"largest compression", "Pa", "that the joint has borne so far",
+             [](const BartonBandisCycles&, const Contact<Real>& at) -> Real { return at.history[0]; }}};
+  }
 
   template <class T>
   KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {

@@ -1,6 +1,7 @@
 // Exponential decay of friction and dilation with what slip has worn.
 #pragma once
 
+#include "laws/damage/direction_fan.hpp"
 #include "laws/damage/none.hpp"
 
 #include <cmath>
@@ -33,6 +34,14 @@ struct ExponentialDecay {
                                         .or_else(none)}};
   }
 
+  template <class Law>
+  static std::vector<Quantity<Law>> told() {
+    return {{"damage of friction", "-", "the part of its bound that slip has worn",
+             [](const Law& law, const Contact<Real>& at) { return 1 - law.left(at).friction; }},
+            {"damage of dilation", "-", "the part of its opening that slip has worn",
+             [](const Law& law, const Contact<Real>& at) { return 1 - law.left(at).dilation; }}};
+  }
+
   template <class T>
   KOKKOS_INLINE_FUNCTION Left<T> after(const T& lambda) const {
     using std::exp;
@@ -46,6 +55,12 @@ struct IsotropicDamage : ExponentialDecay {
   static constexpr int n_history = 1;  ///< Lambda
   static constexpr const char *name = "isotropic", *meaning = "by slip in any direction";
   static std::vector<Parameter<IsotropicDamage>> parameters() { return entries<IsotropicDamage>(); }
+  static std::vector<Quantity<IsotropicDamage>> quantities() {
+    auto all = told<IsotropicDamage>();
+    all.push_back({"damage history", "m", "what slip has worn, Lambda",
+                   [](const IsotropicDamage&, const Contact<Real>& at) -> Real { return at.history[0]; }});
+    return all;
+  }
 
   template <class T>
   KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
@@ -57,43 +72,106 @@ struct IsotropicDamage : ExponentialDecay {
 };
 
 /// Asperities wear on the sides that face the slip: Lambda(m) = sum of k |<m.u> - <m.u_before>|, <> the positive part
-/// and m the present direction of the plastic jump u, as in PorePy's fracture_damage; in 2D, where m is one of two.
+/// and m the present direction of the plastic jump u, as in PorePy's fracture_damage. In 2D m is one of two, and two
+/// numbers are the history; in 3D it is a fan of directions, with a bound of its error.
 /// Where u passes through 0 what is left jumps from one side's to the other's, and the bound may have no value at which
-/// the rock is in equilibrium; so within 1e-3 of the (smaller) damage length it goes linearly from one to the other.
+/// the rock is in equilibrium. So within w = 1e-3 of the (smaller) damage length it goes from one to the other: in 2D
+/// linearly, in 3D by s^2 (3 - 2 s), s = |u|/w, from what is left with the mean of Lambda over all m, sum of k |du|/pi.
 struct AnisotropicDamage : ExponentialDecay {
-  static constexpr int n_history = 2;  ///< Lambda(+t), Lambda(-t)
-  static constexpr bool flat = true;   ///< in 2D alone
-  static constexpr const char *name = "anisotropic", *meaning = "by slip on the side of the present plastic jump (2D)";
+  static constexpr int n_history = 1 + DirectionFan::n_numbers;  ///< sum of k |du|, the fan of Lambda(m)
+  static constexpr int n_history_2d = 2;                         ///< Lambda(+t), Lambda(-t)
+  static constexpr const char *name = "anisotropic", *meaning = "by slip on the side of the present plastic jump";
   static std::vector<Parameter<AnisotropicDamage>> parameters() { return entries<AnisotropicDamage>(); }
+  static std::vector<Quantity<AnisotropicDamage>> quantities() {
+    auto all = told<AnisotropicDamage>();
+    all.push_back({"damage history", "m", "what slip has worn on the side of the present plastic jump, Lambda",
+                   [](const AnisotropicDamage& law, const Contact<Real>& at) { return law.history(at); }});
+    all.push_back({"error of damage history", "-", "a bound of it, over the largest Lambda of all directions",
+                   [](const AnisotropicDamage& law, const Contact<Real>& at) { return law.error(at); },
+                   "damage history"});
+    return all;
+  }
 
   template <class T>
   KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
-    const Real width = 1e-3 * (friction_length < dilation_length ? friction_length : dilation_length);
+    if (at.dim == 3) return left_in_space(at);
     const T& u = at.plastic_jump[0];
-    if (u >= width) return on_side(at, 0);
-    if (u <= -width) return on_side(at, 1);
-    const auto plus = on_side(at, 0), minus = on_side(at, 1);
-    const T share = width < std::numeric_limits<Real>::infinity() ? T((u / width + 1) / 2) : T(1);
-    return {minus.friction + share * (plus.friction - minus.friction),
-            minus.dilation + share * (plus.dilation - minus.dilation)};
+    if (u >= width()) return after(history_of_side(at, 0));
+    if (u <= -width()) return after(history_of_side(at, 1));
+    const T share = width() < std::numeric_limits<Real>::infinity() ? T((u / width() + 1) / 2) : T(1);
+    return between(after(history_of_side(at, 1)), after(history_of_side(at, 0)), share);
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
     if (at.open) return;
+    const auto &u = at.plastic_jump, &before = at.last_plastic_jump;
+    if (at.dim == 3) {
+      kept[0] += at.wear * at.slip_of_step;
+      DirectionFan fan(at.history.from(1));
+      fan.add(before, u, at.wear);
+      fan.write(kept.from(1));
+      return;
+    }
     const auto positive = [](Real x) { return x > 0 ? x : 0; };
     for (const int side : {0, 1}) {
       const Real m = side == 0 ? 1 : -1;
-      kept[side] += at.wear * std::abs(positive(m * at.plastic_jump[0]) - positive(m * at.last_plastic_jump[0]));
+      kept[side] += at.wear * std::abs(positive(m * u[0]) - positive(m * before[0]));
     }
   }
 
- private:
+  /// Lambda on the side of the present plastic jump, m.
   template <class T>
-  KOKKOS_INLINE_FUNCTION Left<T> on_side(const Contact<T>& at, int side) const {
+  KOKKOS_INLINE_FUNCTION T history(const Contact<T>& at) const {
+    return at.dim == 3 ? history_along(at) : history_of_side(at, at.plastic_jump[0] < 0);
+  }
+  /// How far what is kept may be from the exact history, over the largest of all directions.
+  KOKKOS_INLINE_FUNCTION Real error(const Contact<Real>& at) const {
+    if (at.dim != 3) return 0;
+    const DirectionFan fan(at.history.from(1));
+    return fan.error() > 0 ? fan.error() / fan.largest() : 0;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Real width() const {
+    return 1e-3 * (friction_length < dilation_length ? friction_length : dilation_length);
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION static Left<T> between(const Left<T>& a, const Left<T>& b, const T& share) {
+    return {a.friction + share * (b.friction - a.friction), a.dilation + share * (b.dilation - a.dilation)};
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T history_of_side(const Contact<T>& at, int side) const {
     const Real m = side == 0 ? 1 : -1, before = m * at.last_plastic_jump[0];
     const T now = m * at.plastic_jump[0];
     T length = before > 0 ? before : 0;  // |<m.u> - <m.u_before>|
     if (now > 0) length = before > 0 ? at.slip_of_step : at.plastic_slip;
-    return after(T(at.history[side] + at.wear * length));
+    return at.history[side] + at.wear * length;
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Left<T> left_in_space(const Contact<T>& at) const {
+    constexpr Real pi = 3.14159265358979323846;
+    const T& size = at.plastic_slip;
+    if (size >= width()) return after(history_along(at));
+    const auto mean = after(T((at.history[0] + at.wear * at.slip_of_step) / pi));
+    if (!(size > 0)) return mean;
+    const T s = size / width();
+    return between(mean, after(history_along(at)), T(s * s * (3 - 2 * s)));
+  }
+  /// Lambda(u/|u|), with that of the step: slip is along the traction, so |m.u - m.u_before| is its part along m.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T history_along(const Contact<T>& at) const {
+    const T& size = at.plastic_slip;
+    if (!(size > 0)) return T(0);
+    const T m[] = {at.plastic_jump[0] / size, at.plastic_jump[1] / size};
+    const auto form = DirectionFan::form(at.history.from(1), value_of(m[0]), value_of(m[1]));
+    const T before = m[0] * at.last_plastic_jump[0] + m[1] * at.last_plastic_jump[1];
+    T length = size;
+    if (before > 0) {
+      const T along = m[0] * at.slip_direction[0] + m[1] * at.slip_direction[1];
+      length = along < 0 ? T(-along * at.slip_of_step) : T(along * at.slip_of_step);
+    }
+    const T lambda = form.constant + form.gradient[0] * m[0] + form.gradient[1] * m[1] + at.wear * length;
+    return lambda > 0 ? lambda : T(0);
   }
 };
 

@@ -30,6 +30,11 @@ struct MobilisedDilation {
             {&Law::sample, sample_entry()},
             {&Law::peak_slip, peak_slip_entry()}};
   }
+  static std::vector<Quantity<MobilisedDilation>> quantities() {
+    return {accumulated_slip<MobilisedDilation>(),
+            {"opening by slip", "m", "of a joint that is not damaged",
+             [](const MobilisedDilation&, const Contact<Real>& at) -> Real { return at.history[1]; }}};
+  }
   void complete() {
     if (length > 0) scale_roughness(roughness, wall_strength, length, sample);
     if (peak_slip == 0 && length > 0) peak_slip = peak_slip_of(roughness, length);

@@ -22,6 +22,9 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
     all.push_back({&MobilisedBartonChoubeyFriction::peak_slip, peak_slip_entry()});
     return all;
   }
+  static std::vector<Quantity<MobilisedBartonChoubeyFriction>> quantities() {
+    return {accumulated_slip<MobilisedBartonChoubeyFriction>()};
+  }
   void complete() {
     BartonChoubeyFriction::complete();
     if (peak_slip == 0 && length > 0) peak_slip = peak_slip_of(roughness, length);

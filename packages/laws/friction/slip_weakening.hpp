@@ -29,6 +29,9 @@ struct SlipWeakeningFriction {
             {&Law::distance, Entry{"weakening distance", "m", base::positive(),
                                    "D: the length of the path over which friction falls"}}};
   }
+  static std::vector<Quantity<SlipWeakeningFriction>> quantities() {
+    return {accumulated_slip<SlipWeakeningFriction>()};
+  }
   std::string defect() const {
     return residual > peak ? "residual friction must not be above the friction at peak" : "";
   }

@@ -5,6 +5,7 @@
 #include "mesh/extents.hpp"
 #include "physics/mechanics/joint_face.hpp"
 #include "physics/mechanics/joint_material.hpp"
+#include "physics/mechanics/runaway.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,10 @@ class ElasticPlasticJump final : public assembly::Module {
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     add_outputs(d);
-    if (parameters_.n_kept > 0) d.history.push_back({"kept by laws", face, parameters_.n_kept});
+    if (parameters_.n_kept > 0) {
+      d.history.push_back({"kept by laws", face, parameters_.n_kept});
+      d.history.push_back({"runaway slip", face, 1});
+    }
     if (holds_fluid_) d.schur = {"face pressure"};
     return d;
   }
@@ -153,6 +157,18 @@ class ElasticPlasticJump final : public assembly::Module {
     return shares;
   }
 
+  /// L/G of the softer side, m/Pa: about what rock gives in under shear of a face of a fracture of size L. Device.
+  View<Real*> softness() const {
+    View<Real*> all("softness", mesh_->n_owned_fracture_faces);
+    const auto host = Kokkos::create_mirror_view(all);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      for (const LocalIndex cell : mesh_->fracture_faces[f].cell) {
+        const Real G = parameters_.elasticity[elasticity_of(cell)].G;
+        host(f) = std::max(host(f), size_[mesh_->fracture_faces[f].fracture] / G);
+      }
+    Kokkos::deep_copy(all, host);
+    return all;
+  }
   int joint_of(LocalIndex face) const { return physics::joint_of(parameters_, *mesh_, face); }
   int elasticity_of(LocalIndex cell) const {
     return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
@@ -173,6 +189,7 @@ class ElasticPlasticJump final : public assembly::Module {
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
+  View<Real*> softness_;       // [owned face], where laws keep numbers
   View<Real*> merit_weight_;   // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
   std::vector<Real> modulus_;  // [owned face] Young's, of the softer side, Pa
   std::vector<Real> size_;     // [fracture] m
@@ -268,6 +285,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   Kokkos::deep_copy(number, number_h);
   Kokkos::deep_copy(augmentation, augmentation_h);
   Kokkos::deep_copy(merit_weight_, weight_h);
+  if (parameters_.n_kept > 0) softness_ = softness();
   op_ =
       std::make_unique<Op>(Op{frame, share, tip_share, bubble_mean, law, number, initial_jump(), augmentation, {}, {}});
 }
@@ -276,6 +294,8 @@ template <Shape shape, bool tips>
 void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
   const Op op = at(state);
   const auto p = state.history[0], slid = state.history[1];
+  const auto runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>();
+  const auto softness = softness_;
   faces_->for_each(
       op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
         const Point point = op.point(f, x);
@@ -290,8 +310,13 @@ void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
         if (op.kept.extent(1) == 0) return;
         Real now[dim - 1];
         for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
-        law.commit(laws::converged<dim>(law, point.state, point.w, point.traction, now, point.p_old, op.history(f)),
-                   op.kept_of(f));
+        const auto end =
+            laws::converged<dim>(law, point.state, point.w, point.traction, now, point.p_old, op.history(f));
+        if (point.state == ContactState::slip) {
+          const Real slip = runaway_slip(law, end, softness(f) + law.elastic.initial_compliance());
+          if (slip > runaway(f, 0)) runaway(f, 0) = slip;
+        }
+        law.commit(end, op.kept_of(f));
       });
 }
 
@@ -406,6 +431,7 @@ struct ElasticPlasticJump<shape, tips>::Shown {
   const Point& point;
   ContactState state;
   Real elastic[dim], plastic[dim], slip, aperture, slip_tendency = 0;
+  laws::Contact<Real> at;
 
   Shown(const Point& point, const JointParameters& joint, bool slid, const laws::History& kept)
       : point(point), state(slid ? ContactState::slip : ContactState::stick) {
@@ -415,7 +441,7 @@ struct ElasticPlasticJump<shape, tips>::Shown {
     for (int i = 0; i < dim - 1; ++i) tangential[i] = plastic[i + 1];
     slip = laws::norm(tangential);
     aperture = joint.initial_aperture + point.w[0];
-    const auto at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
+    at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
     const Real bound = joint.law.bound(at);
     if (!at.open && at.shear > 0) slip_tendency = at.shear / std::max(bound, at.shear * 1e-16);
   }
@@ -474,6 +500,25 @@ void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) cons
       [this](LocalIndex f, const Shown& face, auto& all) {
         all.push_back(shear_modulus(f) * slip_since_start(f, face));
       });
+  if (parameters_.n_kept > 0)
+    d.outputs.push_back(
+        {{"runaway slip", "m", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "runaway slip"}},
+         [this](const assembly::State& state) {
+           const auto slip = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[3]);
+           std::vector<Real> all;
+           for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) all.push_back(slip(f, 0));
+           return all;
+         }});
+  for (const auto& quantity : parameters_.quantities) {
+    Summary summary{Summary::mean_and_max, quantity.name};
+    if (!quantity.error_of.empty()) summary = {Summary::error_bound, quantity.error_of};
+    std::vector<laws::QuantityOfFace> of_joint;
+    for (const auto& joint : parameters_.joints) of_joint.push_back(laws::quantity_of(joint.law, quantity.name));
+    add(quantity.name, quantity.unit.c_str(), 1, summary, [this, of_joint](LocalIndex f, const Shown& face, auto& all) {
+      const auto& value = of_joint[joint_of(f)];
+      all.push_back(value ? value(face.at) : 0);
+    });
+  }
 }
 
 }  // namespace

@@ -264,6 +264,30 @@ void set_part(Part& part, const laws::Kinds<Ks...>&, const std::string& kind, co
   ((kind == Ks::name ? void(part = law_at<Ks>(material, x)) : void()), ...);
 }
 
+/// Tells where slip that begins at rest would do work instead of taking it: where friction bears less than dilation
+/// lifts, b < N dg/ds. Asked of laws with histories, at some slips and compressions; empty where it is nowhere found.
+std::string gain_by_slip(const laws::Joint& law) {
+  if (law.n_history() == 0) return "";
+  const Real zero = 0;  // all that laws have kept
+  for (const Real compression : {1.0, 1e3, 1e5, 1e6, 1e7})
+    for (const Real slip : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
+      const laws::Contact<Real> at{.lambda_n = -compression,
+                                   .plastic_slip = slip,
+                                   .slip_of_step = slip,
+                                   .plastic_jump = {slip, 0},
+                                   .history = {&zero, 0}};
+      const Real opens = dilation_slope(law, at);
+      if (!(opens > 0)) continue;
+      const Real bound = law.friction_bound(at);
+      if (bound < (1 - 1e-9) * opens * compression)
+        return fmt::format(
+            "slip would do work instead of dissipating it: after a slip of {:.3g} m under {:.3g} Pa friction bears "
+            "{:.4g} Pa, and dilation takes {:.4g} Pa; more friction or less dilation is needed",
+            slip, compression, bound, opens * compression);
+    }
+  return "";
+}
+
 }  // namespace
 
 JointMaterial::JointMaterial() {
@@ -370,6 +394,8 @@ JointParameters JointMaterial::joint(const Point& x) const {
   joint.law.sliding_compliance =
       std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
   joint.initial_aperture = initial_aperture(x, 0);
+  const std::string gain = gain_by_slip(joint.law);
+  SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;
 }
 
@@ -414,6 +440,7 @@ using Fad1 = Sacado::Fad::SFad<Real, 1>;
 template <class Seed>
 laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& seed) {
   laws::Contact<Fad1> with;
+  with.dim = at.dim;
   with.lambda_n = at.lambda_n;
   with.shear = at.shear;
   with.plastic_slip = at.plastic_slip;
@@ -421,6 +448,7 @@ laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& se
   with.separation = at.separation;
   for (int i = 0; i < 2; ++i) {
     with.plastic_jump[i] = at.plastic_jump[i];
+    with.slip_direction[i] = at.slip_direction[i];
     with.last_plastic_jump[i] = at.last_plastic_jump[i];
   }
   with.history = at.history;

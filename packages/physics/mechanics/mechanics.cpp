@@ -208,6 +208,25 @@ std::vector<std::string> Mechanics::warnings(const Setting& setting) {
       setting.scene.origin)};
 }
 
+std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
+                                                      const std::vector<assembly::OutputField>& outputs) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene)) return {};
+  std::vector<int> ran(mesh.fracture_names.size());
+  for (const auto& output : outputs)
+    for (LocalIndex f = 0; output.name == "runaway slip" && f < mesh.n_owned_fracture_faces; ++f)
+      if (output.values[f] > 0) ran[mesh.fracture_faces[f].fracture] = 1;
+  ran = base::max_over_ranks(*mesh.comm, ran);
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < ran.size(); ++k)
+    if (ran[k])
+      warnings.push_back(fmt::format(
+          "{}: slip ran away on \"{}\": the bound fell faster with slip than rock and joint unload. The state "
+          "obeys the law, others between may do so; \"max_runaway_slip\" in results.json is how far",
+          scene.origin, mesh.fracture_names[k]));
+  return warnings;
+}
+
 std::string Mechanics::no_error_estimate(const Scene& scene) {
   return is_in(scene) ? "" : "is of stress and jumps, and the rock does not deform";
 }

@@ -13,8 +13,23 @@ namespace {
 /// How many numbers joints keep of a face, at most. Collective.
 int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
   int here = 0;
-  for (const auto& joint : joints) here = std::max(here, joint.law.n_history());
+  for (const auto& joint : joints) here = std::max(here, joint.law.n_history(mesh.dim()));
   return base::max_over_ranks(*mesh.comm, here);
+}
+
+/// What joints of any rank tell of a face. Collective.
+std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
+  const auto all = laws::joint_quantities();
+  std::vector<Real> told(all.size());
+  for (const auto& joint : joints)
+    if (joint.law.n_history() > 0)
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (told[k] == 0 && laws::quantity_of(joint.law, all[k].name)) told[k] = 1;
+  told = base::max_over_ranks(*mesh.comm, told);
+  std::vector<laws::JointQuantity> result;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (told[k] > 0) result.push_back(all[k]);
+  return result;
 }
 
 }  // namespace
@@ -30,7 +45,8 @@ ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const Mecha
           .augmentation = parameters.augmentation,
           .fluid_pressure = fluid,
           .start = parameters.start,
-          .n_kept = most_kept(mesh, parameters.joints.values)};
+          .n_kept = most_kept(mesh, parameters.joints.values),
+          .quantities = told_quantities(mesh, parameters.joints.values)};
 }
 
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,

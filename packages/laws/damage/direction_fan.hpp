@@ -1,0 +1,217 @@
+// A history of slip in all directions of the plane, in constant memory, and how far it may be from the exact one.
+#pragma once
+
+#include "base/types.hpp"
+#include "laws/contact.hpp"
+
+#include <cmath>
+
+namespace sprekk::laws {
+
+/// Lambda(m) = sum of k |<m.b> - <m.a>| over the segments a -> b of a path in the plane, as a function of the unit
+/// vector m = (cos t, sin t); <x> = max(x, 0). A segment's term is m.V with one V between each two of the directions
+/// across a, across b, and the one across b - a where m.a = m.b > 0. So the sum is piecewise m.V on a fan of angles,
+/// and exact as long as the path has few directions, however often it goes there. Of more than `capacity` angles those
+/// are given up that cost least. Between two angles t_0 and t_1, w = t_1 - t_0 <= pi/2, c in the middle:
+///   Lambda = (v_0 sin(t_1 - t) + v_1 sin(t - t_0))/sin w + q (1 - cos(t - c)/cos(w/2)),   Lambda'' + Lambda = q,
+/// q what angles given up there leave as curvature. Each sector keeps an interval [low, high] that contains the exact
+/// value less this one, but for rounding. The angles of the axes stay, and in each step that of b, where the value that
+/// the step ended with is not changed.
+class DirectionFan {
+ public:
+  static constexpr int capacity = 64;
+  static constexpr int n_numbers = 1 + 5 * capacity;  ///< how many, and five of each; all 0: no path yet
+
+  /// Lambda(m) = constant + gradient.m for directions m near one.
+  struct Form {
+    Real constant = 0, gradient[2] = {};
+  };
+
+  /// Reads what write() has kept.
+  KOKKOS_INLINE_FUNCTION explicit DirectionFan(const History& kept) : size_(size_of(kept)) {
+    for (int j = 0; j < size_; ++j) nodes_[j] = node(kept, j);
+  }
+  KOKKOS_INLINE_FUNCTION void write(const Numbers<Real>& kept) const {
+    kept[0] = size_;
+    for (int j = 0; j < size_; ++j) {
+      const Node& n = nodes_[j];
+      const Real numbers[] = {n.angle, n.value, n.curvature, n.low, n.high};
+      for (int i = 0; i < 5; ++i) kept[1 + 5 * j + i] = numbers[i];
+    }
+  }
+
+  /// Of the fan that was kept, near the direction of u.
+  KOKKOS_INLINE_FUNCTION static Form form(const History& kept, Real u, Real v) {
+    using std::atan2, std::cos, std::sin;
+    const int size = size_of(kept);
+    if (size == 0) return {};
+    const Real t = wrapped(atan2(v, u));
+    int j = 0;  // the last node not above t
+    for (int end = size; end - j > 1;) {
+      const int middle = (j + end) / 2;
+      (node(kept, middle).angle <= t ? j : end) = middle;
+    }
+    const Node first = node(kept, j), second = node(kept, j + 1 < size ? j + 1 : 0);
+    const Real half = (second.angle - first.angle + (j + 1 < size ? 0 : turn)) / 2, c = first.angle + half;
+    const Real along = ((first.value + second.value) / 2 - first.curvature) / cos(half),
+               across = (second.value - first.value) / (2 * sin(half));
+    return {first.curvature, {along * cos(c) - across * sin(c), along * sin(c) + across * cos(c)}};
+  }
+
+  /// The path goes on from a to b, where a unit of length counts k.
+  KOKKOS_INLINE_FUNCTION void add(const Real (&a)[2], const Real (&b)[2], Real k) {
+    using std::abs, std::atan2, std::cos, std::sin;
+    const Real d[] = {b[0] - a[0], b[1] - a[1]};
+    if (k == 0 || (d[0] == 0 && d[1] == 0)) return;
+    for (; size_ < 4; ++size_) nodes_[size_] = {size_ * quarter, 0, 0, 0, 0};
+    for (const Real* end : {&a[0], &b[0]})
+      for (const Real side : {-quarter, quarter})
+        if (end[0] != 0 || end[1] != 0) insert(atan2(end[1], end[0]) + side);
+    const Real between = atan2(d[1], d[0]) + quarter, at = a[0] * cos(between) + a[1] * sin(between);
+    if (at != 0) insert(at > 0 ? between : between + 2 * quarter);
+    const Real present = wrapped(atan2(b[1], b[0]));
+    insert(present);
+    const auto positive = [](Real x) { return x > 0 ? x : 0; };
+    for (int j = 0; j < size_; ++j) {
+      const Real m[] = {cos(nodes_[j].angle), sin(nodes_[j].angle)};
+      nodes_[j].value += k * abs(positive(m[0] * b[0] + m[1] * b[1]) - positive(m[0] * a[0] + m[1] * a[1]));
+    }
+    compress(present);
+  }
+
+  /// The largest distance from the exact values over all directions, and the largest value at an angle.
+  KOKKOS_INLINE_FUNCTION Real error() const {
+    Real most = 0;
+    for (int j = 0; j < size_; ++j) most = larger(most, larger(nodes_[j].high, -nodes_[j].low));
+    return most;
+  }
+  KOKKOS_INLINE_FUNCTION Real largest() const {
+    Real most = 0;
+    for (int j = 0; j < size_; ++j) most = larger(most, nodes_[j].value);
+    return most;
+  }
+
+ private:
+  static constexpr Real quarter = 1.57079632679489661923, turn = 4 * quarter;
+  static constexpr Real same = 1e-13;  ///< angles that differ by less are one
+  static constexpr int more = 6;       ///< angles that a segment adds at the most
+
+  /// An angle, the value there, and what holds of the sector that begins there.
+  struct Node {
+    Real angle, value, curvature, low, high;
+  };
+  /// The sector that two become without the node between them; `cost` is the larger end of its interval.
+  struct Merged {
+    Real curvature, low, high, cost;
+  };
+  struct Range {
+    Real low, high;
+  };
+
+  KOKKOS_INLINE_FUNCTION static Real larger(Real a, Real b) { return a > b ? a : b; }
+  KOKKOS_INLINE_FUNCTION static Real smaller(Real a, Real b) { return a < b ? a : b; }
+  KOKKOS_INLINE_FUNCTION static int size_of(const History& kept) { return kept[0] < 4 ? 0 : static_cast<int>(kept[0]); }
+  KOKKOS_INLINE_FUNCTION static Node node(const History& kept, int j) {
+    const auto own = kept.from(1 + 5 * j);
+    return {own[0], own[1], own[2], own[3], own[4]};
+  }
+  KOKKOS_INLINE_FUNCTION static Real wrapped(Real t) {  // of (-2 pi, 4 pi), to [0, 2 pi)
+    if (t < 0) t += turn;
+    return t >= turn ? t - turn : t;
+  }
+  KOKKOS_INLINE_FUNCTION static bool is_axis(Real t) {
+    return t == 0 || t == quarter || t == 2 * quarter || t == 3 * quarter;
+  }
+
+  /// Splits the sector of t there; the function stays the same.
+  KOKKOS_INLINE_FUNCTION void insert(Real t) {
+    using std::cos, std::sin;
+    t = wrapped(t);
+    int j = 0;
+    while (j < size_ && nodes_[j].angle < t) ++j;
+    const Node before = nodes_[j > 0 ? j - 1 : size_ - 1], after = nodes_[j < size_ ? j : 0];
+    const Real left = t - before.angle + (j > 0 ? 0 : turn), right = after.angle - t + (j < size_ ? 0 : turn);
+    if (left < same || right < same) return;
+    Node added = before;
+    added.angle = t;
+    added.value =
+        (before.value * sin(right) + after.value * sin(left)) / sin(left + right) + before.curvature * bow(left, right);
+    for (int i = size_++; i > j; --i) nodes_[i] = nodes_[i - 1];
+    nodes_[j] = added;
+  }
+
+  /// 1 - cos(t - c)/cos(w/2) at the distances l and r from the ends of a sector.
+  KOKKOS_INLINE_FUNCTION static Real bow(Real l, Real r) {
+    using std::cos, std::sin;
+    return -2 * sin(l / 2) * sin(r / 2) / cos((l + r) / 2);
+  }
+
+  /// Keeps the axes and the angle `present`.
+  KOKKOS_INLINE_FUNCTION void compress(Real present) {
+    using std::abs;
+    if (size_ <= capacity) return;
+    Merged without[capacity + more];
+    for (int j = 0; j < size_; ++j) without[j] = merged(j);
+    while (size_ > capacity) {
+      int best = -1;
+      for (int j = 0; j < size_; ++j)
+        if (!is_axis(nodes_[j].angle) && !(abs(nodes_[j].angle - present) <= same) &&
+            (best < 0 || without[j].cost < without[best].cost))
+          best = j;
+      Node& sector = nodes_[best - 1];  // the first node is an axis
+      sector.curvature = without[best].curvature;
+      sector.low = without[best].low;
+      sector.high = without[best].high;
+      --size_;
+      for (int j = best; j < size_; ++j) {
+        nodes_[j] = nodes_[j + 1];
+        without[j] = without[j + 1];
+      }
+      without[best - 1] = merged(best - 1);
+      if (best < size_) without[best] = merged(best);
+    }
+  }
+
+  /// Either the slope's jump at the node is spread over both sectors, or the value at the node is kept, whichever is
+  /// nearer to the function so far. A node where nothing changes costs nothing.
+  KOKKOS_INLINE_FUNCTION Merged merged(int j) const {
+    using std::abs, std::sin, std::tan;
+    const Node &at = nodes_[j], &l = nodes_[j > 0 ? j - 1 : size_ - 1], &r = nodes_[j + 1 < size_ ? j + 1 : 0];
+    const Real to_l = at.angle - l.angle + (j > 0 ? 0 : turn), to_r = r.angle - at.angle + (j + 1 < size_ ? 0 : turn);
+    const Real half_l = tan(to_l / 2), half_r = tan(to_r / 2), width = to_l + to_r;
+    // slopes of m.V on either side, and of the function
+    const Real before = (at.value - l.value) / sin(to_l) - at.value * half_l,
+               after = (r.value - at.value) / sin(to_r) + at.value * half_r;
+    const Real jump = after - before - at.curvature * half_r - l.curvature * half_l;
+    const Real rises = (before - after) * sin(to_l) * sin(to_r) / sin(width);  // above the new m.V
+    const Real spread = (l.curvature * to_l + at.curvature * to_r + jump) / width, kept = rises / bow(to_l, to_r);
+    Merged best{};
+    for (const Real q : {spread, kept}) {
+      const Real d = rises - q * bow(to_l, to_r);
+      const Range left = range(l.curvature - q, d, to_l), right = range(at.curvature - q, d, to_r);
+      Merged one{q, smaller(l.low, at.low) + smaller(left.low, right.low),
+                 larger(l.high, at.high) + larger(left.high, right.high), 0};
+      one.cost = larger(one.high, -one.low);
+      if (q == spread || one.cost < best.cost) best = one;
+    }
+    const Real rounding = 1e-13 * largest();
+    if (abs(jump) < rounding && abs(at.curvature - l.curvature) < rounding) best.cost = 0;
+    return best;
+  }
+
+  /// The least and the largest value in [0, w] of D with D'' + D = a, D(0) = 0, D(w) = d.
+  KOKKOS_INLINE_FUNCTION static Range range(Real a, Real d, Real w) {
+    using std::atan2, std::sin, std::sqrt, std::tan;
+    const Real B = d / sin(w) - a * tan(w / 2), size = sqrt(a * a + B * B);
+    const Real top = atan2(B, -a), bottom = top < 0 ? top + 2 * quarter : top - 2 * quarter;
+    Range range{smaller(0, d), larger(0, d)};
+    if (top > 0 && top < w) range.high = larger(range.high, a + size);
+    if (bottom > 0 && bottom < w) range.low = smaller(range.low, a - size);
+    return range;
+  }
+
+  int size_ = 0;
+  Node nodes_[capacity + more];
+};
+
+}  // namespace sprekk::laws

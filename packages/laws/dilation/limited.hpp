@@ -1,0 +1,36 @@
+// Shear dilation up to a largest opening.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// Shear dilation, m: tan(theta) u with u = |u_t^p|, until the joint has opened by the height h, where it stays: rough
+/// faces ride on the tops of their asperities then. Within 5 % of h a parabola joins both lines, below them by up to
+/// 0.0125 h. As any function of u it is undone when slip is.
+struct LimitedDilation {
+  Real tangent = 0;  ///< tan(theta)
+  Real height = 1;   ///< h, m
+
+  static constexpr const char *name = "limited", *meaning = "in proportion to the slip, up to a largest opening";
+  static std::vector<Parameter<LimitedDilation>> parameters() {
+    using Law = LimitedDilation;
+    return {{&Law::tangent,
+             Entry{"dilation angle", "degree", base::at_least(0).below(90), "theta, until h is reached"}.converted(
+                 tangent_of_degrees)},
+            {&Law::height,
+             Entry{"largest dilation", "m", base::positive(), "h: by which slip opens the joint, at the most"}}};
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
+    const Real part = 0.05;
+    const T x = tangent * at.plastic_slip / height;
+    if (x <= 1 - part) return tangent * at.plastic_slip;
+    if (x >= 1 + part) return T(height);
+    return height * (1 - (1 + part - x) * (1 + part - x) / (4 * part));
+  }
+};
+
+}  // namespace sprekk::laws

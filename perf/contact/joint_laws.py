@@ -1,0 +1,237 @@
+"""The laws of joints, from the entries of a material and the formulas of docs/theory.md, section 2, and nothing of the program.
+
+What the laws keep of a face is read from the fields that the run wrote; by how much these may move in a step is computed here."""
+import math
+
+import numpy as np
+
+NEAR_ZERO = 1e-3   # of the smaller damage length: within it the sides of anisotropic damage pass into each other
+ROUNDED = 0.003    # of an abscissa of Barton's table: as far around it the curve is a parabola
+ROUGHNESS = (np.array([0.3, 0.6, 1, 2, 4, 10, 100]), np.array([0, 0.75, 1, 0.85, 0.7, 0.5, 0]))
+RESIDUAL = (np.array([0, 0.3]), np.array([0.0, 1.0]))
+ENDLESS = 1e300
+
+
+def rounded(table, x):
+    """The curve through the points of a table, constant outside, with rounded corners."""
+    points, values = table
+    y = np.interp(x, points, values)
+    slopes = np.r_[0, np.diff(values) / np.diff(points), 0]
+    for k, at in enumerate(points):
+        e = ROUNDED * at
+        near = np.abs(x - at) < e
+        y = np.where(near, y + (slopes[k + 1] - slopes[k]) * (e - np.abs(x - at)) ** 2 / (4 * max(e, 1e-300)), y)
+    return y
+
+
+class JointLaw:
+    """A joint of one material. `entry(name, default)` is a number, `kind(role)` a name. The faces that it is asked about have
+    `normal` and `shear`, tractions; `slip` = |u_t^p|; and in `told` the fields of histories by their names."""
+
+    def __init__(self, entry, kind):
+        self.entry, self.kinds = entry, {role: kind(role) for role in (
+            "friction", "dilation", "closure", "tangential elasticity", "bond", "damage", "damage driver")}
+        self.gap = entry("initial gap", 0)
+
+    def number(self, name, default=None):
+        """Of a coefficient, or of the angle that it is the tangent of."""
+        value = self.entry(name, None)
+        if value is None and name.endswith("coefficient"):
+            angle = self.entry(name.replace("coefficient", "angle"), None)
+            value = None if angle is None else math.tan(math.radians(angle))
+        return default if value is None else value
+
+    # ---- friction ----------------------------------------------------------------------------------------------------
+
+    def bound(self, faces):
+        """On |lambda_t|, Pa."""
+        friction, dilation = self.left(faces)
+        normal = faces.normal
+        load = np.maximum(-normal, 0)
+        if self.kinds["friction"] != "composed":
+            bound = friction * self._friction(load, faces, dilation, friction)
+        else:
+            bound = self._friction(load, faces, dilation, friction)
+        if self.kinds["bond"] == "none":
+            return bound
+        # under tension, which a bond may bear, the line of the origin goes on
+        small = np.full_like(load, 1e-9 * max(load.max(initial=0), 1e-300))
+        slope = self._friction(small, faces, dilation, friction) / small
+        if self.kinds["friction"] != "composed":
+            slope = slope * friction
+        return np.maximum(np.where(normal > 0, -slope * normal, bound) + self.number("cohesion", 0) * self.whole(faces), 0)
+
+    def _friction(self, load, faces, dilation, friction):
+        kind = self.kinds["friction"]
+        if kind == "Coulomb":
+            return self.number("friction coefficient") * load
+        if kind == "slip weakening":
+            peak, residual = self.number("friction coefficient"), self.number("residual friction coefficient")
+            left = np.maximum(1 - faces.told["accumulated slip"] / self.entry("weakening distance", None), 0)
+            return (residual + (peak - residual) * left) * load
+        if kind == "composed":
+            basic, asperity = self.number("basic friction coefficient"), math.tan(math.radians(self.entry("asperity angle", None)))
+            rides = np.maximum(1 - load / self.entry("transition stress", None), 0) ** self.entry("transition exponent", 1.5)
+            slope = rides * asperity * dilation
+            return load * ((basic + slope) / (1 - basic * slope) + (1 - rides) * self.number("asperity friction coefficient") * friction)
+        residual, most = self.entry("residual friction angle", None), self.entry("largest friction angle", 70)
+        roughness, strength = self.roughness
+        rough = roughness * np.log10(strength / np.clip(load, 1e-300, strength))
+        rough = np.minimum(rough, most - residual)
+        if kind == "mobilised Barton-Choubey":
+            x = faces.told["accumulated slip"] / self.peak_slip
+            return load * np.tan(np.radians(residual * rounded(RESIDUAL, x) + rough * rounded(ROUGHNESS, x)))
+        if kind == "Barton-Choubey":
+            return load * np.tan(np.radians(residual + rough))
+        raise ValueError(f'friction "{kind}" is not known here')
+
+    @property
+    def roughness(self):
+        """JRC, JCS of the joint."""
+        roughness, strength = self.entry("joint roughness coefficient", None), self.entry("joint wall strength", None)
+        length = self.entry("joint length", None)
+        if not length:
+            return roughness, strength
+        ratio = length / self.entry("sample length", 0.1)
+        return roughness * ratio ** (-0.02 * roughness), strength * ratio ** (-0.03 * roughness)
+
+    @property
+    def peak_slip(self):
+        given, length = self.entry("peak slip", None), self.entry("joint length", None)
+        return given if given else length / 500 * (self.roughness[0] / length) ** 0.33
+
+    # ---- where the faces touch ---------------------------------------------------------------------------------------
+
+    def closed_gap(self, faces):
+        """g of (14), m."""
+        return self.gap + self.left(faces)[1] * self._dilation(faces) - self._closure(faces)
+
+    def _dilation(self, faces):
+        kind, u = self.kinds["dilation"], faces.slip
+        if kind == "mobilised":
+            return faces.told["opening by slip"]
+        tangent = math.tan(math.radians(self.entry("dilation angle", 0)))
+        if kind == "constant angle":
+            return tangent * u
+        if kind == "decaying angle":
+            residual, D = math.tan(math.radians(self.entry("residual dilation angle", 0))), self.entry("dilation decay distance", None)
+            return residual * u - (tangent - residual) * D * np.expm1(-u / D)
+        if kind == "limited":
+            height, e = self.entry("largest dilation", None), 0.05
+            x = tangent * u / height
+            return height * np.where(np.abs(x - 1) < e, 1 - (1 + e - x) ** 2 / (4 * e), np.minimum(x, 1))
+        raise ValueError(f'dilation "{kind}" is not known here')
+
+    def _closure(self, faces):
+        kind, load = self.kinds["closure"], np.maximum(-faces.normal, 0)
+        if kind in ("Barton-Bandis", "Bandis", "Barton-Bandis with memory"):
+            closed = self._hyperbola(load)
+            if kind != "Barton-Bandis with memory":
+                return closed
+            kept = self.entry("irrecoverable part of closure", 0)
+            return (1 - kept) * closed + kept * self._hyperbola(np.maximum(load, faces.told["largest compression"]))
+        K = self.entry("normal stiffness", None)
+        if kind == "linear":
+            return load / K
+        if kind == "power":
+            reference, m = self.entry("stiffening stress", None), self.entry("stiffening exponent", None)
+            x = np.log1p(load / reference)
+            return reference / K * (x if m == 1 else np.expm1((1 - m) * x) / (1 - m))
+        raise ValueError(f'closure "{kind}" is not known here')
+
+    def _hyperbola(self, load):
+        if self.kinds["closure"] == "Bandis":
+            a = 1e3 * self.entry("joint aperture", None)
+            JRC, ratio = self.entry("joint roughness coefficient", None), self.entry("joint wall strength", None) / 1e6 / a
+            A, B, C, D = (-0.2960, -0.0056, 2.2410, -0.2450) if self.entry("loading cycle", 1) == 1 else (-0.1032, -0.0074, 1.1350, -0.2510)
+            K, most = 1e9 * (-7.15 + 1.75 * JRC + 0.02 * ratio), 1e-3 * (A + B * JRC + C * ratio ** D)
+        else:
+            K, most = self.entry("normal stiffness", None), self.entry("maximum closure", math.inf)
+        if K is None or K == math.inf or most == 0:
+            return np.zeros_like(load)
+        return load / (K + load / most)
+
+    # ---- bond and damage ---------------------------------------------------------------------------------------------
+
+    def whole(self, faces):
+        """The part of a bond that is left."""
+        return 1 - faces.told["damage of bond"] if self.kinds["bond"] == "linear softening" else 1.0
+
+    def tension(self, faces):
+        """The most that faces bear, Pa."""
+        return self.whole(faces) * (self.entry("tensile strength", 0) if self.kinds["bond"] == "linear softening" else 0)
+
+    def left(self, faces):
+        """The parts of friction and dilation that damage leaves."""
+        if self.kinds["damage"] == "none":
+            return 1.0, 1.0
+        lengths = [self.entry(f"damage length of {what}", math.inf) for what in ("friction", "dilation")]
+        parts = []
+        for what, length in zip(("friction", "dilation"), lengths):
+            residual = self.entry(f"residual part of {what}", 0)
+            part = residual + (1 - residual) * np.exp(-faces.told["damage history"] / length)
+            if self.kinds["damage"] == "anisotropic":
+                part = np.where(faces.slip < NEAR_ZERO * min(lengths), 1 - faces.told[f"damage of {what}"], part)
+            parts.append(part)
+        return parts
+
+    # ---- how histories move ------------------------------------------------------------------------------------------
+
+    def wrong_histories(self, faces, before, path):
+        """[face] By how much the fields of histories differ from what those at the start of the step and the step say, m; loads
+        over the normal stiffness. `path` has the segments (plastic jumps from, to, weight k) of all steps up to this one, or is
+        None where one of them is not known."""
+        increment = np.linalg.norm(faces.plastic[:, 1:] - before.plastic[:, 1:], axis=1)
+        rubbed, wrong = np.where(faces.state > 0, increment, 0), np.zeros(len(increment))
+        told, was = faces.told, before.told
+
+        def must_be(name, value, scale=1.0):
+            nonlocal wrong
+            wrong = np.maximum(wrong, np.abs(told[name] - value) / scale)
+        if self.kinds["friction"] in ("slip weakening", "mobilised Barton-Choubey") or self.kinds["dilation"] == "mobilised":
+            must_be("accumulated slip", was["accumulated slip"] + rubbed)
+        if self.kinds["dilation"] == "mobilised":
+            must_be("opening by slip", was["opening by slip"] + (faces.slip - before.slip) * self._mean_tangent(faces, before, rubbed))
+        if self.kinds["closure"] == "Barton-Bandis with memory":
+            must_be("largest compression", np.maximum(was["largest compression"], -faces.normal), self.entry("normal stiffness", None))
+        if self.kinds["damage"] == "isotropic":
+            must_be("damage history", was["damage history"] + self.weight(faces) * rubbed)
+        if self.kinds["damage"] == "anisotropic" and path:
+            known, length = history_of(path, faces)
+            off = np.abs(told["damage history"] - known) - told["error of damage history"] * length
+            wrong = np.maximum(wrong, np.where(faces.slip > 0, off, 0))
+        return wrong
+
+    def weight(self, faces):
+        """k, by which slip counts."""
+        kind = self.kinds["damage driver"]
+        if kind == "slip":
+            return np.ones(len(faces.normal))
+        size = np.maximum(-faces.normal, 0) if kind == "compression" else np.linalg.norm(faces.traction[:, 1:], axis=1)
+        return size / self.entry("reference stress", None)
+
+    def _mean_tangent(self, faces, before, rubbed):
+        """Of the mobilised dilation angle over the slip of the step, by Gauss' rule between the kinks of the table."""
+        roughness, strength = self.roughness
+        load = np.maximum(-faces.normal, 1e-6 * strength)
+        angle = np.radians(roughness * np.log10(np.maximum(strength / load, 1)) / self.entry("asperity damage coefficient", 2))
+        begin = before.told["accumulated slip"] / self.peak_slip
+        end = begin + np.maximum(rubbed, 1e-12 * self.peak_slip) / self.peak_slip
+        points, weights = np.polynomial.legendre.leggauss(12)
+        total = 0
+        for low, high in zip(np.r_[0, ROUGHNESS[0]], np.r_[ROUGHNESS[0], ENDLESS]):
+            a, b = np.clip(begin, low, high), np.clip(end, low, high)
+            for x, weight in zip(points, weights):
+                total = total + weight * (b - a) / 2 * np.tan(angle * np.interp((a + b) / 2 + x * (b - a) / 2, *ROUGHNESS))
+        return total / (end - begin)
+
+
+def history_of(path, faces):
+    """Lambda(m) = sum of k |<m.u> - <m.u_before>| over a path for the present directions m of the plastic jumps, and sum of
+    k |du|, [face]."""
+    m = faces.plastic[:, 1:] / np.where(faces.slip > 0, faces.slip, 1)[:, None]
+    total, length = 0, 0
+    for start, end, k in path:
+        along = [np.maximum((m * u).sum(axis=1), 0) for u in (start, end)]
+        total, length = total + k * np.abs(along[1] - along[0]), length + k * np.linalg.norm(end - start, axis=1)
+    return total, length

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Laws of joints on fracture networks: does Newton's method find each step with every law, does the state obey that law, and
+what does the law cost beside Coulomb's? For anisotropic damage also: does a step cost more after ten thousand?"""
+import importlib.util
+import shutil
+import sys
+import xml.etree.ElementTree as xml
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact", "perf/networks")]
+
+import numpy as np  # noqa: E402
+
+import contact  # noqa: E402
+import linear  # noqa: E402
+
+specification = importlib.util.spec_from_file_location("network_runs", ROOT / "perf/networks/networks.py")
+network_runs = importlib.util.module_from_spec(specification)  # perf/contact has another module networks
+specification.loader.exec_module(network_runs)
+
+BOUNDS = {"newton_median": 6, "newton_max": 15, "worst_violation": 1e-8}  # what --quick as a test demands
+ASKED = {**BOUNDS, "cost": 1.3, "growth": 0.02}
+KEPT = "elastic-plastic jump: kept by laws"
+COLUMNS = {"law, network": "s", "faces": "d", "steps": "d", "median": ".1f", "max": "d", "cuts": "d", "violation": ".0e", "cost": ".2f",
+           "bytes/face": "d", "history +-": ".1e"}
+PARTS = ("set-up", "assembly", "solve")  # of the time of a step
+TURNS = "contact/damage_turns_3d.xml"
+LATE, QUICK_LATE = 10_000, 300
+
+STIFF = {"tangential stiffness": "50 GPa/m"}
+CLOSES = {**STIFF, "maximum closure": "0.2 mm", "normal stiffness": "50 GPa/m"}
+COULOMB = {**CLOSES, "friction coefficient": 0.6, "dilation angle": 5}
+ROUGH = {"joint roughness coefficient": 8, "joint wall strength": "100 MPa", "joint length": 1}
+WEARS = {"residual part of friction": 0.8, "damage length of friction": "5 mm", "residual part of dilation": 0.3,
+         "damage length of dilation": "5 mm"}
+LAWS = {
+    "Coulomb": COULOMB,
+    "Coulomb with cohesion": {**COULOMB, "bond": "linear softening", "cohesion": "1 MPa", "shear fracture energy": 1000,
+                              "tensile strength": "0.5 MPa", "fracture energy": 100},
+    "mobilised Barton-Choubey": {**STIFF, **ROUGH, "friction": "mobilised Barton-Choubey", "residual friction angle": 28,
+                                 "dilation": "mobilised", "closure": "Bandis", "joint aperture": "0.2 mm"},
+    "composed": {**CLOSES, "friction": "composed", "basic friction coefficient": 0.5, "asperity angle": 6,
+                 "asperity friction coefficient": 0.2, "transition stress": "100 MPa", "dilation angle": 5},
+    "slip weakening": {**COULOMB, "friction": "slip weakening", "residual friction coefficient": 0.5, "weakening distance": "5 mm"},
+    "isotropic damage": {**COULOMB, **WEARS, "damage": "isotropic"},
+    "anisotropic damage": {**COULOMB, **WEARS, "damage": "anisotropic"},
+}
+
+
+@dataclass
+class Measured:
+    run: object
+    seconds: float = 0  # of the processor, of a step
+
+    @property
+    def history(self):
+        """(bytes per face, bound of the error of a history)"""
+        blocks, mesh = self.run.results.get("blocks", {}), self.run.results.get("mesh", {})
+        kept = sum(h["bytes"] for h in blocks.get("histories", []) if h["name"] == KEPT)
+        return kept // max(1, mesh.get("fracture_faces", 1)), max(self.run.results.get("error_bounds", {}).values(), default=None)
+
+
+def scene_with(network, law, directory):
+    """The scene of the network with the joint of this law."""
+    source = network_runs.scene_of(network)
+    tree = xml.parse(source)
+    joint = tree.getroot().find("./ParameterList[@name='Materials']/ParameterList[@name='joint']")
+    for entry in list(joint):
+        joint.remove(entry)
+    for name, value in {"type": "joint", **LAWS[law]}.items():
+        xml.SubElement(joint, "Parameter", name=name, type="string" if isinstance(value, str) else "double", value=str(value))
+    path = directory / f"{law.replace(' ', '_')}.xml"
+    tree.write(path)
+    for table in source.parent.glob("*.csv"):
+        shutil.copy(table, directory)
+    return path
+
+
+def measured(options, network, mesh, law):
+    """One law on one network."""
+    scene = scene_with(network, law, mesh.parent)
+    run = network_runs.start(options, replace(network, name=f"{law}, {network.name}", file=str(scene)), mesh, 1, directory=law.replace(" ", "_"))
+    timing, steps = run.results.get("timing", {}), max(1, len(run.steps))
+    names = [name for part in PARTS for name in linear.TIMERS[part]]
+    found = Measured(run, sum(timing[name]["cpu_seconds"] for name in names if name in timing) / steps)
+    if not run.failures:
+        *_, run.worst, _ = contact.violation.largest(run.directory, run.results, contact.violation.Input(run.directory / "effective_input.xml"))
+        if run.worst.max() > ASKED["worst_violation"]:
+            part = contact.violation.PARTS[int(run.worst.argmax())]
+            run.failures.append(f"the law is violated by {run.worst.max():.1e} ({part})")
+    return found
+
+
+def add_row(table, name, found, cost):
+    run = found.run
+    told, (size, bound) = linear.Run(run.results), found.history
+    table.add([name, run.results.get("mesh", {}).get("fracture_faces"), len(run.steps), float(np.median(run.newton)) if run.newton else None,
+               max(run.newton, default=None), told.cuts, None if run.worst is None else float(run.worst.max()), cost, size, bound], run.failures)
+
+
+def growth(options):
+    """By which part a step with anisotropic damage costs more late than early, per Newton iteration."""
+    steps = QUICK_LATE if options.quick else LATE
+    told = linear.measured(options, TURNS, (f"Time.end={steps}", f"Time.steps={steps}"), 1)
+    early, late = ({**told[when], "each": told[when]["seconds"] / told[when]["newton_iterations"]} for when in ("early", "late"))
+    print(f"\nanisotropic damage, a path that turns: {1e3 * early['seconds']:.3f} ms of the processor for a step near step 10, "
+          f"{1e3 * late['seconds']:.3f} ms near step {steps}; {early['newton_iterations']:.2f} and {late['newton_iterations']:.2f} Newton iterations")
+    return late["each"] / early["each"] - 1
+
+
+def main(arguments):
+    parser = linear.parser("laws", __doc__)
+    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/laws/laws", help="what laws.cpp became")
+    options = parser.parse_args(arguments)
+    options.output = options.output.resolve()
+    chosen = linear.matching(options, list(LAWS))
+    options.output.mkdir(parents=True, exist_ok=True)
+    table, found = linear.Table(COLUMNS, width=46), {}
+    for network in network_runs.networks():
+        if options.quick and not network.quick:
+            continue
+        mesh, _ = network_runs.made(options, network)
+        for law in dict.fromkeys(["Coulomb", *chosen]):
+            one = found.setdefault(law, {})[network.name] = measured(options, network, mesh, law)
+            add_row(table, f"{law}, {network.name}", one, one.seconds / found["Coulomb"][network.name].seconds)
+    table.write(options.output / "laws.csv")
+    costs = {law: float(np.median([one.seconds / found["Coulomb"][name].seconds for name, one in runs.items()])) for law, runs in found.items()}
+    runs = [one.run for each in found.values() for one in each.values()]
+    failed = [f"{run.scene.name}: {what}" for run in runs for what in run.failures]
+    newton = [count for run in runs for count in run.newton]
+    print("\nmedian over the networks of the seconds of a step, of Coulomb's:\n" +
+          "\n".join(f"  {law:<28}{cost:6.2f}  newton_median={np.median([n for one in found[law].values() for n in one.run.newton]):g}"
+                    for law, cost in costs.items()))
+    values = {"newton_median": float(np.median(newton)), "newton_max": max(newton, default=0), "cost": max(costs.values()),
+              "worst_violation": max((float(run.worst.max()) for run in runs if run.worst is not None), default=np.inf), "growth": growth(options)}
+    missed = linear.missed(values, ASKED)
+    print("\n".join(["", *(f"failed: {what}" for what in failed), *missed]))
+    print(f"failures={len(failed)} newton_median={values['newton_median']:g} newton_max={values['newton_max']} "
+          f"worst_violation={values['worst_violation']:.1e} cost={values['cost']:.2f} growth={values['growth']:.3f}")
+    return 1 if failed or (options.quick and linear.missed({name: values[name] for name in BOUNDS}, BOUNDS)) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
