@@ -6,6 +6,7 @@
 
 #include <hdf5_hl.h>
 
+#include <algorithm>
 #include <fstream>
 #include <optional>
 
@@ -42,7 +43,8 @@ class Variable {
   }
 
  private:
-  hid_t create(hid_t group, const std::string& name) const {
+  hid_t create(hid_t group, std::string name) const {
+    std::replace(name.begin(), name.end(), '/', ' ');                 // which is a group's
     check(H5Pset_obj_track_times(properties_, false), "properties");  // the same values make the same file
     return H5Dcreate2(group, name.c_str(), H5T_NATIVE_DOUBLE, space_, H5P_DEFAULT, properties_, H5P_DEFAULT);
   }

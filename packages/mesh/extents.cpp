@@ -56,12 +56,25 @@ Real typical_face_area(const Mesh& mesh) {
   return std::pow(volume / static_cast<Real>(mesh.n_global_cells), (dim - 1.0) / dim);
 }
 
-std::vector<Vector> fracture_extents(const Mesh& mesh) {
-  Boxes boxes(mesh.fracture_names.size());
+namespace {
+
+template <class Box>
+std::vector<Vector> extents_of_faces(const Mesh& mesh, std::size_t n, const Box& box) {
+  Boxes boxes(n);
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
     for (int k = 0; k < n_face_nodes(mesh.shape); ++k)
-      boxes.add(mesh, mesh.fracture_faces[f].nodes[minus][k], mesh.fracture_faces[f].fracture);
+      boxes.add(mesh, mesh.fracture_faces[f].nodes[minus][k], box(mesh.fracture_faces[f]));
   return boxes.extents(mesh);
+}
+
+}  // namespace
+
+std::vector<Vector> fracture_extents(const Mesh& mesh) {
+  return extents_of_faces(mesh, mesh.fracture_names.size(), [](const auto& face) { return face.fracture; });
+}
+
+std::vector<Vector> single_fracture_extents(const Mesh& mesh) {
+  return extents_of_faces(mesh, mesh.single_fractures.size(), [](const auto& face) { return face.single; });
 }
 
 }  // namespace sprekk::mesh

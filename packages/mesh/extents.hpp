@@ -19,5 +19,7 @@ Real typical_face_area(const Mesh& mesh);
 
 /// The domain_extents() of each fracture. Collective.
 std::vector<Vector> fracture_extents(const Mesh& mesh);
+/// The same of each single fracture.
+std::vector<Vector> single_fracture_extents(const Mesh& mesh);
 
 }  // namespace sprekk::mesh

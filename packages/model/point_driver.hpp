@@ -44,14 +44,16 @@ class PointDriver {
       const Memory begin = memory();
       const auto next = step(t);
       const Memory end = memory();
-      const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t) : Jump{};
-      if (!(jump.size > least_jump * distance(begin.plastic, end.plastic))) {
+      const Real least = least_jump * distance(begin.plastic, end.plastic);
+      const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t, least) : Jump{};
+      if (!(jump.size > least)) {
         remember(end);
         states.push_back(next);
         return states;
       }
       if (jump.from > from) states.push_back(jump.before);
       states.push_back(jump.after);
+      if (jump.to == t) return states;
       from = jump.to;
     }
     states.push_back(step(t));
@@ -88,9 +90,9 @@ class PointDriver {
     PointState before = {}, after = {};
   };
 
-  /// The first jump on the way from the state `begin`, at the time `from`, to t; leaves the driver behind it. The time
-  /// is found by bisection, up to it slip does not jump.
-  Jump jump_of_slip(const Memory& begin, Real from, Real t) {
+  /// The first jump by more than `least` on the way from the state `begin`, at the time `from`, to t; leaves the driver
+  /// behind it. The time is found by bisection, up to it slip does not jump.
+  Jump jump_of_slip(const Memory& begin, Real from, Real t, Real least) {
     Jump jump{from, t};
     while (jump.to - jump.from > resolution * (t - from)) {
       const Real middle = jump.from + (jump.to - jump.from) / 2;
@@ -104,7 +106,7 @@ class PointDriver {
       std::copy_n(p_old_, dim - 1, old);
       jump.after = step(jump.to);
       jump.size = distance(old, p_old_);
-      if (jump.after.slip_jumps || jump.to == t) break;
+      if ((jump.after.slip_jumps && jump.size > least) || jump.to == t) break;
       jump.before = jump.after;
       jump.from = jump.to;
       jump.to = std::min(t, jump.to + gap);

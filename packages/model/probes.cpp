@@ -142,6 +142,9 @@ void Probes::add(const std::string& name, const Probe& probe, const Known& known
     SPREKK_CHECK(fracture >= 0, "\"fracture\": is \"{}\", must be one of {}, or one of their fractures",
                  *probe.fracture, base::quoted_list(mesh.fracture_names));
   }
+  for (auto wanted = probe.outputs.begin(); wanted != probe.outputs.end(); ++wanted)
+    SPREKK_CHECK(std::find(probe.outputs.begin(), wanted, *wanted) == wanted, "\"outputs\": \"{}\" is there twice",
+                 *wanted);
   for (const auto& wanted : probe.outputs) {
     if (const auto output = known.named(known.outputs, wanted); output != known.outputs.end()) {
       add_output(probe, *output);
@@ -247,6 +250,7 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
   Real whole = 0;
   for (const auto& share : places[0]) whole += share.weight;
   whole = base::sum_over_ranks(*mesh.comm, whole);
+  const bool is_empty = probe.is_extended() && !(whole > 0);
   const Real divisor = probe.is_extended() && probe.value == "mean" ? whole : 1;
   const Real sign = probe.value == "minimum" ? -1 : 1;
   const bool is_sum = !probe.is_extended() || probe.value == "mean" || probe.value == "integral";
@@ -263,7 +267,7 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
           at = is_sum ? at + weight * value : std::max(at, sign * value);
         }
     values = is_sum ? base::sum_over_ranks(*mesh.comm, values) : base::max_over_ranks(*mesh.comm, values);
-    for (auto& value : values) value = is_sum ? value / divisor : sign * value;
+    for (auto& value : values) value = is_empty ? none : is_sum ? value / divisor : sign * value;
     return values;
   };
 }

@@ -34,8 +34,11 @@ void remove_unsettled(const std::string& directory) {
 /// Removes what an earlier run left of tables; silent. Not collective.
 void remove_tables(const std::string& directory) {
   std::error_code ignored;
-  for (const char* name : {"/fractures.csv", "/probes.h5", "/probes"})
-    std::filesystem::remove_all(directory + name, ignored);
+  for (const char* name : {"/fractures.csv", "/probes.h5"}) std::filesystem::remove(directory + name, ignored);
+  const std::filesystem::path probes = directory + "/probes";
+  for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
+    if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
+  std::filesystem::remove(probes, ignored);  // if nothing else is in it
 }
 
 std::string with_underscores(std::string name) {
@@ -196,6 +199,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
   if (!mesh.fracture_names.empty()) json_["single_fractures"] = described_singles(mesh);
+  for (const auto& own : model.scene().own_joints) json_["single_fractures"][own.first]["own_joint"] = true;
   const auto& unit = model_.scene().output.time_unit;
   json_["time_unit"] = {{"name", unit}, {"seconds", base::value_in("s", {1, unit})}};
   json_["steps"] = json::array();
@@ -394,9 +398,9 @@ void Results::write_json() {
         {"seconds", phase.seconds}, {"cpu_seconds", phase.cpu_seconds}, {"count", phase.count}};
   io::write_json(comm, directory_ + "/results.json", json_);
   if (series_) series_->write_all();
-  if (singles_.empty()) return;
   base::collectively(comm, [&] {
-    if (comm.getRank() == 0) io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
+    if (comm.getRank() == 0 && !singles_.empty())
+      io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
   });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();

@@ -113,7 +113,9 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // where x is
       if (const auto where = problem_.globalisation().where(report.unsettled); !where.empty())
         report.reason += "; faces that keep changing between open, stick and slip: " + where;
-      if (!loose.empty()) report.reason = "no equilibrium found: in the last iterates " + loose + ", and nothing holds it; " + report.reason;
+      if (!loose.empty())
+        report.reason =
+            "no equilibrium found: in the last iterates " + loose + ", and nothing holds it; " + report.reason;
       return report;
     }
     size /= 2;

@@ -220,6 +220,8 @@ def _wrong_increment(step, before, shear, scales):
 
 def largest(directory, results, input_):
     """The faces of each step, the violation of the run by parts, and how many steps were not judged by direction."""
+    if any(fracture.get("own_joint") for fracture in results.get("single_fractures", [])):
+        raise ValueError("single fractures have joints of their own, which effective_input.xml does not tell")
     steps, scales = history(directory, input_)
     numbered = list(enumerate(results["steps"]))
     at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before

@@ -15,11 +15,12 @@ USES = {
     "laws": "base",
     "mesh": "base",
     "fields": "base mesh",
-    "assembly": "base mesh fields",
-    "physics": "base laws mesh fields assembly",
+    "contact": "base mesh fields",
+    "assembly": "base mesh fields contact",
+    "physics": "base laws mesh fields contact assembly",
     "solve": "base fields",
     "io": "base mesh fields",
-    "model": "base laws mesh fields assembly physics solve io",
+    "model": "base laws mesh fields contact assembly physics solve io",
 }
 FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files beside them
 SOURCES = {".hpp", ".cpp", ".h"}
@@ -27,8 +28,8 @@ SOURCES = {".hpp", ".cpp", ".h"}
 SOLVER_HEADER = re.compile(r'\s*#\s*include\s*[<"]((?:NOX|Stratimikos|Belos|Teko|MueLu|Amesos2)[^>"]*)')
 HOST_ONLY = re.compile(
     r"\bMPI_COMM_WORLD\b|\bgetDefaultComm\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
-# Rooms that know no physics, by the words of those there are; the law of a room may be broken in these files: contact's
-# part in assembly, the point driver and the error estimate, which wait for rooms of their own.
+# Rooms that know no physics, by the words of those there are; the law of a room may be broken in these files: where
+# assembly meets contact, the point driver and the error estimate, which wait for rooms of their own.
 GENERIC = {"base", "mesh", "fields", "assembly", "solve", "io", "model"}
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"

@@ -164,7 +164,7 @@ class ElasticPlasticJump final : public assembly::Module {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for (const LocalIndex cell : mesh_->fracture_faces[f].cell) {
         const Real G = parameters_.elasticity[elasticity_of(cell)].G;
-        host(f) = std::max(host(f), size_[mesh_->fracture_faces[f].fracture] / G);
+        host(f) = std::max(host(f), single_size_[mesh_->fracture_faces[f].single] / G);
       }
     Kokkos::deep_copy(all, host);
     return all;
@@ -189,11 +189,12 @@ class ElasticPlasticJump final : public assembly::Module {
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
-  View<Real*> softness_;       // [owned face], where laws keep numbers
-  View<Real*> merit_weight_;   // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
-  std::vector<Real> modulus_;  // [owned face] Young's, of the softer side, Pa
-  std::vector<Real> size_;     // [fracture] m
-  int pressure_ = -1;          // the block of face pressures, if it holds fluid
+  View<Real*> softness_;           // [owned face], where laws keep numbers
+  View<Real*> merit_weight_;       // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
+  std::vector<Real> modulus_;      // [owned face] Young's, of the softer side, Pa
+  std::vector<Real> size_;         // [fracture] m
+  std::vector<Real> single_size_;  // [single fracture] m, where slip may run away
+  int pressure_ = -1;              // the block of face pressures, if it holds fluid
 };
 
 template <Shape shape, bool tips>
@@ -252,6 +253,7 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
   const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
   for (const auto& extents : mesh::fracture_extents(*mesh_)) size_.push_back(mesh::norm(extents));
+  for (const auto& extents : mesh::single_fracture_extents(*mesh_)) single_size_.push_back(mesh::norm(extents));
   for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
   for (LocalIndex f = 0; f < n_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];

@@ -47,6 +47,27 @@ TEST(SlipWeakening, JumpsWhereTheColumnIsTooSoft) {
   for (const auto& s : drive("slip_weakening.xml")) EXPECT_EQ(s.remark, "");
 }
 
+/// In SI units: peak 0.6 MPa, residual 0.1 MPa, joint and column in series.
+TEST(SlipWeakening, JumpsWithAnyNumberOfSteps) {
+  const Real K = 1 / (1 / 10e9 + 1 / 1e8);
+  for (const int steps : {7, 10, 20, 33, 40, 41, 64, 97, 160}) {
+    SCOPED_TRACE(steps);
+    int jumps = 0;
+    for (const auto& s : drive("slip_weakening.xml",
+                               {"Materials.joint.tangential stiffness=10e9", "Materials.joint.friction coefficient=0.6",
+                                "Materials.joint.residual friction coefficient=0.1",
+                                "Materials.joint.weakening distance=1e-3", "Point.path={-1e6, 1e-3*t}",
+                                "Point.column tangential stiffness=1e8", "Time.end=20",
+                                fmt::format("Time.steps={}", steps)})) {
+      if (s.remark.empty()) continue;
+      ++jumps;
+      EXPECT_NEAR(1e-3 * s.t, 0.6e6 / K, 1e-8);
+      EXPECT_NEAR(s.plastic[1], 0.5e6 / K, 1e-8);
+    }
+    EXPECT_EQ(jumps, 1);
+  }
+}
+
 /// Damage over 0.01 m takes 6 Pa/m at first, more than the column unloads: slip jumps at the intact bound to where the
 /// line of the column meets the worn one.
 TEST(Damage, JumpsWhereItIsFast) {
