@@ -47,9 +47,15 @@ template <Shape shape>
 std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Vector& x) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   constexpr bool simplex = mesh::is_simplex(shape);
-  constexpr Real tolerance = 1e-9;
-  Real X[n][dim], N[n], dN[n][dim], xi[dim], d[dim];
+  Real X[n][dim], N[n], dN[n][dim], xi[dim], d[dim], origin[dim];
   assembly::gather_host<shape>(mesh, cell, X);
+  Real farthest = 0, size = 0;  // coordinates may be large next to the cell
+  for (int i = 0; i < dim; ++i) {
+    origin[i] = X[0][i];
+    farthest = std::max(farthest, std::abs(origin[i]));
+    for (int a = 0; a < n; ++a) size = std::max(size, std::abs(X[a][i] -= origin[i]));
+  }
+  const Real tolerance = std::max(Real(1e-9), 16 * std::numeric_limits<Real>::epsilon() * farthest / size);
   for (Real& one : xi) one = simplex ? Real(1) / (dim + 1) : 0;
   Real change = 1;
   for (int iterate = 0; iterate < 30 && change > 1e-14 && change < 1e3; ++iterate) {
@@ -57,7 +63,7 @@ std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Ve
     assembly::ReferenceCell<shape>::gradients(xi, dN);
     Real J[dim][dim] = {}, r[dim];
     for (int i = 0; i < dim; ++i) {
-      r[i] = x[i];
+      r[i] = x[i] - origin[i];
       for (int a = 0; a < n; ++a) {
         r[i] -= N[a] * X[a][i];
         for (int j = 0; j < dim; ++j) J[i][j] += X[a][i] * dN[a][j];

@@ -69,7 +69,8 @@ class Plausibility(ProgramTest):
         """The bounds themselves are no cause for a warning."""
         for sets in (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],
                      ["Time.schedule={1, 2}"], [*STRESS, "Bulk.initial stress={0, -5e6, 0, 3.5e6}"],
-                     ["Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.1"]):
+                     ["Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.1",
+                      "Materials.rough joint.residual part of friction=0.5"]):
             err = self.warnings(SHEAR, *sets)
             for text in ("differ by", "dilation angle\": is", "over knots", "beyond the strength", "damages nothing"):
                 self.assertNotIn(text, err)

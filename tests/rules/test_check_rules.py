@@ -48,7 +48,7 @@ BAD = [  # file, text, rule
 
 GOOD = {
     "packages/physics/heat/a.cpp": "int f(Real temperature);\n",
-    "packages/assembly/loose_pieces.hpp": "// friction\n",
+    "packages/assembly/system.hpp": "// friction\n",
     "packages/physics/a.cpp": '#include "physics/a.hpp"\n#include "laws/joint.hpp"\n#include <vector>\n',
     "packages/solve/a.cpp": "#include <NOX_Solver_Generic.H>\n#include <MueLu.hpp>\n",
     "packages/assembly/a.hpp": """

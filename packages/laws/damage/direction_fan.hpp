@@ -8,8 +8,8 @@
 
 namespace sprekk::laws {
 
-/// Lambda(m) = sum of k |<m.b> - <m.a>| over the segments a -> b of a path in the plane, as a function of the unit
-/// vector m = (cos t, sin t); <x> = max(x, 0). A segment's term is m.V with one V between each two of the directions
+/// Lambda(m) = sum of k `|<m.b> - <m.a>|` over the segments a -> b of a path in the plane, as a function of the unit
+/// vector m = (cos t, sin t); `<x>` = max(x, 0). A segment's term is m.V with one V between each two of the directions
 /// across a, across b, and the one across b - a where m.a = m.b > 0. So the sum is piecewise m.V on a fan of angles,
 /// and exact as long as the path has few directions, however often it goes there. Of more than `capacity` angles those
 /// are given up that cost least. Between two angles t_0 and t_1, w = t_1 - t_0 <= pi/2, c in the middle:
