@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace sprekk::model {
@@ -207,10 +208,10 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
   for (std::size_t k = 0; k < described.size(); ++k) {
     text += quoted(described[k]["name"]) + ',' + quoted(described[k]["set"]);
     for (const auto& [entry, unit] : known)
-      if (is_told(entry)) text += fmt::format(",{}", described[k][entry].get<Real>());
+      if (is_told(entry)) fmt::format_to(std::back_inserter(text), ",{}", described[k][entry].get<Real>());
     for (const auto& column : columns)
       for (int c = 0; c < column.n_components && column.frame != "global"; ++c)
-        text += fmt::format(",{}", column.values[k * column.n_components + c]);
+        fmt::format_to(std::back_inserter(text), ",{}", column.values[k * column.n_components + c]);
     text += '\n';
   }
   return text;
