@@ -55,6 +55,27 @@ Values last_checkpoint(const std::string& output, int ranks) {
   return values;
 }
 
+using Checkpoint = decltype(last_checkpoint("", 1));
+
+/// On one rank.
+void expect_values_to_agree(const Checkpoint& whole, const Checkpoint& parts, std::size_t n_vectors) {
+  ASSERT_EQ(whole.size(), n_vectors);
+  ASSERT_EQ(parts.size(), whole.size());
+  for (const auto& [name, values] : whole) {
+    SCOPED_TRACE(name);
+    const auto& others = parts.at(name);
+    ASSERT_EQ(others.size(), values.size());
+    Real largest = 0, difference = 0;
+    for (const auto& [number, value] : values) {
+      ASSERT_TRUE(others.count(number)) << number;
+      largest = std::max(largest, std::abs(value));
+      difference = std::max(difference, std::abs(value - others.at(number)));
+    }
+    if (name.find("runaway slip") == name.npos) EXPECT_GT(largest, 0);  // it does not run away here
+    EXPECT_LE(difference, 1e-10 * largest) << "largest " << largest;
+  }
+}
+
 /// From some ranks to others; of what joints have kept, too, where they have laws with a history.
 void expect_values_to_agree(const std::vector<std::string>& laws, std::size_t n_vectors) {
   const auto world = Tpetra::getDefaultComm();
@@ -72,23 +93,9 @@ void expect_values_to_agree(const std::vector<std::string>& laws, std::size_t n_
     SCOPED_TRACE(fmt::format("from {} ranks to {}", before, after));
     run(before, output(before, after), with({"Time.end=2", "Time.steps=2"}), false);
     run(after, output(before, after), laws, true);
-    if (world->getRank() != 0) continue;
-    const auto whole = last_checkpoint(output(1, 1), 1), parts = last_checkpoint(output(before, after), after);
-    ASSERT_EQ(whole.size(), n_vectors);
-    ASSERT_EQ(parts.size(), whole.size());
-    for (const auto& [name, values] : whole) {
-      SCOPED_TRACE(name);
-      const auto& others = parts.at(name);
-      ASSERT_EQ(others.size(), values.size());
-      Real largest = 0, difference = 0;
-      for (const auto& [number, value] : values) {
-        ASSERT_TRUE(others.count(number)) << number;
-        largest = std::max(largest, std::abs(value));
-        difference = std::max(difference, std::abs(value - others.at(number)));
-      }
-      EXPECT_GT(largest, 0);
-      EXPECT_LE(difference, 1e-10 * largest) << "largest " << largest;
-    }
+    if (world->getRank() == 0)
+      expect_values_to_agree(last_checkpoint(output(1, 1), 1), last_checkpoint(output(before, after), after),
+                             n_vectors);
   }
   world->barrier();
   if (world->getRank() == 0) std::filesystem::remove_all(folder);
@@ -96,11 +103,11 @@ void expect_values_to_agree(const std::vector<std::string>& laws, std::size_t n_
 
 TEST(Restart, OnOtherNumbersOfRanksEveryValueAgrees) {
   expect_values_to_agree({}, 6);
-  expect_values_to_agree({"Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",
-                          "Materials.joint.residual part of friction=0.5",
-                          "Materials.joint.closure=Barton-Bandis with memory",
-                          "Materials.joint.irrecoverable part of closure=0.3"},
-                         7);
+  expect_values_to_agree(
+      {"Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",
+       "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
+       "Materials.joint.irrecoverable part of closure=0.3"},
+      8);
 }
 
 }  // namespace
