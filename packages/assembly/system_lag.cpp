@@ -8,8 +8,8 @@
 
 namespace sprekk::assembly {
 
-/// In logarithms, for coefficients go over many orders of magnitude. Where conductances follow a cubic law, the slope of
-/// the iteration is -3 if pressures decide on the aperture, 0 if volumes do.
+/// In logarithms, for coefficients go over many orders of magnitude. Where conductances follow a cubic law, the slope
+/// of the iteration is -3 if pressures decide on the aperture, 0 if volumes do.
 Real System::lag(Lag how, const fields::BlockVector& x) {
   constexpr Real least = 1e-12;
   if (how == Lag::none) {

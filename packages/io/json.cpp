@@ -16,7 +16,7 @@ void write_json(const Comm& comm, const std::string& path, const nlohmann::json&
 
 bool overwrite_json(const Comm& comm, const std::string& path, const nlohmann::json& json) {
   const int done = comm.getRank() == 0 &&
-             overwrite(path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+                   overwrite(path, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
   return base::of_rank(comm, 0, done) != 0;
 }
 

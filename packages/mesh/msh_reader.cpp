@@ -53,16 +53,16 @@ class Builder {
   const std::string& file_;
   const MshOptions& options_;
   GlobalMesh mesh_;
-  Real size_ = 0;                                     ///< diagonal of the box around the mesh
-  std::vector<const Element*> cell_;                  ///< [cell]
-  std::vector<GlobalIndex> node_of_point_;            ///< [point of the file], -1 if dropped
-  std::vector<GlobalIndex> neighbour_;                ///< see face_neighbours()
-  std::vector<MarkedFace> marked_;                    ///< of the fractures
-  std::unordered_map<GlobalIndex, int> fracture_at_;  ///< [cell face]
+  Real size_ = 0;                                        ///< diagonal of the box around the mesh
+  std::vector<const Element*> cell_;                     ///< [cell]
+  std::vector<GlobalIndex> node_of_point_;               ///< [point of the file], -1 if dropped
+  std::vector<GlobalIndex> neighbour_;                   ///< see face_neighbours()
+  std::vector<MarkedFace> marked_;                       ///< of the fractures
+  std::unordered_map<GlobalIndex, int> fracture_at_;     ///< [cell face]
   std::map<std::pair<int, int>, int> single_of_entity_;  ///< by group and entity; index into single_fractures
-  std::vector<int> whole_;  ///< [fracture] the single fracture that is all of it; -1: it has several
-  std::vector<std::string> inside_;                   ///< groups with faces inside of the mesh that are no fractures
-  std::string first_inside_;                          ///< an element of the first of them
+  std::vector<int> whole_;           ///< [fracture] the single fracture that is all of it; -1: it has several
+  std::vector<std::string> inside_;  ///< groups with faces inside of the mesh that are no fractures
+  std::string first_inside_;         ///< an element of the first of them
 
   template <class... Arguments>
   [[noreturn]] void fail(fmt::format_string<Arguments...> message, Arguments&&... arguments) const {

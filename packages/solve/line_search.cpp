@@ -34,8 +34,8 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
   const auto dx = direction.clone();
   auto blocks = blocks_of(*dx);
   bool solved = model_.linear_history().back().converged;
-  report_.damped = picard_.lags() || damping_ > 0 ||
-                   std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
+  report_.damped =
+      picard_.lags() || damping_ > 0 || std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });
   const auto unresisted = solved ? globalisation_.balance(solution_of(from), blocks) : "";
   if (const auto loose = globalisation_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {

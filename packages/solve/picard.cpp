@@ -7,8 +7,8 @@ namespace {
 
 using Lag = BlockProblem::Lag;
 
-constexpr Real far = 1;        // |ln| of the ratio of coefficients
-constexpr Real closer = 0.3;   // where Newton's method failed, it is tried next at this part of the distance
+constexpr Real far = 1;       // |ln| of the ratio of coefficients
+constexpr Real closer = 0.3;  // where Newton's method failed, it is tried next at this part of the distance
 constexpr Real least_step = 0.25, most_growth = 1e3;
 
 }  // namespace

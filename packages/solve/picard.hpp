@@ -14,8 +14,8 @@ using fields::BlockVector;
 /// takes coefficients as given, see BlockProblem::lag(), and one full Newton step is made for each new set of them. If
 /// the first step goes far, it is taken back, and coefficients start from the largest: where they are convex, iterates
 /// that come from above do not pass over the solution. Once they agree, Newton's method takes over; a step of it that
-/// comes no nearer is taken back, and the fixed-point iteration goes on, to three tenths of the distance. All members are
-/// collective but for those that return what is stored.
+/// comes no nearer is taken back, and the fixed-point iteration goes on, to three tenths of the distance. All members
+/// are collective but for those that return what is stored.
 class Picard {
  public:
   /// Refers to the problem, whose f lags from now on, at x, if it has such coefficients, until the end of its life.

@@ -38,8 +38,8 @@ std::vector<GlobalField> gathered(model::Model& model) {
 }
 
 /// Lengths to 1e-10 of the prescribed displacement u, stresses to 1e-10 of the stress E u/L that it makes in a body of
-/// size L, contact states exactly, moments to 1e-10 of the largest. (The slip tendency follows from the traction, which it
-/// divides by a bound that may be small.)
+/// size L, contact states exactly, moments to 1e-10 of the largest. (The slip tendency follows from the traction, which
+/// it divides by a bound that may be small.)
 void expect_same(const assembly::Scales& scales, const std::vector<GlobalField>& a, const std::vector<GlobalField>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {

@@ -125,8 +125,7 @@ void compare_rock(Comparison& c, const Material& rock) {
       c.fail(where, error.what());
     }
   };
-  if (rock.porosity.is_constant())
-    try_to("Materials > " + name, [&] { rock.capacity(flow.compressibility, {}); });
+  if (rock.porosity.is_constant()) try_to("Materials > " + name, [&] { rock.capacity(flow.compressibility, {}); });
   if (rock.permeability.empty() && c.is_sound("Materials > " + name))
     c.fail(place, "missing; it is required with \"Flow\"");
   if (rock.permeability.empty() || !c.names().dim) return;

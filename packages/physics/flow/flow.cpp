@@ -180,9 +180,8 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
         scene, mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
         [&](const Material& rock, const auto& x) { return rock.capacity(fluid.compressibility, x); });
   });
-  const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(), [&](const auto& of) {
-    return of.growth > 0 || of.room * fluid.compressibility > 0;
-  });
+  const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
+                                  [&](const auto& of) { return of.growth > 0 || of.room * fluid.compressibility > 0; });
   if (base::on_any_rank(*mesh.comm, stores))  // values are those of this rank's cells
     modules.push_back(make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;

@@ -49,13 +49,12 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// mean(sigma_0 n) + p n, of both sides in the mean, p the fluid's pressure at the start, so that the initial state is
 /// one of rest where sigma_0 is in equilibrium; zero without initial stress. History: the plastic tangential jump p_old
 /// [face, dim - 1]; committed to w_t where the face is open, kept where it sticks, w_t - lambda_t/K_t where it slips;
-/// "kept by laws" [face, n_kept], if there are any, which the laws themselves commit, and then "runaway slip" [face, 1]:
-/// the largest slip so far that ran away in a step, see runaway.hpp.
-/// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
-/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b. Of fractures, from their mean traction,
-/// the slip tendency |lambda_t|/-lambda_n; the moment M0 = integral of G |p - p_0|, N m (2D: per depth, N), G the mean
-/// of both sides; in 3D the moment magnitude 2/3 (log10(M0/(N m)) - 9.1). The quantities that laws tell, 0 where the
-/// joint has none of these laws.
+/// "kept by laws" [face, n_kept], if there are any, which the laws themselves commit, and then "runaway slip" [face,
+/// 1]: the largest slip so far that ran away in a step, see runaway.hpp. Outputs on fracture faces, local and global:
+/// total, elastic and plastic jump, traction; opening, slip, aperture (15), contact state (0 open, 1 stick, 2 slip),
+/// slip tendency |lambda_t|/b. Of fractures, from their mean traction, the slip tendency |lambda_t|/-lambda_n; the
+/// moment M0 = integral of G |p - p_0|, N m (2D: per depth, N), G the mean of both sides; in 3D the moment magnitude
+/// 2/3 (log10(M0/(N m)) - 9.1). The quantities that laws tell, 0 where the joint has none of these laws.
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
                                                             ElasticPlasticJumpParameters parameters);
 

@@ -154,7 +154,8 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   }
   if (weakest.empty()) return "";
   return fmt::format(
-      "the bound of \"{}\" falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as the "
+      "the bound of \"{}\" falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as "
+      "the "
       "domain, {:.4g} m, unloads; there slip may run away, in short steps as well",
       weakest, lowest / 1e6, size);
 }
@@ -172,9 +173,8 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     apart.separation = little;
     const Real softens[] = {(law.cohesion(whole).strength - law.cohesion(apart).strength) / little,
                             physics::weakening(law, whole)};
-    const Real unloads[] = {
-        1 / (size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance()),
-        1 / (size / rock->G + law.elastic.initial_compliance())};
+    const Real unloads[] = {1 / (size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance()),
+                            1 / (size / rock->G + law.elastic.initial_compliance())};
     for (int k = 0; k < 2; ++k)
       if (softens[k] > unloads[k])
         return fmt::format(

@@ -16,8 +16,8 @@ std::string friction_doubt(const Scene& scene);
 /// faster than a block of the domain's extent L unloads, -db/ds > 1/(L/G + 1/K_t): there slip runs away. Bonds are left
 /// out. Empty without such a joint, if that takes more than G/100, or if properties depend on the place. Collective.
 std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh);
-/// The same of bonds, which soften faster than the rock unloads, by opening, T/o_f > (lambda + 2 G)/L without closure, or
-/// by slip, c/s_f > G/L without tangential stiffness: in words, or "".
+/// The same of bonds, which soften faster than the rock unloads, by opening, T/o_f > (lambda + 2 G)/L without closure,
+/// or by slip, c/s_f > G/L without tangential stiffness: in words, or "".
 std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Names a joint on reversal of whose slip the solution may not be unique, and its largest dilation angle; empty

@@ -264,7 +264,8 @@ TEST(FracturedRock, IsTheSameForEveryPartition) {
           EXPECT_LE(test::largest(shared.block(b, c) - whole.block(b, c)), 1e-11) << cell << " " << b << c;
         }
       }
-      EXPECT_EQ(shared.system->globalisation().state_hash(shared.system->globalisation().states(x)), whole.system->globalisation().state_hash(whole.system->globalisation().states(y)));
+      EXPECT_EQ(shared.system->globalisation().state_hash(shared.system->globalisation().states(x)),
+                whole.system->globalisation().state_hash(whole.system->globalisation().states(y)));
       EXPECT_EQ(shared.system->symmetric(), whole.system->symmetric());
       const Real merit = whole.system->merit(y, q);
       EXPECT_NEAR(shared.system->merit(x, r), merit, 1e-12 * merit);

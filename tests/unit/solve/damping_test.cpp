@@ -163,8 +163,9 @@ TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
   Real t = 0;
   const auto step = stepper.advance(x, t, 1);
   EXPECT_FALSE(step.converged);
-  EXPECT_THAT(step.reason, testing::StartsWith("no equilibrium found: in the last iterates a stone can move along (1, 0), "
-                                               "and nothing holds it; t = "));
+  EXPECT_THAT(step.reason,
+              testing::StartsWith("no equilibrium found: in the last iterates a stone can move along (1, 0), "
+                                  "and nothing holds it; t = "));
 }
 
 /// A body that is free but in equilibrium is named, and is no failure.

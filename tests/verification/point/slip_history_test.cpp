@@ -53,12 +53,12 @@ TEST(SlipWeakening, JumpsWithAnyNumberOfSteps) {
   for (const int steps : {7, 10, 20, 33, 40, 41, 64, 97, 160}) {
     SCOPED_TRACE(steps);
     int jumps = 0;
-    for (const auto& s : drive("slip_weakening.xml",
-                               {"Materials.joint.tangential stiffness=10e9", "Materials.joint.friction coefficient=0.6",
-                                "Materials.joint.residual friction coefficient=0.1",
-                                "Materials.joint.weakening distance=1e-3", "Point.path={-1e6, 1e-3*t}",
-                                "Point.column tangential stiffness=1e8", "Time.end=20",
-                                fmt::format("Time.steps={}", steps)})) {
+    for (const auto& s :
+         drive("slip_weakening.xml",
+               {"Materials.joint.tangential stiffness=10e9", "Materials.joint.friction coefficient=0.6",
+                "Materials.joint.residual friction coefficient=0.1", "Materials.joint.weakening distance=1e-3",
+                "Point.path={-1e6, 1e-3*t}", "Point.column tangential stiffness=1e8", "Time.end=20",
+                fmt::format("Time.steps={}", steps)})) {
       if (s.remark.empty()) continue;
       ++jumps;
       EXPECT_NEAR(1e-3 * s.t, 0.6e6 / K, 1e-8);
