@@ -456,22 +456,25 @@ laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& se
   return with;
 }
 
-/// Slip goes on in its direction; where it has none, along the first tangent.
+/// Slip goes on in its direction; where it has none, along the plastic jump, or else along the first tangent.
 void along_slip(laws::Contact<Fad1>& at) {
+  const Real jumps[2] = {at.plastic_jump[0].val(), at.plastic_jump[1].val()}, size = laws::norm(jumps);
   Real direction[2] = {at.slip_direction[0].val(), at.slip_direction[1].val()};
-  if (direction[0] == 0 && direction[1] == 0) direction[0] = 1;
-  Real along = 0, size = 0;
+  if (direction[0] == 0 && direction[1] == 0) {
+    direction[0] = size > 0 ? jumps[0] / size : 1;
+    direction[1] = size > 0 ? jumps[1] / size : 0;
+  }
+  Real along = 0;
   for (int i = 0; i < 2; ++i) {
-    const Real jump = at.plastic_jump[i].val();
+    const Real jump = jumps[i];
     along += jump * direction[i];
-    size += jump * jump;
     at.slip_direction[i] = direction[i];
     at.plastic_jump[i] = Fad1(1, jump);
     at.plastic_jump[i].fastAccessDx(0) = direction[i];
   }
   at.slip_of_step = Fad1(1, 0, at.slip_of_step.val());
   at.plastic_slip = Fad1(1, 0, at.plastic_slip.val());
-  if (size > 0) at.plastic_slip.fastAccessDx(0) = along / std::sqrt(size);
+  if (size > 0) at.plastic_slip.fastAccessDx(0) = along / size;
 }
 
 }  // namespace

@@ -9,13 +9,15 @@ namespace sprekk::tests {
 namespace {
 
 /// All at the limit of friction, so that the elastic part of the displacement is known: equal joints slip alike. Where
-/// they dilate, what is free is to slide and lift in one joint as much as to slide back and sink in another.
+/// they dilate, what is free is to slide and lift in one joint as much as to slide back and sink in another. Either way
+/// along an axis.
 TEST(JointsInSeries, EqualOnesShareTheSlip) {
   constexpr Real shear = 0.5, G = 1, K_t = 2, mu = 0.5;
   for (const int dim : {2, 3})
-    for (const int angle : {0, 5}) {
+    for (const auto& [angle, way] : {std::pair(0, 1), {5, 1}, {5, -1}}) {
       auto scene = read_scene(fmt::format("verification/stack_{}d.xml", dim),
-                              {fmt::format("Materials.middle.dilation angle={}", angle)});
+                              {fmt::format("Materials.middle.dilation angle={}", angle),
+                               fmt::format("Tables.shear.values={{0, 0, {}}}", way * shear)});
       for (auto& [name, fracture] : scene.fractures) fracture.material = "middle";
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
@@ -27,7 +29,7 @@ TEST(JointsInSeries, EqualOnesShareTheSlip) {
         const auto traction = out.vector("traction local", f);
         const Real tau = std::hypot(traction[1], traction[2]);
         EXPECT_NEAR(tau, -mu * traction[0], 1e-11);
-        EXPECT_NEAR(out.scalar("slip", f), (shear - tau / G - 3 * tau / K_t) / 3, 1e-10) << dim << " " << angle;
+        EXPECT_NEAR(out.scalar("slip", f), (shear - tau / G - 3 * tau / K_t) / 3, 1e-10) << dim << " " << angle << " " << way;
       }
     }
 }
