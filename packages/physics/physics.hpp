@@ -40,8 +40,7 @@ struct Prescribed {
   std::vector<base::Expression> values;
 };
 
-/// What the fluid of Flow carries along, as much as `capacity` times u in a volume of it at reference conditions: energy
-/// by its temperature.
+/// What the fluid of Flow carries along: `capacity` times u in each volume of it at reference conditions.
 struct Carried {
   std::string field;  ///< u on cells; on facets "face " before it
   Real capacity;

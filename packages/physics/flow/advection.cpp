@@ -70,7 +70,9 @@ struct InCells {
   std::vector<std::string> drivers() const { return {parameters.field, "face " + parameters.field}; }
   std::vector<std::string> carried(const std::string& field) const { return {field, "face " + field}; }
   std::string place() const { return ""; }
-  void bind(const assembly::Context& context) { flow = std::make_unique<Flow>(hybrid_cell<shape>(context, parameters)); }
+  void bind(const assembly::Context& context) {
+    flow = std::make_unique<Flow>(hybrid_cell<shape>(context, parameters));
+  }
   Flow at(const assembly::State&) const { return *flow; }
 };
 
@@ -112,6 +114,7 @@ class AdvectionModule final : public assembly::Module {
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
     for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
+    d.carries = rows();
     return d;
   }
 
@@ -166,7 +169,8 @@ std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffus
 std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens) {
   return mesh::for_shape(shape, [&](auto s) {
-    return widens ? module_of(InFractures<s(), true>{flow}, carried) : module_of(InFractures<s(), false>{flow}, carried);
+    return widens ? module_of(InFractures<s(), true>{flow}, carried)
+                  : module_of(InFractures<s(), false>{flow}, carried);
   });
 }
 

@@ -169,7 +169,8 @@ std::vector<Real> start_apertures(const Setting& setting) {
   const auto openings = openings_of(setting);
   for (std::size_t f = 0; f < openings.size(); ++f) {
     const auto& face = mesh.fracture_faces[f];
-    apertures.push_back(std::max(Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f]));
+    apertures.push_back(
+        std::max(Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f]));
   }
   return apertures;
 }

@@ -63,7 +63,8 @@ class FractureFlow final : public assembly::Module {
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     if (widens_)
-      widening_assembler_->add_residual(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state, r);
+      widening_assembler_->add_residual(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
+                                        r);
     else
       assembler_->add_residual(faces_->op(), state, r);
     outflow_.add_residual(state, r);
@@ -72,7 +73,8 @@ class FractureFlow final : public assembly::Module {
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     if (widens_)
-      widening_assembler_->add_jacobian(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state, J);
+      widening_assembler_->add_jacobian(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
+                                        J);
     else
       assembler_->add_jacobian(faces_->op(), state, J);
     outflow_.add_jacobian(state, J);

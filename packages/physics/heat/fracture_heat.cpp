@@ -53,9 +53,12 @@ class FractureHeat final : public assembly::Module {
     d.stores = true;
     d.history = {{"temperature, filling", fields::Entity::fracture_face, 2}};
     using assembly::Summary;
-    d.outputs = {
-        {{"fracture temperature", "K", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "fracture temperature"}},
-         [this](const auto& state) { return temperatures(state); }}};
+    d.outputs = {{{"fracture temperature",
+                   "K",
+                   fields::Entity::fracture_face,
+                   1,
+                   {Summary::mean_and_max, "fracture temperature"}},
+                  [this](const auto& state) { return temperatures(state); }}};
     return d;
   }
 
@@ -65,11 +68,11 @@ class FractureHeat final : public assembly::Module {
     if (parameters_.fluid) pressure_ = context.field("face pressure");
     if (parameters_.widens) widening_ = context.field("widening");
     const std::vector<int> own = {temperature_};
-    conduction_assembler_ =
-        std::make_unique<ConductionAssembler>(context, Loop::fracture_cells, own, own, ConductionAssembler::Positions::keep);
-    filling_assembler_ = std::make_unique<FillingAssembler>(
-        context, Loop::fracture_faces, expands ? std::vector{temperature_, pressure_} : own, own,
-        FillingAssembler::Positions::keep);
+    conduction_assembler_ = std::make_unique<ConductionAssembler>(context, Loop::fracture_cells, own, own,
+                                                                  ConductionAssembler::Positions::keep);
+    filling_assembler_ = std::make_unique<FillingAssembler>(context, Loop::fracture_faces,
+                                                            expands ? std::vector{temperature_, pressure_} : own, own,
+                                                            FillingAssembler::Positions::keep);
     set_conduction();
     set_filling();
   }

@@ -21,11 +21,11 @@ struct FractureHeatParameters {
   };
   std::vector<Face> faces = {};  ///< [local fracture face]
   FluxScheme scheme = FluxScheme::rt0;
-  base::Expression initial = 0;             ///< temperature at the start, K
-  std::optional<laws::Fluid> fluid = {};    ///< what fills it flows, with "face pressure"
-  base::Expression initial_pressure = 0;    ///< with a fluid, Pa
-  Real expansion = 0;                       ///< volumetric, of the fluid, 1/K
-  bool widens = false;                      ///< the aperture grows by "widening" of PoroelasticCoupling
+  base::Expression initial = 0;           ///< temperature at the start, K
+  std::optional<laws::Fluid> fluid = {};  ///< what fills it flows, with "face pressure"
+  base::Expression initial_pressure = 0;  ///< with a fluid, Pa
+  Real expansion = 0;                     ///< volumetric, of the fluid, 1/K
+  bool widens = false;                    ///< the aperture grows by "widening" of PoroelasticCoupling
 };
 
 /// Adds to the rows of "face temperature", for a fracture face F with ridges i, of area A,

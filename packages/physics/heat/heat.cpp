@@ -102,8 +102,9 @@ void compare_conditions(Comparison& c) {
   for (const auto& [name, condition] : c.scene().boundary_conditions)
     if (condition.fracture && (condition.heat_flux || condition.heat_transfer_coefficient))
       c.fail("Boundary conditions > " + name,
-             condition.heat_flux ? "gives a \"heat flux\", which is one of rock, not of a \"fracture\""
-                                 : "gives a \"heat transfer coefficient\", which is one of rock, not of a \"fracture\"");
+             condition.heat_flux
+                 ? "gives a \"heat flux\", which is one of rock, not of a \"fracture\""
+                 : "gives a \"heat transfer coefficient\", which is one of rock, not of a \"fracture\"");
   for (const auto& [name, condition] : c.scene().boundary_conditions)
     for (const auto& [second, other] : c.scene().boundary_conditions)
       if (condition.temperature && !condition.heat_transfer_coefficient &&
@@ -124,7 +125,9 @@ Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
 Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.thermal_expansion.is_constant(); },
-      [](const Material& rock, const auto& x) { return value_at(expansion_name, rock.thermal_expansion, base::any(), x); });
+      [](const Material& rock, const auto& x) {
+        return value_at(expansion_name, rock.thermal_expansion, base::any(), x);
+      });
 }
 
 /// Of what fluid and grains gain in a cell that its pores do not.
@@ -160,8 +163,8 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
         const auto& own = joint.filling_heat_capacity;
         return {.aperture = std::max(least, apertures[f]),
                 .conductivity = value_at(conductivity_name, joint.filling_conductivity, base::positive(), x),
-                .capacity = own ? value_at(capacity_name, *own, base::at_least(0), x)
-                                : scene.heat->fluid_capacity.value_or(0)};
+                .capacity =
+                    own ? value_at(capacity_name, *own, base::at_least(0), x) : scene.heat->fluid_capacity.value_or(0)};
       }));
     }
   });
@@ -249,14 +252,17 @@ void HeatSection::describe(base::Section& s) {
   s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
 }
 
-void Heat::Sections::describe(base::Section& s) { s.section(heat, "Heat", "heat that rock and fractures conduct and store and a fluid carries"); }
+void Heat::Sections::describe(base::Section& s) {
+  s.section(heat, "Heat", "heat that rock and fractures conduct and store and a fluid carries");
+}
 
 void Heat::Rock::describe(base::Section& s) {
   entry_of_place(s, thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
                  "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, "
                  "XZ in 3D");
-  entry_of_place(s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
-                 "rho c, density times specific heat capacity, of the rock with what is in its pores; 0: no heat is stored");
+  entry_of_place(
+      s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+      "rho c, density times specific heat capacity, of the rock with what is in its pores; 0: no heat is stored");
   entry_of_place(s, thermal_expansion, expansion_name, "K^-1", base::any(),
                  "alpha_T, linear: the stress gets the part -3 K alpha_T (T - initial temperature)");
 }
@@ -320,7 +326,8 @@ std::string Heat::no_error_estimate(const Scene& scene) {
 
 std::vector<Carried> Heat::carried(const Scene& scene) {
   if (!scene.heat || !scene.heat->fluid_capacity) return {};
-  Carried energy{.field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
+  Carried energy{
+      .field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
   for (const auto& [name, well] : scene.heat->wells) energy.in_wells.emplace(name, well.temperature);
   return {energy};
 }

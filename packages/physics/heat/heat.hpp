@@ -42,7 +42,7 @@ struct Heat : Physics<Heat> {
 
   /// Of what fills it.
   struct Joint : Physics::Joint {
-    base::Expression filling_conductivity = 0.6;           ///< that of water
+    base::Expression filling_conductivity = 0.6;            ///< that of water
     std::optional<base::Expression> filling_heat_capacity;  ///< absent: that of the fluid of Flow, without one 0
     void describe(base::Section& section);
   };

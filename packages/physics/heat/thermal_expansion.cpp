@@ -80,7 +80,8 @@ class ThermalStress final : public assembly::Module {
     if (tips_) {
       std::vector<Real> of_cell;
       for (const LocalIndex cell : assembly::tip_cells(*mesh_)) of_cell.push_back(reference[cell]);
-      tip_cells_.bind(context, Loop::tip_cells, "tip displacement", tip_cell_volumes<shape>(*mesh_, stiffness), of_cell);
+      tip_cells_.bind(context, Loop::tip_cells, "tip displacement", tip_cell_volumes<shape>(*mesh_, stiffness),
+                      of_cell);
     }
     find_spread(reference);
   }

@@ -18,11 +18,11 @@ struct GivenTemperature {
 };
 
 struct ThermalStressParameters {
-  Properties<Real> expansion;                 ///< of cells, linear, alpha_T, 1/K
-  Properties<laws::Elasticity> elasticity;    ///< drained
-  base::Expression initial = 0;               ///< T_0, where nothing is added to the stress, K
-  std::vector<GivenTemperature> given = {};   ///< what the typical stress follows from
-  Real typical_change = 0;                    ///< of the temperature, where none is given, K
+  Properties<Real> expansion;                ///< of cells, linear, alpha_T, 1/K
+  Properties<laws::Elasticity> elasticity;   ///< drained
+  base::Expression initial = 0;              ///< T_0, where nothing is added to the stress, K
+  std::vector<GivenTemperature> given = {};  ///< what the typical stress follows from
+  Real typical_change = 0;                   ///< of the temperature, where none is given, K
 };
 
 /// Adds to the rows of all displacements -(T_K - T_0) dV_K/du, V_K = integral of 3 K alpha_T div u over a cell: the
@@ -31,7 +31,7 @@ struct ThermalStressParameters {
 std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters);
 
 struct PoreExpansionParameters {
-  Properties<Real> expansion;    ///< of cells, beta = porosity beta_fluid + (Biot coefficient - porosity) 3 alpha_T, 1/K
+  Properties<Real> expansion;  ///< of cells, beta = porosity beta_fluid + (Biot coefficient - porosity) 3 alpha_T, 1/K
   base::Expression initial = 0;  ///< temperature at the start, K
 };
 
