@@ -142,7 +142,9 @@ struct Declaration {
   std::vector<ScaleRelation> relations;
   std::vector<std::pair<std::string, SizeTerm>> sizes;  ///< (field, what is added to the size of its rows)
   std::vector<std::string> schur;                       ///< the fields that add_schur() adds to
-  bool stores = false;  ///< its balances of rates contain State::rate times what it stores
+  std::vector<std::string> carries;  ///< balances of what it lets flow along with something else: such a flow may begin
+                                     ///< within a step, so their rows are measured by the present Jacobian's diagonal
+  bool stores = false;               ///< its balances of rates contain State::rate times what it stores
   bool linear = false;  ///< its Jacobian is constant and symmetric: it is assembled once; the residual is K x + r(0, t)
 };
 

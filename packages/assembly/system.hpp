@@ -157,8 +157,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   Real committed_t_ = 0, committed_dt_ = 0;  // of the last committed step; 0 before the first
   Real t_ = 0, dt_ = 0;
   bool symmetric_ = true, loaded_ = false;
-  bool coupled_ = false;  // balances of rates and other rows depend on each other's fields
-  bool sized_ = false;    // diagonals_ of balances are those of this step's first Jacobian, with schur_
+  bool coupled_ = false;       // balances of rates and other rows depend on each other's fields
+  std::vector<char> carried_;  // [block] see Declaration::carries
+  bool changing_ = false;      // the diagonals of balances are found anew in each step
+  bool sized_ = false;         // diagonals_ of balances are those of this step's first Jacobian, with schur_
 };
 
 }  // namespace sprekk::assembly

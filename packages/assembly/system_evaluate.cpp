@@ -214,7 +214,7 @@ void System::find_schur() {
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
   if (present_.empty()) present_ = diagonals_;
-  for (std::size_t b = 0; b < blocks_.size() && coupled_; ++b)  // rates are no part of the linear one
+  for (std::size_t b = 0; b < blocks_.size() && changing_; ++b)  // rates are no part of the linear one
     if (unknowns_[b].balance) {
       if (present_[b] == diagonals_[b]) present_[b] = rcp(new fields::Vector(blocks_[b].map));
       matrix_(b, b)->getLocalDiagCopy(*present_[b]);
@@ -272,7 +272,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // some rows let much less through than others
-    const bool bounded = !balance && !traction;
+    const bool bounded = !balance && !traction, carried = carried_[b];
     Real stored = 0;  // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
@@ -282,7 +282,8 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
         "largest", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
           const Real size_of_row = row(i) < 0 ? -row(i) : row(i),
-                     weak = balance ? diagonal(i) * held_scale : free_scale;
+                     weight = carried && now(i) > diagonal(i) ? now(i) : diagonal(i),
+                     weak = balance ? weight * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
           const Real of_row = rounding_of_block * now(i) + stored, noise = mask(i) ? 0
                                                                            : bounded && of_row > most_noise * scale

@@ -1,5 +1,7 @@
 #include "physics/exchange.hpp"
 
+#include "physics/add_entry.hpp"
+
 namespace sprekk::physics {
 
 /// Of one exchange, and its derivative in the widening of its face.
@@ -16,17 +18,6 @@ struct Exchange::Coefficient {
     return factor(k) * conduits.dtransmissivity(face(k), widening(face(k)));
   }
 };
-
-namespace {
-
-using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
-
-KOKKOS_INLINE_FUNCTION void add_entry(const LocalMatrix& matrix, LocalIndex row, LocalIndex column, Real value) {
-  for (auto i = matrix.graph.row_map(row); i < matrix.graph.row_map(row + 1); ++i)
-    if (matrix.graph.entries(i) == column) Kokkos::atomic_add(&matrix.values(i), value);
-}
-
-}  // namespace
 
 void Exchange::add(LocalIndex row, Real coefficient, LocalIndex face) {
   rows_.push_back(row);

@@ -211,19 +211,30 @@ struct HybridFlow {
   }
 
   KOKKOS_INLINE_FUNCTION void jacobian(const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
+    Real dq[n][1 + n];
+    dflow(x, dq);
+    for (int k = 0; k < 1 + n; ++k) {
+      J[0][k] = 0;
+      for (int i = 0; i < n; ++i) {
+        J[0][k] += dq[i][k];
+        J[1 + i][k] = -dq[i][k];
+      }
+    }
+  }
+
+  /// The derivatives of flow() in x.
+  KOKKOS_INLINE_FUNCTION void dflow(const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
     Real of_entity[n], of_end[n];
     for (int j = 0; j < n; ++j) {
       of_entity[j] = fluid.ddrop_da(x[0], x[1 + j], lift[j]);
       of_end[j] = fluid.ddrop_db(x[0], x[1 + j], lift[j]);
     }
-    for (int k = 0; k < 1 + n; ++k) J[0][k] = 0;
     for (int i = 0; i < n; ++i) {
-      J[1 + i][0] = 0;
+      dq[i][0] = 0;
       for (int j = 0; j < n; ++j) {
-        J[1 + i][0] -= T[i][j] * of_entity[j];
-        J[1 + i][1 + j] = -T[i][j] * of_end[j];
+        dq[i][0] += T[i][j] * of_entity[j];
+        dq[i][1 + j] = T[i][j] * of_end[j];
       }
-      for (int k = 0; k < 1 + n; ++k) J[0][k] -= J[1 + i][k];
     }
   }
 };
@@ -237,6 +248,7 @@ struct HybridFlow {
 /// | rate   |                 | -, 1/s     | factor of T                                                     |
 template <int n, class Unknowns>
 struct KeptFlow {
+  static constexpr int n_ends = n;
   using Columns = Unknowns;
   using Rows = Unknowns;
   ConstView<Real**> T, lift;
@@ -251,6 +263,8 @@ struct KeptFlow {
     }
     return result;
   }
+  KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[1 + n], Real (&q)[n]) const { at(e).flow(x, q); }
+  KOKKOS_INLINE_FUNCTION void dflow(int e, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const { at(e).dflow(x, dq); }
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
     at(e).residual(x, r);
     for (Real& row : r) row *= rate;
@@ -275,7 +289,7 @@ struct KeptFlow {
 template <Shape shape>
 struct HybridCell {
   using Faces = CellFaces<shape>;
-  static constexpr int dim = Faces::dim, n = Faces::n;
+  static constexpr int dim = Faces::dim, n = Faces::n, n_ends = n;
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<n, 1>>;
   using Rows = Columns;
 
@@ -301,6 +315,10 @@ struct HybridCell {
     return result;
   }
 
+  KOKKOS_INLINE_FUNCTION void flow(int cell, const Real (&x)[1 + n], Real (&q)[n]) const { at(cell).flow(x, q); }
+  KOKKOS_INLINE_FUNCTION void dflow(int cell, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
+    at(cell).dflow(x, dq);
+  }
   KOKKOS_INLINE_FUNCTION void residual(int cell, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
     at(cell).residual(x, r);
   }

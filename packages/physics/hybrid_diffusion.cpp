@@ -2,6 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
+#include "physics/hybrid_rock.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,10 @@ class HybridDiffusion final : public assembly::Module {
            (parameters_.reason.empty() ? "" : " (" + parameters_.reason + ")");
   }
 
-  void set_fields(const std::set<std::string>& fields) override { coupled_ = fields.count(parameters_.coupled_by) > 0; }
+  void set_fields(const std::set<std::string>& fields) override {
+    const auto& others = parameters_.coupled_by;
+    coupled_ = std::any_of(others.begin(), others.end(), [&](const auto& name) { return fields.count(name) > 0; });
+  }
 
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
@@ -54,14 +58,7 @@ class HybridDiffusion final : public assembly::Module {
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
     size_ = mesh::largest_extent(*mesh_);
-    const auto& [gx, gy, gz] = parameters_.weight;
-    op_ = std::make_unique<Op>(Op{.geometry = context.geometry(),
-                                  .mobility = assembly::to_device(parameters_.mobility.values, "mobility"),
-                                  .number = assembly::material_numbers(context.geometry(), parameters_.mobility.number),
-                                  .weight = {gx, gy, gz},
-                                  .scheme = parameters_.scheme,
-                                  .fluid = parameters_.fluid});
-    set_resistance();
+    op_ = std::make_unique<Op>(hybrid_cell<shape>(context, parameters_));
     blocks_ = {context.field(names_[0]), context.field(names_[1])};
     assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_,
                                              is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
@@ -84,6 +81,10 @@ class HybridDiffusion final : public assembly::Module {
 
   bool constant_load() const override {
     return outflow_.constant_in_time() && (parameters_.source.empty() || parameters_.source[0].constant_in_time());
+  }
+
+  void initial(const assembly::Rows& x) const override {
+    if (parameters_.initial) set_hybrid<shape>(*mesh_, *parameters_.initial, x[blocks_[0]], x[blocks_[1]]);
   }
 
   void set_time(Real t, const assembly::Scales&) override {
@@ -147,25 +148,6 @@ class HybridDiffusion final : public assembly::Module {
   }
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0; }
-
-  void set_resistance() {
-    const auto& exchange = parameters_.exchange;
-    if (std::all_of(exchange.begin(), exchange.end(), [](Real e) { return std::isinf(e); })) return;
-    std::vector<int> beside(mesh_->n_cells(), -1);
-    int n = 0;
-    const auto sides = assembly::fracture_sides(*mesh_);
-    for (const auto& [f, side] : sides)
-      if (int& row = beside[mesh_->fracture_faces[f].cell[side]]; row < 0) row = n++;
-    View<Real**> resistance("resistance", n, n_faces);
-    const auto host = Kokkos::create_mirror_view(resistance);
-    for (const auto& [f, side] : sides) {
-      const auto& face = mesh_->fracture_faces[f];
-      host(beside[face.cell[side]], face.local_face[side]) = 1 / (exchange[f] * face.area);
-    }
-    Kokkos::deep_copy(resistance, host);
-    op_->beside = assembly::to_device(beside, "beside");
-    op_->resistance = resistance;
-  }
 
   /// The quadrature points of all boundary faces with a condition.
   void add_conditions() {

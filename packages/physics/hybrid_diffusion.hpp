@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ struct HybridDiffusionParameters {
   std::vector<base::Expression> source = {};   ///< Q per volume and time; empty or one
   std::vector<FluxCondition> conditions = {};  ///< those without a fracture
   bool in_regions = false;                     ///< u of cells is prescribed: they stay in linear solves
-  std::string coupled_by =
-      "";  ///< a field with which, where it is there, cells beside fractures couple: they stay, too
+  std::vector<std::string> coupled_by = {};  ///< fields with which, where they are there, cells couple: they stay, too
+  std::optional<base::Expression> initial = {};  ///< u at the start, of x, y, z; none: others set it, or nothing has to
   std::vector<Real> exchange = {};  ///< [local fracture face] of each of its sides, m/(Pa s): a resistance between the
                                     ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };

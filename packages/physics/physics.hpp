@@ -6,6 +6,7 @@
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,14 @@ inline std::string implausible(const std::string& where, const std::string& what
 struct Prescribed {
   std::string field;
   std::vector<base::Expression> values;
+};
+
+/// What the fluid of Flow carries along: `capacity` times u in each volume of it at reference conditions.
+struct Carried {
+  std::string field;  ///< u on cells; on facets "face " before it
+  Real capacity;
+  std::string total, unit;                           ///< what results.json calls the rate at which wells bring it
+  std::map<std::string, base::Expression> in_wells;  ///< u of what these put in, of t; others bring what is there
 };
 
 /// Base of each physics, of what it has nothing to say about. A physics is one room of packages/physics and a line in
@@ -82,6 +91,8 @@ struct Physics {
   static std::vector<std::string> sections_with_rates() { return {}; }
   /// Why there is no error estimate with it; empty if there is.
   static std::string no_error_estimate(const Scene&) { return ""; }
+  /// What the fluid carries for it.
+  static std::vector<Carried> carried(const Scene&) { return {}; }
   /// Reports what does not fit together.
   static void compare(Comparison&) {}
   /// The same of conditions on a mesh that has all of their names; not collective.

@@ -4,6 +4,7 @@
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/flow/advection.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/wells.hpp"
 #include "physics/hybrid_diffusion.hpp"
@@ -62,13 +63,18 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, R
   return face;
 }
 
+/// Of local fracture faces under the initial stress. Collective.
+std::vector<Real> openings_of(const Setting& setting) {
+  if (Mechanics::is_in(setting.scene) && !setting.mesh.fracture_names.empty())
+    return with_ghosts(setting.mesh, fields::Entity::fracture_face, initial_openings(setting));
+  return std::vector<Real>(setting.mesh.fracture_faces.size(), 0);
+}
+
 /// Of local fracture faces. Collective.
 std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   const auto& scene = setting.scene;
   const auto& mesh = setting.mesh;
-  std::vector<Real> openings(mesh.fracture_faces.size(), 0);
-  if (Mechanics::is_in(scene) && !mesh.fracture_names.empty())
-    openings = with_ghosts(mesh, fields::Entity::fracture_face, initial_openings(setting));
+  const auto openings = openings_of(setting);
   std::vector<FractureFlowParameters::Face> faces;
   base::collectively(*mesh.comm, [&] {
     for (std::size_t f = 0; f < openings.size(); ++f) {
@@ -91,7 +97,7 @@ HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh)
                                   .outflow = {"conductance", "inflows", mesh.dim() == 2 ? "m^2/s" : "m^3/s"},
                                   .fluid = {flow.compressibility, flow.reference_pressure},
                                   .conditions = fluid_conditions(scene, mesh, false),
-                                  .coupled_by = "displacement"};
+                                  .coupled_by = {"displacement"}};
   base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
   const auto chosen = flux_scheme(scheme_entry(scene), mesh, darcy.mobility);
   darcy.scheme = chosen.scheme;
@@ -121,6 +127,15 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
   return fractures;
 }
 
+/// What all physics of a scene have the fluid carry.
+std::vector<Carried> carried_in(const Scene& scene) {
+  std::vector<Carried> all;
+  for_each_physics([&](auto physics) {
+    for (auto& one : physics.carried(scene)) all.push_back(one);
+  });
+  return all;
+}
+
 }  // namespace
 
 bool Flow::is_in(const Scene& scene) { return scene.flow.has_value(); }
@@ -144,6 +159,22 @@ Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) 
       [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
 }
 
+std::vector<Real> start_apertures(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  std::vector<Real> apertures;
+  if (scene.flow) {
+    for (const auto& face : hydraulics(setting)) apertures.push_back(face.along.hydraulic_aperture());
+    return apertures;
+  }
+  const auto openings = openings_of(setting);
+  for (std::size_t f = 0; f < openings.size(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    apertures.push_back(
+        std::max(Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f]));
+  }
+  return apertures;
+}
+
 SchemeEntry scheme_entry(const Scene& scene) {
   return {.section = "Flow", .name = scene.flow ? scene.flow->scheme : "auto", .property = "permeability"};
 }
@@ -163,12 +194,19 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
     aperture.push_back(face.along.hydraulic_aperture());
   }
   const auto fluid = darcy.fluid;
+  const auto all_carried = carried_in(scene);
+  for (const auto& carried : all_carried) {
+    modules.push_back(make_advection(mesh.shape, darcy, carried));
+    if (!mesh.fracture_names.empty())
+      modules.push_back(make_fracture_advection(mesh.shape, fractures, carried, deforms));
+  }
   if (!flow.wells.empty()) {
     WellsParameters all{.wells = wells(scene, mesh.dim()),
                         .mobility = darcy.mobility,
                         .scheme = darcy.scheme,
                         .fluid = fluid,
-                        .weight = darcy.weight};
+                        .weight = darcy.weight,
+                        .carried = all_carried};
     for (const auto& face : fractures.faces) all.faces.push_back(face.along);
     modules.push_back(make_wells(std::move(all)));
   }

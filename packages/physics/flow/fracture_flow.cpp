@@ -2,9 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "mesh/extents.hpp"
-#include "mesh/facets.hpp"
-#include "physics/flow/face_plane.hpp"
-#include "physics/flow/present_conduits.hpp"
+#include "physics/flow/fracture_faces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,44 +12,6 @@ namespace sprekk::physics {
 using assembly::Loop;
 
 namespace {
-
-/// Of a fracture face through its ridges: p_F, pressures on ridges.
-template <int n>
-using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
-
-/// The same where T is that of a transmissivity of 1, and the face's own follows from its widening, the last of x, m.
-template <int n>
-struct WideningFace : FractureFace<n> {
-  using Base = FractureFace<n>;
-  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
-  using Rows = typename Base::Columns;
-
-  PresentConduits conduits;
-
-  WideningFace(const Base& base, const PresentConduits& conduits) : Base(base), conduits(conduits) {}
-  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
-    evaluate(face, x, conduits.transmissivity(face, x[1 + n]), r);
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
-    Real p[1 + n], by_widening[1 + n], own[1 + n][1 + n];
-    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
-    Base::at(face).jacobian(p, own);
-    evaluate(face, x, conduits.dtransmissivity(face, x[1 + n]), by_widening);
-    const Real transmissivity = conduits.transmissivity(face, x[1 + n]);
-    for (int i = 0; i < 1 + n; ++i) {
-      for (int k = 0; k < 1 + n; ++k) J[i][k] = transmissivity * own[i][k];
-      J[i][1 + n] = by_widening[i];
-    }
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION void evaluate(int face, const Real (&x)[2 + n], Real transmissivity, Real (&r)[1 + n]) const {
-    Real p[1 + n];
-    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
-    Base::at(face).residual(p, r);
-    for (Real& row : r) row *= transmissivity;
-  }
-};
 
 template <Shape shape>
 class FractureFlow final : public assembly::Module {
@@ -84,8 +44,7 @@ class FractureFlow final : public assembly::Module {
     mesh_ = context.mesh();
     size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
-    find_fillings(context.layout(block_));
-    set_faces();
+    faces_ = std::make_unique<FractureFaces<shape>>(mesh_, context.layout(block_), parameters_, widens_);
     const std::vector<int> rows = {block_};
     if (widens_) {
       widening_ = context.field("widening");
@@ -104,18 +63,20 @@ class FractureFlow final : public assembly::Module {
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     if (widens_)
-      widening_assembler_->add_residual(WideningFace<n>(op_, {conduits_, state.coefficients}), state, r);
+      widening_assembler_->add_residual(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
+                                        r);
     else
-      assembler_->add_residual(op_, state, r);
+      assembler_->add_residual(faces_->op(), state, r);
     outflow_.add_residual(state, r);
     load_.add_to(r[block_]);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     if (widens_)
-      widening_assembler_->add_jacobian(WideningFace<n>(op_, {conduits_, state.coefficients}), state, J);
+      widening_assembler_->add_jacobian(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
+                                        J);
     else
-      assembler_->add_jacobian(op_, state, J);
+      assembler_->add_jacobian(faces_->op(), state, J);
     outflow_.add_jacobian(state, J);
   }
   /// Hydraulic apertures.
@@ -181,10 +142,10 @@ class FractureFlow final : public assembly::Module {
     const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const Plane plane = this->plane(f);
+      const Plane plane = faces_->plane(f);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
-      op_.at(f).flow(x, q);
+      faces_->op().at(f).flow(x, q);
       const Real wider = widens_ ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
       const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
       for (int i = 0; i < 3; ++i) {
@@ -208,64 +169,6 @@ class FractureFlow final : public assembly::Module {
   }
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
-
-  /// Of each fracture that cuts others, what half of its width resists per area at its ridges, the mean over its faces
-  /// that end there. The owner of a ridge sees all of them.
-  void find_fillings(const fields::Layout& layout) {
-    fillings_.resize(parameters_.cut_by.size());
-    for (const auto& all : parameters_.cut_by)
-      for (const int cutting : all) {
-        auto& filling = fillings_[cutting];
-        if (!filling.empty()) continue;
-        fields::Vector owned(layout.owned()), everywhere(layout.ghosted());
-        std::vector<int> count(layout.n_owned(), 0);
-        {
-          auto sum = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
-          for (LocalIndex f = 0; f < mesh_->n_fracture_faces(); ++f)
-            for (int k = 0; k < n && mesh_->fracture_faces[f].fracture == cutting; ++k)
-              if (const LocalIndex ridge = mesh_->facets->ridge[f * n + k]; ridge < layout.n_owned()) {
-                sum(ridge, 0) += 1 / parameters_.faces[f].exchange;
-                ++count[ridge];
-              }
-          for (LocalIndex k = 0; k < layout.n_owned(); ++k) sum(k, 0) /= std::max(1, count[k]);
-        }
-        everywhere.doImport(owned, *layout.import(), Tpetra::REPLACE);
-        const auto values = everywhere.getLocalViewHost(Tpetra::Access::ReadOnly);
-        for (std::size_t k = 0; k < values.extent(0); ++k) filling.push_back(values(k, 0));
-      }
-  }
-
-  Plane plane(LocalIndex f) const {
-    const auto& face = parameters_.faces[f];
-    Plane plane(*mesh_, f, widens_ ? 1 : face.along.transmissivity(), parameters_.scheme);
-    for (const int cutting : parameters_.cut_by[mesh_->fracture_faces[f].fracture])
-      for (int k = 0; k < n; ++k) {
-        const Real filling = fillings_[cutting][mesh_->facets->ridge[f * n + k]];
-        if (filling > 0)
-          add_resistance(plane.T, k, filling / (face.along.hydraulic_aperture() * mesh::ridge_length(*mesh_, f, k)));
-      }
-    return plane;
-  }
-
-  void set_faces() {
-    const LocalIndex n_faces = mesh_->n_fracture_faces();
-    View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
-    const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
-    for (LocalIndex f = 0; f < n_faces; ++f) {
-      const Plane plane = this->plane(f);
-      for (int k = 0; k < n; ++k) {
-        for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
-        lift_host(f, k) = 0;
-        for (int i = 0; i < dim; ++i) lift_host(f, k) += parameters_.weight[i] * plane.d[k][i];
-      }
-    }
-    Kokkos::deep_copy(T, T_host);
-    Kokkos::deep_copy(lift, lift_host);
-    std::vector<laws::Conduit> conduits;
-    for (const auto& face : parameters_.faces) conduits.push_back(face.along);
-    op_ = {.T = T, .lift = lift, .fluid = parameters_.fluid};
-    conduits_ = assembly::to_device(conduits, "conduits");
-  }
 
   /// Calls visit(area, source) at the points of a face.
   template <class Visit>
@@ -298,9 +201,7 @@ class FractureFlow final : public assembly::Module {
   Real size_ = 0;                   // largest extent of the domain, m
   Real open_ = 0;                   // aperture of a fracture that lets the fluid on without a drop of pressure, m
   bool loaded_ = false;
-  std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
-  Op op_;
-  ConstView<laws::Conduit*> conduits_;  // [local fracture face]
+  std::unique_ptr<FractureFaces<shape>> faces_;
   std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<WideningAssembler> widening_assembler_;
   Outflow outflow_;      // through the ends

@@ -4,6 +4,7 @@
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "physics/exchange.hpp"
+#include "physics/flow/brought.hpp"
 #include "physics/flow/well_connections.hpp"
 
 #include <algorithm>
@@ -28,6 +29,12 @@ class Wells final : public assembly::Module {
       d.couplings.push_back({assembly::Loop::fracture_cells, "face pressure", {"widening"}});
       d.history = {{"widening", fields::Entity::fracture_face, 1}};
     }
+    for (const auto& carried : parameters_.carried) {
+      const auto &u = carried.field, on_facets = "face " + u;
+      d.couplings.push_back({assembly::Loop::cells, u, {u, "pressure"}});
+      d.couplings.push_back({assembly::Loop::cells, on_facets, {on_facets, "face pressure"}});
+      if (widens_) d.couplings.push_back({assembly::Loop::fracture_cells, on_facets, {"widening"}});
+    }
     d.linear = is_linear();
     return d;
   }
@@ -50,6 +57,7 @@ class Wells final : public assembly::Module {
       load_[k] = assembly::Load(context.layout(blocks[k]).n_owned());
       blocks_[k] = blocks[k];
     }
+    bind_carried(context);
     SPREKK_CHECK(failure.empty(), "{}", failure);
   }
 
@@ -58,11 +66,14 @@ class Wells final : public assembly::Module {
       exchange_[k].add_residual(state, r);
       load_[k].add_to(r[blocks_[k]]);
     }
+    for (const auto& brought : brought_) brought.add_residual(state, r);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     for (const auto& exchange : exchange_) exchange.add_jacobian(state, J);
+    for (const auto& brought : brought_) brought.add_jacobian(state, J);
   }
+  bool symmetric(const assembly::State&) const override { return brought_.empty(); }
 
   bool constant_load() const override {
     return !widens_ && std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
@@ -94,6 +105,7 @@ class Wells final : public assembly::Module {
       });
       exchange_[k].set_outside(outside[k]);
     }
+    set_carried(state.t);
   }
 
   void commit(assembly::State& state) const override {
@@ -118,7 +130,7 @@ class Wells final : public assembly::Module {
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
     const auto first = totals.size();
-    const auto width = 3 + mesh_->fracture_names.size();
+    const auto width = 3 + mesh_->fracture_names.size() + 2 * parameters_.carried.size();
     for (const auto& one : parameters_.wells) {
       const char* const unit = mesh_->dim() == 2 ? "m^2/s" : "m^3/s";
       totals.push_back({{"wells", one.name, "rate"}, 0, unit});
@@ -126,6 +138,10 @@ class Wells final : public assembly::Module {
       totals.push_back({{"wells", one.name, "in rock"}, 0, unit});
       for (const auto& fracture : mesh_->fracture_names)
         totals.push_back({{"wells", one.name, "in " + fracture}, 0, unit});
+      for (const auto& carried : parameters_.carried) {
+        totals.push_back({{"wells", one.name, carried.field}, 0, ""});
+        totals.push_back({{"wells", one.name, carried.total}, 0, carried.unit});
+      }
     }
     std::array<Kokkos::View<Real*>::HostMirror, 2> p;
     for (int k = 0; k < 2; ++k) {
@@ -144,11 +160,56 @@ class Wells final : public assembly::Module {
       totals[of_well + 1].value +=
           share * (held ? control(well(c))(well(c).points[0], state.t) : at + drop - head(c, at + drop));
       totals[of_well + 3 + c.fracture].value += flow;
+      auto next = of_well + 3 + mesh_->fracture_names.size();
+      for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {
+        const auto control = this->control(c, parameters_.carried[j], state.t);
+        const Real u = flow > 0 && control.brings ? control.value : carried_at(state, j, c);
+        totals[next++].value += share * u;
+        totals[next++].value += parameters_.carried[j].capacity * flow * u;
+      }
     }
   }
 
  private:
-  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && parameters_.carried.empty(); }
+
+  /// Two for each that is carried: into rock, and into fractures.
+  void bind_carried(const assembly::Context& context) {
+    for (const auto& carried : parameters_.carried)
+      for (const bool in_fractures : {false, true}) {
+        const bool widens = widens_ && in_fractures;
+        auto& brought = brought_.emplace_back();
+        for (const auto& c : connections_)
+          if ((c.face >= 0) == in_fractures)
+            brought.add(c.row, widens ? c.index : index(c), well(c).pressure.has_value(), c.face);
+        carried_.push_back(context.field(in_fractures ? "face " + carried.field : carried.field));
+        brought.bind(context, blocks_[in_fractures], carried_.back(), parameters_.fluid, carried.capacity,
+                     widens ? parameters_.faces : std::vector<laws::Conduit>());
+      }
+  }
+
+  void set_carried(Real t) {
+    for (std::size_t k = 0; k < brought_.size(); ++k) {
+      std::vector<Brought::Control> controls;
+      for (const auto& c : connections_)
+        if ((c.face >= 0) == (k % 2 == 1)) controls.push_back(control(c, parameters_.carried[k / 2], t));
+      brought_[k].set(controls);
+    }
+  }
+
+  Brought::Control control(const WellConnection& c, const Carried& carried, Real t) const {
+    const auto value = carried.in_wells.find(well(c).name);
+    const bool brings = value != carried.in_wells.end();
+    return {.driver = well(c).pressure ? pressure(c, t) : rate(c, t),
+            .value = brings ? value->second(well(c).points[0], t) : 0,
+            .brings = brings};
+  }
+
+  Real carried_at(const assembly::State& state, std::size_t j, const WellConnection& c) const {
+    const auto u = state.x[carried_[2 * j + (c.face >= 0)]];
+    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(u, c.row))();
+  }
+
   const Well& well(const WellConnection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
 
@@ -191,6 +252,8 @@ class Wells final : public assembly::Module {
   int widening_ = -1;
   std::array<Exchange, 2> exchange_;    // of wells with a pressure
   std::array<assembly::Load, 2> load_;  // [owned row] of wells with a rate, m^3/s
+  std::vector<Brought> brought_;        // [2 carried + in fractures]
+  std::vector<int> carried_;            // blocks of their rows
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "base/expression.hpp"
 #include "laws/fluid.hpp"
 #include "physics/flux_scheme.hpp"
+#include "physics/physics.hpp"
 
 #include <array>
 #include <memory>
@@ -29,6 +30,7 @@ struct WellsParameters {
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
   std::vector<laws::Conduit> faces = {};  ///< [local fracture face]
+  std::vector<Carried> carried = {};      ///< what their fluid carries, see Brought
 };
 
 /// Adds -W (p_w - p) to the rows of "pressure" of cells that a well runs through and of "face pressure" of fracture
@@ -42,7 +44,9 @@ struct WellsParameters {
 /// the same. Lengths do not depend on the partition, and a well in a face between cells counts once: wells are moved by
 /// 1e-9 of the domain's extent, in a direction that no face has. Errors, on every rank: a well leaves the domain, lies
 /// in a fracture, or is as wide as an equivalent radius. Totals: "wells", the name, then "rate", "pressure" (of a well
-/// with a rate the mean by shares), "in rock" and "in FRACTURE", rates.
+/// with a rate the mean by shares), "in rock" and "in FRACTURE", rates;
+/// and of what is carried by the name of its field its value in the fluid that is put in or taken out, the mean by
+/// shares, and as Carried::total c q u, the rate that is put in.
 std::unique_ptr<assembly::Module> make_wells(WellsParameters parameters);
 
 }  // namespace sprekk::physics

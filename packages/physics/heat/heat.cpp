@@ -1,18 +1,25 @@
 #include "physics/heat/heat.hpp"
 
+#include "base/over_ranks.hpp"
+#include "mesh/extents.hpp"
 #include "physics/comparison.hpp"
-#include "physics/hybrid_diffusion.hpp"
 #include "physics/entry_of_place.hpp"
+#include "physics/heat/fracture_heat.hpp"
+#include "physics/heat/thermal_expansion.hpp"
+#include "physics/hybrid_diffusion.hpp"
 #include "physics/storage.hpp"
 #include "physics/tensor_entry.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace sprekk::physics {
 
 namespace {
 
-constexpr const char* capacity_name = "volumetric heat capacity";
+constexpr const char *capacity_name = "volumetric heat capacity", *conductivity_name = "thermal conductivity",
+                     *expansion_name = "thermal expansion";
 
 Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
@@ -66,26 +73,205 @@ void compare_level(Comparison& c) {
          "rock a \"volumetric heat capacity\"");
 }
 
+/// The start counts where something changes with the temperature.
+void compare_start(Comparison& c) {
+  if (c.scene().heat->initial_temperature || !c.is_sound("Heat")) return;
+  const std::string place = "Heat > \"initial temperature\"";
+  c.for_each_rock([&](const Material& rock) {
+    if (!is_zero(rock.heat_capacity))
+      c.fail(place, "missing; it is required where rock has a \"volumetric heat capacity\"");
+    else if (!is_zero(rock.thermal_expansion))
+      c.fail(place, "missing; it is required where rock has a \"thermal expansion\"");
+  });
+}
+
+void compare_fluid(Comparison& c) {
+  const auto& heat = *c.scene().heat;
+  if (c.scene().host_fluid) c.fail("Heat", "goes without a host_fluid, whose flow is not known");
+  if (!c.is_sound("Heat") || !c.is_sound("Flow")) return;
+  if (c.scene().flow && !heat.fluid_capacity)
+    c.fail("Heat > \"fluid heat capacity\"", "missing; it is required with \"Flow\"");
+  Names wells;
+  if (c.scene().flow)
+    for (const auto& [name, well] : c.scene().flow->wells) wells.push_back(name);
+  for (const auto& [name, well] : heat.wells)
+    if (!has(wells, name)) c.check_name("Heat > Wells", "Heat > Wells > " + name, name, wells);
+}
+
+void compare_conditions(Comparison& c) {
+  for (const auto& [name, condition] : c.scene().boundary_conditions)
+    if (condition.fracture && (condition.heat_flux || condition.heat_transfer_coefficient))
+      c.fail("Boundary conditions > " + name,
+             condition.heat_flux
+                 ? "gives a \"heat flux\", which is one of rock, not of a \"fracture\""
+                 : "gives a \"heat transfer coefficient\", which is one of rock, not of a \"fracture\"");
+  for (const auto& [name, condition] : c.scene().boundary_conditions)
+    for (const auto& [second, other] : c.scene().boundary_conditions)
+      if (condition.temperature && !condition.heat_transfer_coefficient &&
+          (other.heat_flux || other.heat_transfer_coefficient) && condition.boundary == other.boundary &&
+          !condition.fracture && (!condition.region || !other.region || *condition.region == *other.region))
+        c.fail("Boundary conditions > " + second,
+               fmt::format("gives a heat flux where \"{}\" gives the temperature", name));
+}
+
+Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.heat_capacity.is_constant(); },
+      [](const Material& rock, const auto& x) {
+        return value_at(capacity_name, rock.heat_capacity, base::at_least(0), x);
+      });
+}
+
+Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
+  return by_cell(
+      scene, mesh, [](const Material& rock) { return rock.thermal_expansion.is_constant(); },
+      [](const Material& rock, const auto& x) {
+        return value_at(expansion_name, rock.thermal_expansion, base::any(), x);
+      });
+}
+
+/// Of what fluid and grains gain in a cell that its pores do not.
+Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) {
+  const Real of_fluid = scene.heat->fluid_expansion;
+  return by_cell(
+      scene, mesh,
+      [](const Material& rock) {
+        return rock.thermal_expansion.is_constant() && rock.porosity.is_constant() && rock.biot.is_constant();
+      },
+      [&](const Material& rock, const auto& x) {
+        const Real phi = rock.porosity(x, 0);
+        return phi * of_fluid + (rock.biot(x, 0) - phi) * 3 * rock.thermal_expansion(x, 0);
+      });
+}
+
+bool is_any(const mesh::Mesh& mesh, const Properties<Real>& property) {
+  const auto& values = property.values;
+  return base::on_any_rank(*mesh.comm, std::any_of(values.begin(), values.end(), [](Real v) { return v != 0; }));
+}
+
+/// Of local fracture faces. Collective.
+std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const auto apertures = start_apertures(setting);
+  const Real least = 1e-9 * mesh::largest_extent(mesh);  // so that ridges of closed ones have a temperature
+  std::vector<FractureHeatParameters::Face> faces;
+  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
+    for (std::size_t f = 0; f < apertures.size(); ++f) {
+      const auto& x = mesh.fracture_faces[f].centre;
+      const auto& joint = joint_of(scene, mesh, mesh.fracture_faces[f].single);
+      faces.push_back(at_place(scene, joint, [&]() -> FractureHeatParameters::Face {
+        const auto& own = joint.filling_heat_capacity;
+        return {.aperture = std::max(least, apertures[f]),
+                .conductivity = value_at(conductivity_name, joint.filling_conductivity, base::positive(), x),
+                .capacity =
+                    own ? value_at(capacity_name, *own, base::at_least(0), x) : scene.heat->fluid_capacity.value_or(0)};
+      }));
+    }
+  });
+  return faces;
+}
+
+/// The temperatures that a scene gives, which stresses follow from.
+std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh::Mesh& mesh) {
+  std::vector<GivenTemperature> all;
+  const auto number = [](const auto& names, const std::string& name) { return index_of(names, name); };
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.temperature)
+      all.push_back({.value = *condition.temperature,
+                     .boundary = number(mesh.boundary_names, condition.boundary),
+                     .region = condition.region ? number(mesh.region_names, *condition.region) : -1});
+  for (const auto& [name, region] : scene.regions)
+    if (region.temperature) all.push_back({.value = *region.temperature, .region = number(mesh.region_names, name)});
+  for (const auto& [name, well] : scene.heat->wells) all.push_back({.value = well.temperature});
+  return all;
+}
+
+void add_fractures(const Setting& setting, const std::vector<FractureHeatParameters::Face>& faces, FluxScheme scheme,
+                   Modules& modules) {
+  const auto& [scene, mesh, start] = setting;
+  FractureHeatParameters fractures{.faces = faces,
+                                   .scheme = scheme,
+                                   .initial = scene.heat->initial_temperature.value_or(0),
+                                   .expansion = scene.heat->fluid_expansion,
+                                   .widens = Mechanics::is_in(scene) && has_unknown_pressure(scene)};
+  if (scene.flow) {
+    fractures.fluid = {scene.flow->compressibility, scene.flow->reference_pressure};
+    fractures.initial_pressure = scene.flow->initial_pressure;
+  }
+  modules.push_back(make_fracture_heat(mesh.shape, std::move(fractures)));
+}
+
+/// What temperature does to stresses and to the fluid.
+void add_expansion(const Setting& setting, Real typical_change, Modules& modules) {
+  const auto& [scene, mesh, start] = setting;
+  const auto initial = scene.heat->initial_temperature.value_or(0);
+  Properties<Real> of_rock, of_pores;
+  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
+    of_rock = expansion_of_rock(scene, mesh);
+    if (scene.flow) of_pores = expansion_of_pores(scene, mesh);
+  });
+  if (Mechanics::is_in(scene) && is_any(mesh, of_rock))
+    modules.push_back(make_thermal_stress(mesh, {.expansion = std::move(of_rock),
+                                                 .elasticity = elasticity(scene, mesh),
+                                                 .initial = initial,
+                                                 .given = given_temperatures(scene, mesh),
+                                                 .typical_change = typical_change}));
+  if (is_any(mesh, of_pores))
+    modules.push_back(make_pore_expansion({.expansion = std::move(of_pores), .initial = initial}));
+}
+
+/// What sources and fluxes make of the temperature over the size of the domain, if they last, K.
+Real change_by_flux(const Scene& scene, const mesh::Mesh& mesh, const Properties<laws::Mobility>& conductivity) {
+  Real flux = 0, least = std::numeric_limits<Real>::infinity();
+  const Real size = mesh::largest_extent(mesh);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.heat_flux) flux = std::max(flux, std::abs((*condition.heat_flux)({}, 0)));
+  flux = std::max(flux, size * std::abs(scene.heat->source({}, 0)));
+  for (const auto& each : conductivity.values) least = std::min(least, each.value[0][0]);
+  return flux == 0 || std::isinf(least) ? 0 : size * flux / least;
+}
+
 }  // namespace
+
+void WellTemperature::describe(base::Section& s) {
+  s.required(temperature, "temperature", "K", base::at_least(0), "of the fluid that it puts in, an expression of t");
+}
 
 void HeatSection::describe(base::Section& s) {
   s.entry(source, "source", "W/m^3", base::any(), "power per volume of rock, an expression of x, y, z, t");
   entry_of_place(s, initial_temperature, "initial temperature", "K", base::any(),
-                 "at the start, where heat is stored; of x, y, z");
+                 "at the start, where heat is stored; of x, y, z; thermal stress is zero there");
+  s.entry(fluid_capacity, "fluid heat capacity", "J/(m^3*K)", base::at_least(0),
+          "rho_0 c of the fluid of \"Flow\", at its reference pressure; needed with it");
+  s.entry(fluid_expansion, "fluid thermal expansion", "K^-1", base::at_least(0),
+          "volumetric, of the fluid: what becomes warmer needs more room, in pores and fractures");
   s.choice(
       scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
       "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
       "orthogonal, else mimetic");
+  s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
 }
 
-void Heat::Sections::describe(base::Section& s) { s.section(heat, "Heat", "heat that the rock conducts and stores"); }
+void Heat::Sections::describe(base::Section& s) {
+  s.section(heat, "Heat", "heat that rock and fractures conduct and store and a fluid carries");
+}
 
 void Heat::Rock::describe(base::Section& s) {
   entry_of_place(s, thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
                  "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, "
                  "XZ in 3D");
-  entry_of_place(s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
-                 "rho c, density times specific heat capacity; 0: no heat is stored");
+  entry_of_place(
+      s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+      "rho c, density times specific heat capacity, of the rock with what is in its pores; 0: no heat is stored");
+  entry_of_place(s, thermal_expansion, expansion_name, "K^-1", base::any(),
+                 "alpha_T, linear: the stress gets the part -3 K alpha_T (T - initial temperature)");
+}
+
+void Heat::Joint::describe(base::Section& s) {
+  entry_of_place(s, filling_conductivity, conductivity_name, "W/(m*K)", base::positive(),
+                 "of what fills the fracture, along and across it, with \"Heat\"; that of water if not given");
+  entry_of_place(s, filling_heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+                 "of what fills the fracture, with \"Heat\"; that of the fluid of \"Flow\" if not given");
 }
 
 bool Heat::Rock::conducts_uniformly() const { return is_uniform_tensor(thermal_conductivity); }
@@ -127,21 +313,23 @@ bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 void Heat::compare(Comparison& c) {
   compare_without_heat(c);
   if (!c.scene().heat) return;
-  if (c.names().fractures && !c.names().fractures->empty())
-    c.fail("Heat", "goes without fractures so far, and the mesh has some");
   c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
   compare_level(c);
-  c.for_each_rock([&](const Material& rock) {
-    if (!is_zero(rock.heat_capacity) && !c.scene().heat->initial_temperature && c.is_sound("Heat"))
-      c.fail("Heat > \"initial temperature\"", "missing; it is required where rock has a \"volumetric heat capacity\"");
-  });
-  for (const auto& [name, condition] : c.scene().boundary_conditions)
-    for (const auto& [second, other] : c.scene().boundary_conditions)
-      if (condition.temperature && !condition.heat_transfer_coefficient &&
-          (other.heat_flux || other.heat_transfer_coefficient) && condition.boundary == other.boundary &&
-          (!condition.region || !other.region || *condition.region == *other.region))
-        c.fail("Boundary conditions > " + second,
-               fmt::format("gives a heat flux where \"{}\" gives the temperature", name));
+  compare_start(c);
+  compare_fluid(c);
+  compare_conditions(c);
+}
+
+std::string Heat::no_error_estimate(const Scene& scene) {
+  return scene.heat ? "is of stress and jumps without heat; not available with \"Heat\"" : "";
+}
+
+std::vector<Carried> Heat::carried(const Scene& scene) {
+  if (!scene.heat || !scene.heat->fluid_capacity) return {};
+  Carried energy{
+      .field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
+  for (const auto& [name, well] : scene.heat->wells) energy.in_wells.emplace(name, well.temperature);
+  return {energy};
 }
 
 void Heat::add_modules(const Setting& setting, Modules& modules) {
@@ -153,12 +341,11 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   Properties<Capacity> capacity;
   base::collectively(*mesh.comm, [&] {
     conductivity = conductivity_of(scene, mesh);
-    capacity = by_cell(
-        scene, mesh, [](const Material& rock) { return rock.heat_capacity.is_constant(); },
-        [](const Material& rock, const auto& x) {
-          return Capacity{.room = 0, .growth = value_at(capacity_name, rock.heat_capacity, base::at_least(0), x)};
-        });
+    const auto values = capacity_of_rock(scene, mesh);
+    capacity.number = values.number;
+    for (const Real growth : values.values) capacity.values.push_back({.room = 0, .growth = growth});
   });
+  const Real change = change_by_flux(scene, mesh, conductivity);
   const auto chosen = flux_scheme(scheme_entry(heat), mesh, conductivity);
   HybridDiffusionParameters conduction{
       .name = "heat conduction",
@@ -169,18 +356,25 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
       .outflow = {"heat transfer coefficient", "heat_inflows", mesh.dim() == 2 ? "W/m" : "W"},
       .mobility = std::move(conductivity),
       .scheme = chosen.scheme,
-      .reason = chosen.reason};
+      .reason = chosen.reason,
+      .coupled_by = {"displacement", "pressure"},
+      .initial = heat.initial_temperature};
   if (!is_zero(heat.source)) conduction.source = {heat.source};
   conduction.conditions = flux_conditions(
       scene, mesh,
       {&BoundaryCondition::heat_flux, &BoundaryCondition::temperature, &BoundaryCondition::heat_transfer_coefficient});
   conduction.in_regions =
       std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.temperature; });
+  std::vector<FractureHeatParameters::Face> faces;
+  if (!mesh.fracture_names.empty()) faces = fillings(setting);
+  for (const auto& face : faces) conduction.exchange.push_back(2 * face.conductivity / face.aperture);
   modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(conduction)));
   modules.push_back(make_storage({.name = "heat storage",
                                   .field = "temperature",
                                   .capacity = std::move(capacity),
                                   .initial = heat.initial_temperature.value_or(0)}));
+  if (!mesh.fracture_names.empty()) add_fractures(setting, faces, chosen.scheme, modules);
+  add_expansion(setting, change, modules);
 }
 
 std::vector<std::string> Heat::warnings(const Setting& setting) {

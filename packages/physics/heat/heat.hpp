@@ -1,20 +1,31 @@
-// Conduction of heat through rock: its entries of a scene and its modules.
+// Heat in rock and fractures, conducted and carried by a fluid, and the stresses it makes: its entries of a scene and
+// its modules.
 #pragma once
 
 #include "base/expression.hpp"
 #include "laws/darcy.hpp"
 #include "physics/physics.hpp"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace sprekk::physics {
 
+/// What a well of Flow puts in.
+struct WellTemperature {
+  base::Expression temperature = 0;
+  void describe(base::Section& section);
+};
+
 struct HeatSection {
   base::Expression source = 0;
-  std::optional<base::Expression> initial_temperature;  ///< needed where heat is stored
+  std::optional<base::Expression> initial_temperature;  ///< needed where heat is stored, and where rock expands
+  std::optional<Real> fluid_capacity;                   ///< per volume, needed with Flow
+  Real fluid_expansion = 0;                             ///< volumetric
   std::string scheme = "auto";
+  std::map<std::string, WellTemperature> wells;  ///< by names of those of Flow
   void describe(base::Section& section);
 };
 
@@ -22,10 +33,18 @@ struct Heat : Physics<Heat> {
   struct Rock : Physics::Rock {
     std::vector<base::Expression> thermal_conductivity;  ///< one value, or those of a tensor; of x, y, z
     base::Expression heat_capacity = 0;                  ///< per volume; of x, y, z
+    base::Expression thermal_expansion = 0;              ///< linear; of x, y, z
     void describe(base::Section& section);
     bool conducts_uniformly() const;  ///< the conductivity does not depend on the place
     /// K in Fourier's law q = -K grad T. Throws an Error where it is no positive definite tensor of that dimension.
     laws::Mobility conductivity(int dim, const std::array<Real, 3>& x) const;
+  };
+
+  /// Of what fills it.
+  struct Joint : Physics::Joint {
+    base::Expression filling_conductivity = 0.6;            ///< that of water
+    std::optional<base::Expression> filling_heat_capacity;  ///< absent: that of the fluid of Flow, without one 0
+    void describe(base::Section& section);
   };
 
   struct Region : Physics::Region {
@@ -53,6 +72,8 @@ struct Heat : Physics<Heat> {
   static bool needs_facets(const Scene& scene) { return is_in(scene); }
   static bool has_rates(const Scene& scene) { return is_in(scene); }
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
+  static std::string no_error_estimate(const Scene& scene);
+  static std::vector<Carried> carried(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);

@@ -1,0 +1,158 @@
+// Flow along fracture faces, as local operators of a mesh.
+#pragma once
+
+#include "assembly/assembler.hpp"
+#include "mesh/facets.hpp"
+#include "physics/flow/face_plane.hpp"
+#include "physics/flow/fracture_flow.hpp"
+#include "physics/flow/present_conduits.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// Of a fracture face through its ridges: p_F, pressures on ridges.
+template <int n>
+using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
+
+/// The same where T is that of a transmissivity of 1, and the face's own follows from its widening, the last of x, m.
+template <int n>
+struct WideningFace : FractureFace<n> {
+  using Base = FractureFace<n>;
+  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
+  using Rows = typename Base::Columns;
+
+  PresentConduits conduits;
+
+  WideningFace(const Base& base, const PresentConduits& conduits) : Base(base), conduits(conduits) {}
+  KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[2 + n], Real (&q)[n]) const {
+    Real p[1 + n];
+    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
+    Base::flow(face, p, q);
+    const Real transmissivity = conduits.transmissivity(face, x[1 + n]);
+    for (Real& each : q) each *= transmissivity;
+  }
+  KOKKOS_INLINE_FUNCTION void dflow(int face, const Real (&x)[2 + n], Real (&dq)[n][2 + n]) const {
+    Real p[1 + n], q[n], own[n][1 + n];
+    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
+    Base::flow(face, p, q);
+    Base::dflow(face, p, own);
+    const Real transmissivity = conduits.transmissivity(face, x[1 + n]),
+               by_widening = conduits.dtransmissivity(face, x[1 + n]);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < 1 + n; ++k) dq[i][k] = transmissivity * own[i][k];
+      dq[i][1 + n] = by_widening * q[i];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
+    Real q[n];
+    flow(face, x, q);
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      r[0] += q[i];
+      r[1 + i] = -q[i];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
+    Real dq[n][2 + n];
+    dflow(face, x, dq);
+    for (int k = 0; k < 2 + n; ++k) {
+      J[0][k] = 0;
+      for (int i = 0; i < n; ++i) {
+        J[0][k] += dq[i][k];
+        J[1 + i][k] = -dq[i][k];
+      }
+    }
+  }
+};
+
+/// The faces of a mesh, with what fractures that cut others resist at their ridges.
+template <Shape shape>
+class FractureFaces {
+ public:
+  using Plane = FacePlane<shape>;
+  static constexpr int dim = Plane::dim, n = Plane::n;
+
+  /// `facets`: the layout of pressures. `widens`: see WideningFace. Collective.
+  FractureFaces(RCP<const mesh::Mesh> mesh, const fields::Layout& facets, const FractureFlowParameters& parameters,
+                bool widens)
+      : mesh_(mesh), parameters_(&parameters), widens_(widens) {
+    find_fillings(facets);
+    set_faces();
+  }
+
+  const FractureFace<n>& op() const { return op_; }
+  ConstView<laws::Conduit*> conduits() const { return conduits_; }  ///< [local fracture face]
+
+  Plane plane(LocalIndex f) const {
+    const auto& face = parameters_->faces[f];
+    Plane plane(*mesh_, f, widens_ ? 1 : face.along.transmissivity(), parameters_->scheme);
+    for (const int cutting : parameters_->cut_by[mesh_->fracture_faces[f].fracture])
+      for (int k = 0; k < n; ++k) {
+        const Real filling = fillings_[cutting][mesh_->facets->ridge[f * n + k]];
+        if (filling > 0)
+          add_resistance(plane.T, k, filling / (face.along.hydraulic_aperture() * mesh::ridge_length(*mesh_, f, k)));
+      }
+    return plane;
+  }
+
+ private:
+  /// Of each fracture that cuts others, what half of its width resists per area at its ridges, the mean over its faces
+  /// that end there. The owner of a ridge sees all of them.
+  void find_fillings(const fields::Layout& facets) {
+    fillings_.resize(parameters_->cut_by.size());
+    for (const auto& all : parameters_->cut_by)
+      for (const int cutting : all)
+        if (fillings_[cutting].empty()) fillings_[cutting] = filling_of(cutting, facets);
+  }
+
+  std::vector<Real> filling_of(int cutting, const fields::Layout& facets) const {
+    fields::Vector owned(facets.owned()), everywhere(facets.ghosted());
+    std::vector<int> count(facets.n_owned(), 0);
+    {
+      auto sum = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
+      for (LocalIndex f = 0; f < mesh_->n_fracture_faces(); ++f)
+        for (int k = 0; k < n && mesh_->fracture_faces[f].fracture == cutting; ++k)
+          if (const LocalIndex ridge = mesh_->facets->ridge[f * n + k]; ridge < facets.n_owned()) {
+            sum(ridge, 0) += 1 / parameters_->faces[f].exchange;
+            ++count[ridge];
+          }
+      for (LocalIndex k = 0; k < facets.n_owned(); ++k) sum(k, 0) /= std::max(1, count[k]);
+    }
+    everywhere.doImport(owned, *facets.import(), Tpetra::REPLACE);
+    const auto values = everywhere.getLocalViewHost(Tpetra::Access::ReadOnly);
+    std::vector<Real> filling;
+    for (std::size_t k = 0; k < values.extent(0); ++k) filling.push_back(values(k, 0));
+    return filling;
+  }
+
+  void set_faces() {
+    const LocalIndex n_faces = mesh_->n_fracture_faces();
+    View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
+    const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
+    for (LocalIndex f = 0; f < n_faces; ++f) {
+      const Plane plane = this->plane(f);
+      for (int k = 0; k < n; ++k) {
+        for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
+        lift_host(f, k) = 0;
+        for (int i = 0; i < dim; ++i) lift_host(f, k) += parameters_->weight[i] * plane.d[k][i];
+      }
+    }
+    Kokkos::deep_copy(T, T_host);
+    Kokkos::deep_copy(lift, lift_host);
+    std::vector<laws::Conduit> conduits;
+    for (const auto& face : parameters_->faces) conduits.push_back(face.along);
+    op_ = {.T = T, .lift = lift, .fluid = parameters_->fluid};
+    conduits_ = assembly::to_device(conduits, "conduits");
+  }
+
+  RCP<const mesh::Mesh> mesh_;
+  const FractureFlowParameters* parameters_;
+  bool widens_;
+  std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
+  FractureFace<n> op_;
+  ConstView<laws::Conduit*> conduits_;
+};
+
+}  // namespace sprekk::physics

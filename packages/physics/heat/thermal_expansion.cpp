@@ -1,0 +1,269 @@
+#include "physics/heat/thermal_expansion.hpp"
+
+#include "assembly/assembler.hpp"
+#include "base/over_ranks.hpp"
+#include "mesh/facets.hpp"
+#include "physics/poroelasticity/coupling_volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+using assembly::Slot;
+using mesh::Shape;
+
+namespace {
+
+/// | symbol    | shape          | unit |                                                |
+/// | x         | 1              | K    | T of the cell                                  |
+/// | r         | m              | N    | -(T - T_0) dV/du                               |
+/// | volume    | [entity, m]    | N/K  | dV/du (2D: N/(m K))                            |
+/// | reference | [entity]       | K    | T_0                                            |
+template <class Displacements>
+struct ThermalLoad {
+  using Columns = assembly::Slots<Slot<1, 1>>;
+  using Rows = assembly::Slots<Displacements>;
+  static constexpr int m = Rows::size;
+  View<Real**> volume;
+  ConstView<Real*> reference;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1], Real (&r)[m]) const {
+    for (int k = 0; k < m; ++k) r[k] = -volume(e, k) * (x[0] - reference(e));
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[1], Real (&J)[m][1]) const {
+    for (int k = 0; k < m; ++k) J[k][0] = -volume(e, k);
+  }
+};
+
+template <Shape shape>
+class ThermalStress final : public assembly::Module {
+ public:
+  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+
+  ThermalStress(const mesh::Mesh& mesh, ThermalStressParameters parameters)
+      : parameters_(std::move(parameters)),
+        fractures_(!mesh.fracture_names.empty()),
+        tips_(mesh.n_global_enriched > 0) {}
+
+  std::string name() const override { return "thermal stress"; }
+  std::string fingerprint() const override { return parameters_.initial.text(); }
+
+  assembly::Declaration declare(const mesh::Mesh&) const override {
+    assembly::Declaration d;
+    d.couplings = {{Loop::cells, "displacement", {"temperature"}}};
+    if (fractures_) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"temperature"}});
+    if (tips_) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"temperature"}});
+    d.outputs = {{{"thermal stress", "Pa", fields::Entity::cell, 1}, [this](const auto& s) { return stresses(s); }}};
+    d.linear = true;
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
+    temperature_ = context.field("temperature");
+    const auto stiffness = [&](LocalIndex cell) { return this->stiffness(cell); };
+    std::vector<Real> reference;
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+      reference.push_back(initial(c));
+      largest_ = std::max(largest_, this->stiffness(c));
+    }
+    cells_.bind(context, Loop::cells, "displacement", cell_volumes<shape>(*mesh_, stiffness), reference);
+    if (fractures_) {
+      std::vector<Real> of_side;
+      for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
+        of_side.push_back(reference[mesh_->fracture_faces[f].cell[side]]);
+      bubbles_.bind(context, Loop::fracture_sides, "side bubble", bubble_volumes<shape>(*mesh_, stiffness), of_side);
+    }
+    if (tips_) {
+      std::vector<Real> of_cell;
+      for (const LocalIndex cell : assembly::tip_cells(*mesh_)) of_cell.push_back(reference[cell]);
+      tip_cells_.bind(context, Loop::tip_cells, "tip displacement", tip_cell_volumes<shape>(*mesh_, stiffness),
+                      of_cell);
+    }
+    find_spread(reference);
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    for_each_part([&](const auto& part) { part.assembler->add_residual(part.op, state, r); });
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    for_each_part([&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
+  }
+
+  /// What the largest change of temperature makes of a stress.
+  assembly::Scales loads(Real t) const override {
+    Real change = parameters_.typical_change;
+    const auto see = [&](const base::Expression& value, LocalIndex cell, const mesh::Vector& x) {
+      change = std::max(change, std::abs(value(x, t) - initial(cell)));
+    };
+    for (const auto& given : parameters_.given) {
+      const auto is_in = [&](LocalIndex cell) { return given.region < 0 || mesh_->cell_region[cell] == given.region; };
+      if (given.boundary >= 0) {
+        for (const auto& face : mesh_->boundary_faces)
+          if (face.boundary == given.boundary && is_in(face.cell))
+            see(given.value, face.cell, mesh::face_centre(mesh::face_corners(*mesh_, face.cell, face.local_face)));
+      } else {
+        for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+          if (is_in(c)) see(given.value, c, mesh::cell_centre(*mesh_, c));
+      }
+    }
+    return {{"stress", largest_ * std::max(change, spread_)}};
+  }
+
+ private:
+  template <class Displacements>
+  struct Part {
+    using Op = ThermalLoad<Displacements>;
+    Op op;
+    std::unique_ptr<assembly::Assembler<Op>> assembler;
+
+    void bind(const assembly::Context& context, Loop loop, const char* displacement, const View<Real**>& volume,
+              const std::vector<Real>& reference) {
+      op = {volume, assembly::to_device(reference, "temperature at the start")};
+      assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, std::vector{context.field(displacement)},
+                                                            std::vector{context.field("temperature")},
+                                                            assembly::Assembler<Op>::Positions::once);
+    }
+  };
+
+  template <class Visit>
+  void for_each_part(const Visit& visit) const {
+    visit(cells_);
+    if (fractures_) visit(bubbles_);
+    if (tips_) visit(tip_cells_);
+  }
+
+  /// 3 K alpha_T, Pa/K
+  Real stiffness(LocalIndex cell) const {
+    const auto& law = parameters_.elasticity.of_cell(*mesh_, cell);
+    return (3 * law.lambda + 2 * law.G) * parameters_.expansion.of_cell(*mesh_, cell);
+  }
+  Real initial(LocalIndex cell) const {
+    if (parameters_.initial.is_constant()) return parameters_.initial({}, 0);
+    return assembly::cell_mean<shape>(*mesh_, cell, [&](const auto& x) { return parameters_.initial(x, 0); })[1];
+  }
+  void find_spread(const std::vector<Real>& reference) {
+    std::vector<Real> ends = {-std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
+    for (const Real T : reference) ends = {std::max(ends[0], T), std::max(ends[1], -T)};
+    ends = base::max_over_ranks(*mesh_->comm, ends);
+    spread_ = ends[0] + ends[1];
+  }
+
+  std::vector<Real> stresses(const assembly::State& state) const {
+    const auto T = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[temperature_]);
+    std::vector<Real> values;
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) values.push_back(-stiffness(c) * (T(c) - initial(c)));
+    return values;
+  }
+
+  ThermalStressParameters parameters_;
+  bool fractures_, tips_;  // the mesh has some; enriched ones
+  RCP<const mesh::Mesh> mesh_;
+  int temperature_ = -1;
+  Real largest_ = 0;  // 3 K alpha_T on this rank
+  Real spread_ = 0;   // of the temperature at the start
+  Part<Slot<n, dim>> cells_, tip_cells_;
+  Part<Slot<1, dim>> bubbles_;
+};
+
+/// | symbol | shape           | unit     |                                      |
+/// | x      | 1               | K        | T of the cell                        |
+/// | r      | 1               | m^3/s    | -rate V beta (T - T_old)             |
+/// | room   | [local cell]    | m^3/K    | V beta                               |
+/// | kept   | [owned cell, 1] | K        | T_old                                |
+struct Expansion {
+  using Columns = assembly::Slots<Slot<1, 1>>;
+  using Rows = Columns;
+  ConstView<Real*> room;
+  View<Real**> kept;
+  Real rate = 0;
+
+  KOKKOS_INLINE_FUNCTION void residual(int c, const Real (&x)[1], Real (&r)[1]) const {
+    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else another rank's
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int c, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -room(c) * rate; }
+};
+
+class PoreExpansion final : public assembly::Module {
+ public:
+  explicit PoreExpansion(PoreExpansionParameters parameters) : parameters_(std::move(parameters)) {}
+
+  std::string name() const override { return "thermal expansion in pores"; }
+
+  assembly::Declaration declare(const mesh::Mesh&) const override {
+    assembly::Declaration d;
+    d.couplings = {{Loop::cells, "pressure", {"temperature"}}};
+    d.stores = true;
+    d.history = {{"temperature", fields::Entity::cell, 1}};
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    temperature_ = context.field("temperature");
+    assembler_ = std::make_unique<Assembler>(context, Loop::cells, std::vector{context.field("pressure")},
+                                             std::vector{temperature_}, Assembler::Positions::keep);
+    const auto& mesh = *context.mesh();
+    std::vector<Real> room;
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+        const auto [volume, mean] =
+            assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return parameters_.initial(x, 0); });
+        room.push_back(volume * parameters_.expansion.of_cell(mesh, c));
+        initial_.push_back(mean);
+      }
+    });
+    op_.room = assembly::to_device(room, "room");
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_->add_residual(at(state), state, r);
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    assembler_->add_jacobian(at(state), state, J);
+  }
+
+  void initial_history(const std::vector<View<Real**>>& history) const override {
+    const auto kept = Kokkos::create_mirror_view(history[0]);
+    for (std::size_t c = 0; c < kept.extent(0); ++c) kept(c, 0) = initial_[c];
+    Kokkos::deep_copy(history[0], kept);
+  }
+  void commit(assembly::State& state) const override {
+    const auto kept = state.history[0];
+    const auto T = state.x[temperature_];
+    Kokkos::parallel_for(
+        "keep", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int c) { kept(c, 0) = T(c); });
+  }
+
+ private:
+  using Assembler = assembly::Assembler<Expansion>;
+
+  Expansion at(const assembly::State& state) const {
+    auto op = op_;
+    op.kept = state.history[0];
+    op.rate = state.rate;
+    return op;
+  }
+
+  PoreExpansionParameters parameters_;
+  int temperature_ = -1;
+  std::vector<Real> initial_;  // [local cell]
+  Expansion op_;
+  std::unique_ptr<Assembler> assembler_;
+};
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters) {
+  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+    return std::make_unique<ThermalStress<s()>>(mesh, std::move(parameters));
+  });
+}
+
+std::unique_ptr<assembly::Module> make_pore_expansion(PoreExpansionParameters parameters) {
+  return std::make_unique<PoreExpansion>(std::move(parameters));
+}
+
+}  // namespace sprekk::physics
