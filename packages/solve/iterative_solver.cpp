@@ -11,13 +11,14 @@
 #include "solve/block_solver.hpp"
 #include "solve/families.hpp"
 #include "solve/fine_level.hpp"
-#include "solve/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
 
 using fields::MultiVector;
 using fields::Operator;
+using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
 ParameterList krylov_defaults() {
@@ -226,7 +227,7 @@ class IterativeSolver : public LinearSolver {
     }
     auto& list = parameters_.sublist("multigrid");
     list.set("coarsest level", Multigrid::coarse_size, "unknowns at most");
-    list.set("degree of Chebyshev's polynomial", Chebyshev::usual_degree);
+    list.set("degree of Chebyshev's polynomial", multigrid::Chebyshev::usual_degree);
     return Multigrid::coarse_size;
   }
 

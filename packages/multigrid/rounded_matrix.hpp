@@ -3,13 +3,13 @@
 
 #include <cstdint>
 
-#include "solve/node_kernels.hpp"
-#include "solve/node_matrix.hpp"
+#include "fields/node_kernels.hpp"
+#include "multigrid/node_matrix.hpp"
 #ifdef SPREKK_WIDE_INSTRUCTIONS
 #include <immintrin.h>
 #endif
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// S A S for a diagonal matrix S, in whole multiples of a unit that each row has: 1/32640 of 1, or of the row's largest
 /// number where that is more. Numbers are off by at most half of that; with S = D^-1/2, D the diagonal of a positive
@@ -27,7 +27,7 @@ class RoundedMatrix {
   /// out(i, sums) for every row node i with the b numbers of (S A S x) there, x [all nodes, unknown], whose ghosts it
   /// exchanges first; b is the size of blocks. `wide`: in instructions that not every processor has. Collective.
   template <int b, class Out>
-  void multiply(const View<Real*>& x, const Out& out, bool wide = has_wide_instructions()) const;
+  void multiply(const View<Real*>& x, const Out& out, bool wide = fields::has_wide_instructions()) const;
 
   std::size_t bytes() const { return sizeof(Number) * value_.extent(0) + sizeof(float) * unit_.extent(0); }
 
@@ -110,4 +110,4 @@ void RoundedMatrix::multiply(const View<Real*>& x, const Out& out, [[maybe_unuse
       });
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,16 +1,15 @@
-#include "solve/galerkin.hpp"
+#include "multigrid/galerkin.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <tuple>
 
-#include "solve/coarse_graphs.hpp"
-#include "solve/node_kernels.hpp"
+#include "multigrid/coarse_graphs.hpp"
+#include "multigrid/block_sizes.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
-using fields::Map;
 using Policy = Kokkos::RangePolicy<Execution>;
 
 /// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
@@ -205,7 +204,7 @@ void Galerkin::restrict_symmetric() const {
           for (std::size_t k = 0; k < n; ++k) {
             const LocalIndex row = column(begin + k);
             const std::size_t first = start_P(row), n_p = start_P(row + 1) - first;
-            const std::size_t s = Walk{&column_P(first), n_p}.find(I);
+            const std::size_t s = Cursor{&column_P(first), n_p}.find(I);
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c)
                 r(b * m * begin + (q * n + k) * b + c) = p(b * m * first + (c * n_p + s) * m + q);
@@ -232,13 +231,13 @@ void Galerkin::restrict_general(const NodeMatrix& A, const View<Real*>& inverse_
             const LocalIndex j = member(at);
             const std::size_t begin = graph.start(j), n_a = graph.start(j + 1) - begin;
             const float* const from = &t(static_cast<std::size_t>(j) * b * m);
-            const std::size_t own_place = Walk{&column_R(start(I)), n}.find(j);
-            Walk walk{&column_R(start(I)), n};
+            const std::size_t own_place = Cursor{&column_R(start(I)), n}.find(j);
+            Cursor cursor{&column_R(start(I)), n};
             for (std::size_t k = 0; k < n_a; ++k) {
               if (aggregate(graph.column(begin + k)) < 0) continue;
               const bool own = graph.column(begin + k) == j, out_of_reach = is_set(far, begin + k);
               const LocalIndex column = out_of_reach ? j : graph.column(begin + k);
-              const std::size_t s = out_of_reach ? own_place : walk.find(column);
+              const std::size_t s = out_of_reach ? own_place : cursor.find(column);
               if (s == n) continue;
               for (int q = 0; q < m; ++q) {
                 float* const to = row + (q * n + s) * b;
@@ -273,7 +272,7 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
           at_present(i) = to(k_made);
           Real* const row = &AP(b * m * to(k_made));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
-          Walk walk{&column(start(i)), n};
+          Cursor cursor{&column(start(i)), n};
           std::size_t begins = 0;  // where the last one did: rows of neighbours often begin alike
           for (std::size_t k = 0; k < n_a; ++k) {
             const LocalIndex j = graph.column(begin + k);
@@ -281,9 +280,9 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
             if (n_p == 0) continue;
             const float* const from = &p(b * m * first_p);
             const Real* const block = &a(b * b * begin + k * b);
-            walk.at = begins;
+            cursor.at = begins;
             for (std::size_t s = 0; s < n_p; ++s) {
-              const std::size_t place = walk.find(column_P(first_p + s));
+              const std::size_t place = cursor.find(column_P(first_p + s));
               if (s == 0) begins = place;
               add_block<b, b, m>(block, n_a * b, from + s * m, n_p * m, row + place * m, n * m);
             }
@@ -304,7 +303,7 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
           const std::size_t n = start(I + 1) - start(I), begin = start_R(I), n_r = start_R(I + 1) - begin;
           Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
-          Walk walk{&column(start(I)), n};
+          Cursor cursor{&column(start(I)), n};
           std::size_t begins = 0;  // where the last one did
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
@@ -314,9 +313,9 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
             Real block[m * b];
             for (int q = 0; q < m; ++q)
               for (int c = 0; c < b; ++c) block[q * b + c] = r(b * m * begin + (q * n_r + k) * b + c);
-            walk.at = begins;
+            cursor.at = begins;
             for (std::size_t s = 0; s < n_ap; ++s) {
-              const std::size_t place = walk.find(column_AP(start_AP(fine) + s));
+              const std::size_t place = cursor.find(column_AP(start_AP(fine) + s));
               if (s == 0) begins = place;
               add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + place * m, n * m);
             }
@@ -335,4 +334,4 @@ std::size_t Galerkin::bytes() const {
          sizeof(std::uint64_t) * far_.extent(0) + slices_.bytes();
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

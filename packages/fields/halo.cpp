@@ -1,14 +1,14 @@
-#include "solve/halo.hpp"
+#include "fields/halo.hpp"
 
 #include <Tpetra_Distributor.hpp>
 
 #include "base/check.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::fields {
 
-Halo::Halo(RCP<const fields::Map> owned, RCP<const fields::Map> all) : owned_(owned), all_(all) {
+Halo::Halo(RCP<const Map> owned, RCP<const Map> all) : owned_(owned), all_(all) {
   if (all->getGlobalNumElements() == owned->getGlobalNumElements()) return;
-  import_ = rcp(new fields::Import(owned, all));
+  import_ = rcp(new Import(owned, all));
   SPREKK_CHECK(import_->getNumSameIDs() == owned->getNodeNumElements(), "owned nodes must come first");
 }
 
@@ -70,4 +70,4 @@ template void Halo::exchange_rows(const View<std::size_t*>&, const View<Real*>&,
 template void Halo::exchange_rows(const View<std::size_t*>&, const View<float*>&, int) const;
 template void Halo::exchange_rows(const View<std::size_t*>&, const View<GlobalIndex*>&, int) const;
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::fields

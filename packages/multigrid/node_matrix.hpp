@@ -3,10 +3,17 @@
 
 #include <memory>
 
+#include "fields/halo.hpp"
 #include "fields/matrix.hpp"
-#include "solve/halo.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
+
+using fields::CrsMatrix;
+using fields::Halo;
+using fields::Map;
+using fields::Matrix;
+using fields::MultiVector;
+using fields::Vector;
 
 /// Which nodes couple: row i has the columns column(start(i)) ... column(start(i + 1) - 1), local numbers of `columns`.
 struct NodeGraph {
@@ -30,14 +37,14 @@ using NodeMatrix = NodeMatrixOf<Real>;
 using ShortNodeMatrix = NodeMatrixOf<float>;  ///< in half of the bytes; products with it are in double precision
 
 /// A matrix that is stored in blocks of this size, with its numbers; of another one, see below. Collective.
-NodeMatrix node_matrix(const fields::Matrix& A, int size);
+NodeMatrix node_matrix(const Matrix& A, int size);
 /// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
 /// the values of A where A's rows and columns on this rank allow that. Throws where unknowns are numbered otherwise.
 /// Collective.
-NodeMatrix node_matrix(const fields::CrsMatrix& A, int size);
+NodeMatrix node_matrix(const CrsMatrix& A, int size);
 
 /// A square matrix number by number, the unknowns of node n as above. Collective.
-RCP<fields::CrsMatrix> crs_matrix(const NodeMatrix& A);
+RCP<CrsMatrix> crs_matrix(const NodeMatrix& A);
 
 /// y <- A x with x [all columns], whose ghosts it exchanges first; y [rows]. Collective.
 template <class Number>
@@ -48,4 +55,4 @@ void add_product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View
 /// r <- b - A x. Collective.
 void residual(const NodeMatrix& A, const View<Real*>& x, const ConstView<Real*>& b, const View<Real*>& r);
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

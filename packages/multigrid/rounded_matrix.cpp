@@ -1,8 +1,10 @@
-#include "solve/rounded_matrix.hpp"
+#include "multigrid/rounded_matrix.hpp"
+
+#include "multigrid/block_sizes.hpp"
 
 #include <cmath>
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
 using Number = RoundedMatrix::Number;
@@ -54,4 +56,4 @@ void RoundedMatrix::update(const NodeMatrix& A, const View<Real*>& scale) {
   });
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "solve/node_matrix.hpp"
+#include "multigrid/node_matrix.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// Which owned nodes are neighbours, in rows as in NodeGraph; without ghosts, and without a node itself.
 struct Neighbours {
@@ -28,8 +28,8 @@ struct Nodes {
 /// null for the constant ones; `places` [node, dim], null if they are not known. Without modes, couplings are weak that
 /// are small beside the diagonals of both, and no neighbours: so what conducts well and what does not stay apart
 /// (Vanek, Mandel and Brezina 1996). Collective.
-Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
-               const RCP<const fields::MultiVector>& places = Teuchos::null);
+Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes,
+               const RCP<const MultiVector>& places = Teuchos::null);
 
 /// How far each node reaches, [node] m: not much farther than to its nearest neighbour. Nodes couple strongly that one
 /// of the two reaches: in cells that are much longer than wide, those across short edges, where a smoother does little;
@@ -54,4 +54,4 @@ Aggregates aggregate(const Nodes& nodes, std::size_t enough = 0);
 /// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis. Stored data.
 std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& aggregates, Nodes& coarse);
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,4 +1,4 @@
-#include "solve/direct_inverse.hpp"
+#include "multigrid/direct_inverse.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -8,7 +8,7 @@
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
 using fields::Map;
@@ -36,17 +36,15 @@ DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& n
     : name_(name), map_(A->getRowMap()), A_(renumbered(A)), from_(A_->getRowMap()), to_(A_->getRowMap()) {
   const auto n = static_cast<int>(A_->getGlobalNumRows());
   if (n > most_dense)
-    solver_ = make_direct_solver(Teuchos::ParameterList()
-                                     .set("ICNTL(7)", 2, "ordering: approximate minimum fill, soon found")
-                                     .set("ICNTL(8)", 1, "scaling: by the diagonal"),
-                                 std::clamp(n / least_of_a_rank, 1, most_ranks));
+    mumps_ = std::make_unique<Mumps>(Teuchos::ParameterList()
+                                         .set("ICNTL(7)", 2, "ordering: approximate minimum fill, soon found")
+                                         .set("ICNTL(8)", 1, "scaling: by the diagonal"),
+                                     std::clamp(n / least_of_a_rank, 1, most_ranks));
 }
 
 void DirectInverse::setup(bool symmetric) {
-  if (!solver_) return factor_dense();
-  const auto joined = std::make_shared<Joined>(std::vector<RCP<const Map>>{A_->getRowMap()});
-  const auto failure =
-      solver_->setup({.joined = joined, .blocks = {}, .symmetric = symmetric, .diagonal = {}, .matrix = A_});
+  if (!mumps_) return factor_dense();
+  const auto failure = mumps_->factor(A_, symmetric);
   SPREKK_CHECK(failure.empty(), "{}: {}", name_, failure);
 }
 
@@ -86,9 +84,9 @@ void DirectInverse::apply(const fields::MultiVector& b, fields::MultiVector& y, 
   for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
     Kokkos::deep_copy(from_.getLocalViewDevice(Tpetra::Access::OverwriteAll),
                       b.getVector(v)->getLocalViewDevice(Tpetra::Access::ReadOnly));
-    if (solver_) {
-      const auto report = solver_->solve(from_, to_, 1);
-      SPREKK_CHECK(report.converged, "{}: {}", name_, report.reason);
+    if (mumps_) {
+      const auto failure = mumps_->substitute(from_, to_);
+      SPREKK_CHECK(failure.empty(), "{}: {}", name_, failure);
     } else {
       solve_dense(from_, to_);
     }
@@ -97,4 +95,4 @@ void DirectInverse::apply(const fields::MultiVector& b, fields::MultiVector& y, 
   }
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,11 +1,13 @@
 // The inverse of a matrix that is small enough for one rank, or a few.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "solve/linear_solver.hpp"
+#include "multigrid/mumps.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// By factors, for multigrid's last level and the rows around crack tips: those of MUMPS on the first ranks, as many as
 /// gain from it; of few unknowns, for which calls of MUMPS take longer than the work, dense ones on every rank. The
@@ -34,10 +36,10 @@ class DirectInverse : public fields::Operator {
   RCP<const fields::Map> map_;
   RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
   mutable Vector from_, to_;
-  std::unique_ptr<LinearSolver> solver_;  // null: dense
-  std::vector<Real> factors_;             // of the whole matrix, column by column
+  std::unique_ptr<Mumps> mumps_;  // null: dense
+  std::vector<Real> factors_;     // of the whole matrix, column by column
   std::vector<int> pivots_;
   mutable std::vector<Real> part_, whole_;  // of a vector: what this rank has, zero elsewhere; all of it
 };
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

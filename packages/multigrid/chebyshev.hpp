@@ -1,9 +1,9 @@
 // Chebyshev's iteration as a smoother.
 #pragma once
 
-#include "solve/rounded_matrix.hpp"
+#include "multigrid/rounded_matrix.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// About A^-1 for the upper part of A's spectrum: the polynomial of D^-1 A whose residual is smallest over
 /// [1/15, 1.1] times the largest eigenvalue, D the diagonal (Adams, Brezina, Hu and Tuminaro 2003); of degree n the
@@ -43,4 +43,4 @@ class Chebyshev {
   mutable View<Real*> step_, x_, next_;  // times D^1/2 or D^-1/2
 };
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "solve/node_matrix.hpp"
+#include "multigrid/node_matrix.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// R (A P) in slices: for a run of rows of R the rows of A P that these name are made in one of two parts of a buffer,
 /// by turns; those that are still in the other part are not made again. Slices are as thin as that repeats little.
@@ -27,4 +27,4 @@ struct Slices {
 /// rows. Stored data.
 Slices make_slices(const NodeGraph& R, const View<std::size_t*>& start);
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

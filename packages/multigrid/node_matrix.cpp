@@ -1,17 +1,14 @@
-#include "solve/node_matrix.hpp"
+#include "multigrid/node_matrix.hpp"
 
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
 
 #include "base/over_ranks.hpp"
-#include "solve/node_kernels.hpp"
+#include "multigrid/block_sizes.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
-
-using fields::CrsMatrix;
-using fields::Map;
 
 /// The nodes of unknowns: those of owned ones, and those of all columns, ghosts after them; [local column] -> node.
 struct ColumnNodes {
@@ -171,7 +168,7 @@ void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& ou
 
 }  // namespace
 
-NodeMatrix node_matrix(const fields::Matrix& A, int size) {
+NodeMatrix node_matrix(const Matrix& A, int size) {
   const auto& numbers = A.numbers();
   const auto &rows = *A.row_map(), &columns = *A.column_map();
   bool rows_first = columns.getNodeNumElements() >= rows.getNodeNumElements();
@@ -254,4 +251,4 @@ void residual(const NodeMatrix& A, const View<Real*>& x, const ConstView<Real*>&
   });
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

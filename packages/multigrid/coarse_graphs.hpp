@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "solve/aggregates.hpp"
+#include "multigrid/aggregates.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// Sets of nodes, one for each row: row i has node(start(i)) ... node(start(i + 1) - 1), sorted.
 template <class Node>
@@ -34,18 +34,18 @@ Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name)
 }
 
 /// The same rows, sorted by global numbers. Stored data.
-Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const fields::Map& map);
+Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const Map& map);
 
 /// The rows of owned nodes, with those of ghosts after them. Collective.
 Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo);
 
 /// Owned coarse nodes, then all others that are named; -1 is none. Collective.
-RCP<const fields::Map> with_named(const RCP<const fields::Map>& owned, const std::vector<View<GlobalIndex*>>& named);
+RCP<const Map> with_named(const RCP<const Map>& owned, const std::vector<View<GlobalIndex*>>& named);
 
 /// Stored data.
-View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const fields::Map& map);
+View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map);
 
 /// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

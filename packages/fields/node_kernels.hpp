@@ -1,12 +1,9 @@
-// What the kernels on blocks of nodes share.
+// What kernels on blocks of nodes share.
 #pragma once
 
-#include <type_traits>
-
-#include "base/check.hpp"
 #include "base/types.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::fields {
 
 /// n numbers that lie together, in vectors of 4, 2 and 1 of them.
 template <int n>
@@ -46,8 +43,8 @@ struct Numbers<0> {
   KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
 };
 
-/// Where columns stand in a list that has none twice: fast for those that come in its order, or nearly so.
-struct Walk {
+/// Finds columns in a list that has none twice: fast where they come in its order, or nearly so.
+struct Cursor {
   const LocalIndex* column;
   std::size_t n;
   std::size_t at = 0;  // where the next one is looked for first
@@ -62,22 +59,6 @@ struct Walk {
     return n;
   }
 };
-
-/// work(height, width) with the sizes of a block as constants of compile time; false if there is no code for them.
-template <class Work>
-bool try_sizes(int height, int width, const Work& work) {
-  const auto is = [&](auto h, auto w) {
-    if (height != h() || width != w()) return false;
-    work(h, w);
-    return true;
-  };
-  constexpr std::integral_constant<int, 1> one;
-  constexpr std::integral_constant<int, 2> two;
-  constexpr std::integral_constant<int, 3> three;
-  constexpr std::integral_constant<int, 6> six;
-  return is(one, one) || is(two, two) || is(three, three) || is(six, six) || is(two, three) || is(three, two) ||
-         is(three, six) || is(six, three);
-}
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && \
     !defined(KOKKOS_ENABLE_SYCL)
@@ -106,12 +87,4 @@ void in_widest_instructions(const Work& work) {
     work();
 }
 
-/// The same as try_sizes() where there must be code for them, in the widest instructions.
-template <class Work>
-void with_sizes(int height, int width, const Work& work) {
-  bool found = false;
-  in_widest_instructions([&] { found = try_sizes(height, width, work); });
-  SPREKK_CHECK(found, "multigrid: no code for blocks of {} x {} numbers", height, width);
-}
-
-}  // namespace sprekk::solve
+}  // namespace sprekk::fields

@@ -1,10 +1,8 @@
-#include "solve/coarse_graphs.hpp"
+#include "multigrid/coarse_graphs.hpp"
 
 #include <cmath>
 
-namespace sprekk::solve {
-
-using fields::Map;
+namespace sprekk::multigrid {
 
 Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const Map& map) {
   Rows<GlobalIndex> rows{local.start, View<GlobalIndex*>("node", local.node.extent(0))};
@@ -66,4 +64,4 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   return far;
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "solve/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace sprekk::test {
 
@@ -18,7 +18,7 @@ using fields::Map;
 using fields::MultiVector;
 using fields::Vector;
 using fields::wrapped;
-using solve::NodeMatrix;
+using multigrid::NodeMatrix;
 
 /// Bars between all nodes of a lattice [n, n, height] that are at most sqrt(3) apart, each with a stiffness of its
 /// own: rigid motions cost nothing. `held` nodes with x = 0 are prescribed; `skew` makes it unsymmetric and keeps the

@@ -1,4 +1,4 @@
-#include "solve/galerkin.hpp"
+#include "multigrid/galerkin.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,11 @@ namespace {
 /// One step from a level to the next, with all that it needs.
 struct Step {
   explicit Step(const CrsMatrix& matrix, const RCP<MultiVector>& modes, bool symmetric = true)
-      : A(solve::node_matrix(matrix, 3)), nodes(solve::nodes_of(A, modes)), aggregates(solve::aggregate(nodes)) {
-    tentative = solve::tentative_prolongator(nodes, aggregates, coarse_nodes);
-    galerkin = std::make_unique<solve::Galerkin>(A, nodes, aggregates, tentative);
+      : A(multigrid::node_matrix(matrix, 3)),
+        nodes(multigrid::nodes_of(A, modes)),
+        aggregates(multigrid::aggregate(nodes)) {
+    tentative = multigrid::tentative_prolongator(nodes, aggregates, coarse_nodes);
+    galerkin = std::make_unique<multigrid::Galerkin>(A, nodes, aggregates, tentative);
     Vector diagonal(matrix.getRowMap());
     matrix.getLocalDiagCopy(diagonal);
     const auto damping = zeros(A.graph.columns->n_all(), 3);
@@ -24,10 +26,10 @@ struct Step {
     galerkin->update(A, damping, symmetric);
   }
   NodeMatrix A;
-  solve::Nodes nodes, coarse_nodes;
-  solve::Aggregates aggregates;
+  multigrid::Nodes nodes, coarse_nodes;
+  multigrid::Aggregates aggregates;
   std::vector<Real> tentative;
-  std::unique_ptr<solve::Galerkin> galerkin;
+  std::unique_ptr<multigrid::Galerkin> galerkin;
 };
 
 TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
@@ -42,17 +44,17 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
   cube->fillComplete();
   for (const RCP<const CrsMatrix>& matrix : {RCP<const CrsMatrix>(truss.matrix), RCP<const CrsMatrix>(transposed),
                                              RCP<const CrsMatrix>(square), RCP<const CrsMatrix>(cube)}) {
-    const auto A = solve::node_matrix(*matrix, 3);
-    const auto again = solve::crs_matrix(A);
+    const auto A = multigrid::node_matrix(*matrix, 3);
+    const auto again = multigrid::crs_matrix(A);
     const auto& halo = *A.graph.columns;
     const auto x = random_vector(halo.n_all(), 3, 1), y = zeros(halo.n_owned(), 3), r = zeros(halo.n_all(), 3);
     Vector from(truss.map), to(truss.map), as_before(truss.map);
     for (std::size_t i = 0; i < from.getLocalLength(); ++i) from.replaceLocalValue(i, x(i));
     matrix->apply(from, to);
     again->apply(from, as_before);
-    solve::product(A, x, y);
+    multigrid::product(A, x, y);
     Kokkos::deep_copy(r, 1);
-    solve::residual(A, x, y, r);
+    multigrid::residual(A, x, y, r);
     for (std::size_t i = 0; i < from.getLocalLength(); ++i) {
       EXPECT_NEAR(y(i), to.getData()[i], 1e-12);
       EXPECT_NEAR(as_before.getData()[i], to.getData()[i], 1e-12);
@@ -63,9 +65,9 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
 
 TEST(Aggregates, HoldEveryFreeNodeOnceAndNoOther) {
   const Truss truss(7, true);
-  const auto A = solve::node_matrix(*truss.matrix, 3);
-  const auto nodes = solve::nodes_of(A, truss.modes);
-  const auto aggregates = solve::aggregate(nodes);
+  const auto A = multigrid::node_matrix(*truss.matrix, 3);
+  const auto nodes = multigrid::nodes_of(A, truss.modes);
+  const auto aggregates = multigrid::aggregate(nodes);
   std::vector<int> members(aggregates.n, 0);
   for (std::size_t i = 0; i < nodes.free.size(); ++i) {
     const bool held = truss.place(truss.map->getGlobalElement(3 * i) / 3)[0] == 0;
@@ -81,9 +83,9 @@ TEST(Aggregates, HoldEveryFreeNodeOnceAndNoOther) {
 /// Fewer aggregates, each still in one piece.
 TEST(Aggregates, TakeNeighboursOfNeighbours) {
   const Truss truss(12, false, 0, 0, true);
-  const auto nodes = solve::nodes_of(solve::node_matrix(*truss.matrix, 3), truss.modes);
+  const auto nodes = multigrid::nodes_of(multigrid::node_matrix(*truss.matrix, 3), truss.modes);
   const auto& [start, neighbour] = nodes.neighbours;
-  const auto few = solve::aggregate(nodes), many = solve::aggregate(nodes, 36);
+  const auto few = multigrid::aggregate(nodes), many = multigrid::aggregate(nodes, 36);
   EXPECT_LT(5 * many.n, 4 * few.n);
   std::vector<std::vector<LocalIndex>> members(many.n);
   for (std::size_t i = 0; i < many.of.size(); ++i) members.at(many.of[i]).push_back(static_cast<LocalIndex>(i));
@@ -131,11 +133,11 @@ TEST(Galerkin, InterpolatesRigidMotions) {
   for (int mode = 0; mode < 6; ++mode) {
     const auto c = zeros(P.graph.columns->n_all(), 6), fine = zeros(P.graph.n_rows(), 3);
     for (std::size_t i = 0; i < step.coarse_nodes.motion.size() / 6; ++i) c(i) = step.coarse_nodes.motion[6 * i + mode];
-    solve::product(P, c, fine);
+    multigrid::product(P, c, fine);
     for (std::size_t i = 0; i < fine.extent(0); ++i)
       EXPECT_NEAR(fine(i), step.nodes.motion[6 * i + mode], 1e-6) << mode;
     const auto force = zeros(coarse.graph.n_rows(), 6);
-    solve::product(coarse, c, force);
+    multigrid::product(coarse, c, force);
     EXPECT_LT(dot(c, force, force.extent(0)), 1e-10);
   }
 }
@@ -154,10 +156,10 @@ TEST(Galerkin, MultipliesAndTransposes) {
 
     const auto fine = zeros(n_fine, 3), product = zeros(n_fine, 3);
     const auto by_parts = zeros(coarse.graph.n_rows(), 6), at_once = zeros(coarse.graph.n_rows(), 6);
-    solve::product(P, c, fine);
-    solve::product(step.A, fine, product);
-    solve::product(R, product, by_parts);
-    solve::product(coarse, c, at_once);
+    multigrid::product(P, c, fine);
+    multigrid::product(step.A, fine, product);
+    multigrid::product(R, product, by_parts);
+    multigrid::product(coarse, c, at_once);
     for (LocalIndex I = 0; I < coarse.graph.n_rows(); ++I)
       for (int q = 0; q < 6; ++q) {
         Real alone = 0;  // what a mode that the aggregate does not have adds: an entry on the diagonal
@@ -174,8 +176,8 @@ TEST(Galerkin, MultipliesAndTransposes) {
     const auto restricted = zeros(coarse.graph.n_rows(), 6), interpolated = zeros(n_fine, 3);
     const auto c_there = zeros(other.galerkin->coarse().graph.columns->n_all(), 6);
     for (std::size_t i = 0; i < restricted.extent(0); ++i) c_there(i) = c(i);
-    solve::product(R, f, restricted);
-    solve::product(other.galerkin->prolongation(), c_there, interpolated);
+    multigrid::product(R, f, restricted);
+    multigrid::product(other.galerkin->prolongation(), c_there, interpolated);
     EXPECT_NEAR(dot(c, restricted, restricted.extent(0)), dot(f, interpolated, 3 * step.A.graph.n_rows()), 1e-6);
   }
 }
@@ -234,7 +236,7 @@ TEST(Slices, HaveRoomForWhatTheyName) {
   const View<std::size_t*> start("start", halo.n_all() + 1);
   for (LocalIndex row = 0; row < halo.n_all(); ++row)
     start(row + 1) = start(row) + halo.all()->getGlobalElement(row) % 4;
-  const auto slices = solve::make_slices(R, start);
+  const auto slices = multigrid::make_slices(R, start);
   const bool alone = halo.owned()->getComm()->getSize() == 1;
   EXPECT_GE(slices.n(), alone ? 16 : 2);
   EXPECT_LT(slices.size, start(halo.n_all()) / (alone ? 4.0 : 0.99));
@@ -273,11 +275,11 @@ TEST(Galerkin, TakesGraphsThatAreNotSymmetric) {
     matrix.insertGlobalValues(row, row < 29 ? 2 : 1, values, columns);
   }
   matrix.fillComplete();
-  const auto A = solve::node_matrix(matrix, 1);
-  solve::Nodes coarse, nodes = solve::nodes_of(A, Teuchos::null);
-  const auto aggregates = solve::aggregate(nodes);
-  const auto tentative = solve::tentative_prolongator(nodes, aggregates, coarse);
-  solve::Galerkin galerkin(A, nodes, aggregates, tentative);
+  const auto A = multigrid::node_matrix(matrix, 1);
+  multigrid::Nodes coarse, nodes = multigrid::nodes_of(A, Teuchos::null);
+  const auto aggregates = multigrid::aggregate(nodes);
+  const auto tentative = multigrid::tentative_prolongator(nodes, aggregates, coarse);
+  multigrid::Galerkin galerkin(A, nodes, aggregates, tentative);
   const auto damping = zeros(A.graph.columns->n_all(), 1);
   Kokkos::deep_copy(damping, 0.3);
   galerkin.update(A, damping, false);
@@ -285,10 +287,10 @@ TEST(Galerkin, TakesGraphsThatAreNotSymmetric) {
   const auto c = random_vector(P.graph.columns->n_all(), 1, 6), fine = zeros(A.graph.columns->n_all(), 1),
              Ac = zeros(A.graph.columns->n_all(), 1), by_parts = zeros(aggregates.n, 1),
              at_once = zeros(aggregates.n, 1);
-  solve::product(P, c, fine);
-  solve::product(A, fine, Ac);
-  solve::product(galerkin.restriction(), Ac, by_parts);
-  solve::product(galerkin.coarse(), c, at_once);
+  multigrid::product(P, c, fine);
+  multigrid::product(A, fine, Ac);
+  multigrid::product(galerkin.restriction(), Ac, by_parts);
+  multigrid::product(galerkin.coarse(), c, at_once);
   for (LocalIndex I = 0; I < aggregates.n; ++I) EXPECT_NEAR(at_once(I), by_parts(I), 1e-12);
 }
 

@@ -1,10 +1,10 @@
 // From one level of multigrid to the next: interpolation by smoothed aggregation, and the coarse matrix.
 #pragma once
 
-#include "solve/aggregates.hpp"
-#include "solve/slices.hpp"
+#include "multigrid/aggregates.hpp"
+#include "multigrid/slices.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// P = (I - w D^-1 A) T, R = T^T (I - w A D^-1) and R A P of a matrix A whose values change and whose graph does not,
 /// with T the tentative prolongator of aggregates and D the diagonal of A (Vanek, Mandel and Brezina 1996; R of a
@@ -51,4 +51,4 @@ class Galerkin {
   NodeMatrix coarse_;
 };
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,4 +1,4 @@
-#include "solve/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,8 +38,8 @@ struct FlatCells {
 /// S = S^T, and S damps what multigrid cannot: on the upper part of the spectrum 1 - S A is small.
 TEST(Chebyshev, IsSymmetricAndSmooths) {
   const Truss truss(8, true);
-  const auto A = solve::node_matrix(*truss.matrix, 3);
-  solve::Chebyshev smoother(A);
+  const auto A = multigrid::node_matrix(*truss.matrix, 3);
+  multigrid::Chebyshev smoother(A);
   smoother.update(A);
   const LocalIndex n_all = A.graph.columns->n_all();
   const auto x = random_vector(n_all, 3, 4), y = random_vector(n_all, 3, 5), Sx = zeros(n_all, 3), Sy = zeros(n_all, 3);
@@ -54,7 +54,7 @@ TEST(Chebyshev, IsSymmetricAndSmooths) {
     for (int k = 0; k < 3 && p[0] > 0; ++k) e(3 * i + k) = (p[0] + p[1] + p[2]) % 2 ? 1 : -1;
   }
   const Real before = dot(e, e, n);
-  solve::product(A, e, r);
+  multigrid::product(A, e, r);
   const auto correction = zeros(n_all, 3);
   smoother.apply(r, correction, false);
   for (std::size_t i = 0; i < n; ++i) e(i) -= correction(i);
@@ -62,7 +62,7 @@ TEST(Chebyshev, IsSymmetricAndSmooths) {
 }
 
 /// The error's factor in an iteration x += M (b - A x), by the power method.
-Real contraction(const CrsMatrix& A, solve::Multigrid& M) {
+Real contraction(const CrsMatrix& A, multigrid::Multigrid& M) {
   Vector e(A.getRowMap()), r(A.getRowMap()), correction(A.getRowMap());
   e.randomize(-1, 1);
   Real factor = 0;
@@ -80,7 +80,7 @@ Real contraction(const CrsMatrix& A, solve::Multigrid& M) {
 TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
   for (const int n : {9, 15}) {
     const Truss truss(n, true);
-    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
     M.setup(wrapped(truss.matrix), true);
     EXPECT_LT(contraction(*truss.matrix, M), 0.35) << n;
     EXPECT_GT(M.operator_complexity(), n == 9 ? 1.0 : 1.02);
@@ -92,7 +92,7 @@ TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
 TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
   for (const int n : {9, 15, 21}) {
     const Truss truss(n, true, 0, 0, true);
-    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
     M.setup(wrapped(truss.matrix), true);
     EXPECT_LT(contraction(*truss.matrix, M), 0.75) << n;
     EXPECT_LT(M.operator_complexity(), 1.25) << n;
@@ -105,8 +105,8 @@ TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
     const auto ones = rcp(new MultiVector(cells.map, 1));
     ones->putScalar(1);
     const auto nodes =
-        solve::nodes_of(solve::node_matrix(*cells.matrix, 1), ones, placed ? cells.places : Teuchos::null);
-    return solve::flatness(nodes, *cells.map->getComm());
+        multigrid::nodes_of(multigrid::node_matrix(*cells.matrix, 1), ones, placed ? cells.places : Teuchos::null);
+    return multigrid::flatness(nodes, *cells.map->getComm());
   };
   EXPECT_NEAR(flatness(0.1, true), 10, 0.1);
   EXPECT_NEAR(flatness(1e-3, true), 100, 1e-10);
@@ -135,13 +135,13 @@ TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
   const int rank = truss.map->getComm()->getRank();
   Vector b(truss.map), expected(truss.map), x(truss.map);
   b.randomize();
-  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
   M.setup(wrapped(truss.matrix), true);
   M.apply(b, expected, Teuchos::NO_TRANS, 1, 0);
   for (const bool together : {true, rank % 2 == 1, rank % 2 == 0}) {
     const auto A = in_nodes(*truss.matrix, together);
     ASSERT_EQ(A->numbers().width, together ? 3 : 1);
-    solve::Multigrid of_nodes(A, *A, 3, truss.modes);
+    multigrid::Multigrid of_nodes(A, *A, 3, truss.modes);
     of_nodes.setup(A, true);
     of_nodes.apply(b, x, Teuchos::NO_TRANS, 1, 0);
     x.update(-1, expected, 1);
@@ -153,7 +153,7 @@ TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
 TEST(Multigrid, ContractsInFlatCells) {
   const FlatCells cells(16);
   const auto with = [&](const RCP<MultiVector>& places) {
-    solve::Multigrid M(wrapped(cells.matrix), *wrapped(cells.matrix), 1, Teuchos::null, places);
+    multigrid::Multigrid M(wrapped(cells.matrix), *wrapped(cells.matrix), 1, Teuchos::null, places);
     M.setup(wrapped(cells.matrix), true);
     EXPECT_LT(M.operator_complexity(), 1.8);
     return contraction(*cells.matrix, M);
@@ -167,7 +167,7 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   const Truss truss(13, true);
   Vector b(truss.map), y(truss.map), z(truss.map);
   b.randomize();
-  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
   M.setup(wrapped(truss.matrix), true);
   M.apply(b, y, Teuchos::NO_TRANS, 1, 0);
   M.setup(wrapped(truss.matrix), false);
@@ -180,7 +180,7 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
 TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
   for (const Real skew : {1.0, 3.0}) {
     const Truss truss(9, true, skew);
-    solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
     M.setup(wrapped(truss.matrix), false);
     Vector b(truss.map), Mb(truss.map), r(truss.map);
     for (std::size_t i = 0; i < b.getLocalLength(); ++i) {
@@ -203,7 +203,7 @@ TEST(Multigrid, NeedsNoCoarseNodes) {
     matrix->insertGlobalValues(row, 1, &value, &row);
   }
   matrix->fillComplete();
-  solve::Multigrid M(wrapped(matrix), *wrapped(matrix), 1, Teuchos::null);
+  multigrid::Multigrid M(wrapped(matrix), *wrapped(matrix), 1, Teuchos::null);
   M.setup(wrapped(matrix), true);
   Vector b(map), x(map), r(map);
   b.randomize();
@@ -218,7 +218,7 @@ TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
   const Truss truss(9, true), other(9, true, 0.01), larger(10, true);
   Vector b(truss.map), x(truss.map), y(truss.map);
   b.randomize();
-  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes),
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes),
       of_other(wrapped(other.matrix), *wrapped(truss.matrix), 3, truss.modes);
   M.setup(wrapped(truss.matrix), true);
   M.setup(wrapped(other.matrix), false);
@@ -233,7 +233,7 @@ TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
 /// alpha M b + beta y of two vectors at once, linear to rounding; other values on the same graph.
 TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
   const Truss truss(9, true);
-  solve::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
   M.setup(wrapped(truss.matrix), true);
   MultiVector b(truss.map, 2), Mb(truss.map, 2), y(truss.map, 2);
   b.randomize();

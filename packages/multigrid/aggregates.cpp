@@ -1,4 +1,4 @@
-#include "solve/aggregates.hpp"
+#include "multigrid/aggregates.hpp"
 
 #include "base/over_ranks.hpp"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
@@ -67,8 +67,7 @@ Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
 
 }  // namespace
 
-Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
-               const RCP<const fields::MultiVector>& places) {
+Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places) {
   const auto& graph = A.graph;
   const int size = A.height;
   const auto n_rows = graph.n_rows();
@@ -78,7 +77,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const fields::MultiVector>& modes,
   nodes.n_modes = modes.is_null() ? size : static_cast<int>(modes->getNumVectors());
   nodes.motion.assign(static_cast<std::size_t>(n_rows) * size * nodes.n_modes, 0);
   nodes.neighbours.start.push_back(0);
-  using Given = decltype(std::declval<const fields::MultiVector&>().getLocalViewHost(Tpetra::Access::ReadOnly));
+  using Given = decltype(std::declval<const MultiVector&>().getLocalViewHost(Tpetra::Access::ReadOnly));
   const Given given = modes.is_null() ? Given() : modes->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto motion = [&](LocalIndex row, int m) { return modes.is_null() ? Real(row % size == m) : given(row, m); };
   if (!places.is_null()) {
@@ -251,4 +250,4 @@ std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& ag
   return basis;
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

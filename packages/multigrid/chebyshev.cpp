@@ -1,4 +1,4 @@
-#include "solve/chebyshev.hpp"
+#include "multigrid/chebyshev.hpp"
 
 #include <Teuchos_LAPACK.hpp>
 
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/over_ranks.hpp"
-#include "solve/node_kernels.hpp"
+#include "multigrid/block_sizes.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
@@ -153,4 +153,4 @@ View<Real*> Chebyshev::damped_inverse_diagonal() const {
   return result;
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,10 +1,10 @@
-#include "solve/slices.hpp"
+#include "multigrid/slices.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
 constexpr int most_slices = 32;
@@ -97,4 +97,4 @@ Slices make_slices(const NodeGraph& R, const View<std::size_t*>& start) {
   return slices;
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

@@ -1,5 +1,5 @@
 // Matrices in two bytes a number: how far they are off, on any processor, and that symmetry stays.
-#include "solve/rounded_matrix.hpp"
+#include "multigrid/rounded_matrix.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace sprekk::test {
 namespace {
 
 using fields::Map;
-using solve::NodeMatrix;
-using solve::RoundedMatrix;
+using multigrid::NodeMatrix;
+using multigrid::RoundedMatrix;
 
 constexpr LocalIndex n = 41;  // nodes of a rank
 
@@ -23,7 +23,7 @@ Real number(std::size_t i, std::size_t j) { return std::cos(1.0 + 7 * i + 13 * j
 template <int b>
 NodeMatrix some_matrix() {
   const auto map = rcp(new Map(n * Tpetra::getDefaultComm()->getSize(), n, 0, Tpetra::getDefaultComm()));
-  NodeMatrix A{b, b, {std::make_shared<solve::Halo>(map, map), View<std::size_t*>("start", n + 1), {}}, {}};
+  NodeMatrix A{b, b, {std::make_shared<fields::Halo>(map, map), View<std::size_t*>("start", n + 1), {}}, {}};
   std::vector<LocalIndex> columns;
   for (LocalIndex i = 0; i < n; ++i) {
     for (LocalIndex k = 0; k < (i + 1) % 7; ++k) columns.push_back((i + 5 * k) % n);
@@ -61,7 +61,7 @@ void expect_near_products() {
   RoundedMatrix rounded(A);
   rounded.update(A, scale);
   for (const bool wide : {false, true}) {
-    if (wide && !solve::has_wide_instructions()) continue;
+    if (wide && !fields::has_wide_instructions()) continue;
     const auto y = product<b>(rounded, x, wide);
     for (LocalIndex row = 0; row < b * n; ++row) {
       const std::size_t begin = A.graph.start(row / b), length = A.graph.start(row / b + 1) - begin;
@@ -92,7 +92,7 @@ TEST(RoundedMatrix, StaysSymmetric) {
   NodeMatrix A{
       1,
       1,
-      {std::make_shared<solve::Halo>(map, map), View<std::size_t*>("start", 4), View<LocalIndex*>("column", 9)},
+      {std::make_shared<fields::Halo>(map, map), View<std::size_t*>("start", 4), View<LocalIndex*>("column", 9)},
       View<Real*>("value", 9)};
   const Real up = 1 + std::numeric_limits<Real>::epsilon(), down = 1 - std::numeric_limits<Real>::epsilon();
   const Real values[] = {1, -0.5 * up, up / 3, -0.5 * down, 1, 0.1234, down / 3, 0.1234, 1};
@@ -126,7 +126,7 @@ TEST(RoundedMatrix, WhatIsNoNumberStaysNone) {
   for (const Real bad : {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()}) {
     A.value(9 * A.graph.start(5)) = bad;
     rounded.update(A, one);
-    const auto y = product<3>(rounded, vector_of(3 * n, 3), solve::has_wide_instructions());
+    const auto y = product<3>(rounded, vector_of(3 * n, 3), fields::has_wide_instructions());
     EXPECT_FALSE(std::isfinite(y(15)));
     EXPECT_TRUE(std::isfinite(y(18)));
   }

@@ -1,11 +1,11 @@
 // Multigrid on blocks of nodes.
 #pragma once
 
-#include "solve/chebyshev.hpp"
-#include "solve/direct_inverse.hpp"
-#include "solve/galerkin.hpp"
+#include "multigrid/chebyshev.hpp"
+#include "multigrid/direct_inverse.hpp"
+#include "multigrid/galerkin.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 
 /// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Each
 /// rank, and each piece of rock on it, keeps at least one node on every level. It throws where the last level is
@@ -20,27 +20,24 @@ class Multigrid : public fields::Operator {
 
   /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
   /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
-  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
-            const RCP<const fields::MultiVector>& modes);
+  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes);
   /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
-  Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components,
-            const RCP<const fields::MultiVector>& modes, const RCP<const fields::MultiVector>& places = Teuchos::null)
+  Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components, const RCP<const MultiVector>& modes,
+            const RCP<const MultiVector>& places = Teuchos::null)
       : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
   /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
   /// cycle, and smooths less if the residual grows much in it.
   void setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful = true);
 
-  RCP<const fields::Map> getDomainMap() const override { return map_; }
-  RCP<const fields::Map> getRangeMap() const override { return map_; }
-  void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real alpha,
-             Real beta) const override;
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override;
 
   /// Whether cells are so flat that the smoother of the finest level has a higher degree.
   bool flat() const { return degree_ > Chebyshev::usual_degree; }
-  double operator_complexity() const {
-    return operator_complexity_;
-  }                            ///< entries of the matrices of all levels over those of the finest
+  /// Entries of the matrices of all levels over those of the finest.
+  double operator_complexity() const { return operator_complexity_; }
   double bytes() const;        ///< that this rank has stored
   double cycle_bytes() const;  ///< of matrices that this rank reads in a V-cycle
 
@@ -58,7 +55,7 @@ class Multigrid : public fields::Operator {
   void cycle(std::size_t level, const ConstView<Real*>& b) const;
   void solve_last(const ConstView<Real*>& b) const;
 
-  RCP<const fields::Map> map_;
+  RCP<const Map> map_;
   RCP<const Matrix> finest_;
   int size_;
   int degree_;  // of the smoother on the finest level, of a symmetric matrix
@@ -69,4 +66,4 @@ class Multigrid : public fields::Operator {
   RCP<DirectInverse> last_;
 };
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid

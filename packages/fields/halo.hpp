@@ -5,19 +5,19 @@
 
 #include "fields/types.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::fields {
 
 /// Nodes that a rank has values of: those it owns, then ghosts, in the order of a map. Values of a node lie together.
 /// All members are collective unless they return stored data.
 class Halo {
  public:
   /// `all` begins with the nodes of `owned`, in their order.
-  Halo(RCP<const fields::Map> owned, RCP<const fields::Map> all);
+  Halo(RCP<const Map> owned, RCP<const Map> all);
 
   LocalIndex n_owned() const { return static_cast<LocalIndex>(owned_->getNodeNumElements()); }
   LocalIndex n_all() const { return static_cast<LocalIndex>(all_->getNodeNumElements()); }
-  const RCP<const fields::Map>& owned() const { return owned_; }
-  const RCP<const fields::Map>& all() const { return all_; }
+  const RCP<const Map>& owned() const { return owned_; }
+  const RCP<const Map>& all() const { return all_; }
   std::vector<LocalIndex> sent_nodes() const;  ///< owned ones that are ghosts of other ranks, perhaps several times
 
   /// Takes the `width` values of each ghost, x(width * node) ..., from its owner.
@@ -30,9 +30,9 @@ class Halo {
   void exchange_rows(const View<std::size_t*>& start, const View<T*>& x, int width) const;
 
  private:
-  RCP<const fields::Map> owned_, all_;
-  RCP<const fields::Import> import_;  // null: no ghosts on any rank
+  RCP<const Map> owned_, all_;
+  RCP<const Import> import_;  // null: no ghosts on any rank
   mutable View<Real*> sent_, received_;
 };
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::fields

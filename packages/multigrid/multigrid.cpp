@@ -1,16 +1,14 @@
-#include "solve/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/over_ranks.hpp"
-#include "solve/node_kernels.hpp"
+#include "multigrid/block_sizes.hpp"
 
-namespace sprekk::solve {
+namespace sprekk::multigrid {
 namespace {
 
-using fields::Map;
-using fields::MultiVector;
 using Policy = Kokkos::RangePolicy<Execution>;
 
 /// By how much of itself the diagonal of the last matrix is raised: parts of rock that float would make it singular.
@@ -216,4 +214,4 @@ double Multigrid::cycle_bytes() const {
   return sum;
 }
 
-}  // namespace sprekk::solve
+}  // namespace sprekk::multigrid
