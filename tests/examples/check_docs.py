@@ -4,11 +4,12 @@
     check_docs.py quotes ROOT              code in a ```cpp, ```xml or ```cmake block is literally in the file that the comment
                                            before the block names (<!-- from PATH -->), relative links lead somewhere, and
                                            the version is that of CMakeLists.txt
-    check_docs.py commands ROOT BINARY MPIEXEC PAGE
-                                           every command in a ```sh or ```console block of the page ends with status 0,
+    check_docs.py commands ROOT BINARY MPIEXEC PAGES...
+                                           every command in a ```sh or ```console block of the pages ends with status 0,
                                            or N if "# exit N" follows; the lines below a command in a ```console block
                                            are lines of what it prints. Blocks after <!-- not run: REASON --> are left
-                                           out, as are the commands that build
+                                           out, as are the commands that build. Pages share a folder, and a scene
+                                           that several run in the same way is run once
     check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
     check_docs.py change ROOT PAGE TARGETS...
                                            the page's ```diff block applies to a copy of the sources, the targets build
@@ -133,13 +134,14 @@ def run(command, folder, time_limit=600):
                           timeout=time_limit)
 
 
-def check_commands(root, binary, mpiexec, page):
+def check_commands(root, binary, mpiexec, *pages):
+    done = {}
     with tempfile.TemporaryDirectory() as folder:
         prepare(Path(folder), root, binary, mpiexec)
-        for block in BLOCK.finditer((root / page).read_text()):
-            if block["kind"] not in ("sh", "console") or block["reason"]:
-                continue
-            yield from check_block(page, block, folder)
+        for page in pages:
+            for block in BLOCK.finditer((root / page).read_text()):
+                if block["kind"] in ("sh", "console") and not block["reason"]:
+                    yield from check_block(page, block, folder, done)
 
 
 def check_change(root, page, *targets):
@@ -165,13 +167,15 @@ def check_change(root, page, *targets):
                 yield from check_block(page, block, copy)
 
 
-def check_block(page, block, folder):
-    """Runs the commands of a block in the folder and compares what they print."""
+def check_block(page, block, folder, runs=None):
+    """Runs the commands of a block in the folder and compares what they print; `runs` keeps those of scenes in xml/."""
     for command, expected in commands(block):
         if missing := missing_program(command):
             yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
             continue
-        done = run(command, folder)
+        done = (runs or {}).get(command) or run(command, folder)
+        if runs is not None and re.fullmatch(r"\./sprekk run xml/\S+", command):
+            runs[command] = done
         status = re.search(r"# exit (\d)", command)
         if done.returncode != (int(status[1]) if status else 0):
             yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout}"
