@@ -2,7 +2,7 @@
 # carry no include directories, and some libraries have no targets at all, hence the wrappers.
 find_package(MPI REQUIRED COMPONENTS C CXX)
 find_package(Trilinos REQUIRED COMPONENTS
-  Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 Amesos2 MueLu Zoltan2 Stratimikos Teko NOX Sacado Kokkos Teuchos)
+  Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 MueLu NOX Sacado Kokkos Teuchos)
 add_library(sprekk_trilinos INTERFACE IMPORTED)
 target_include_directories(sprekk_trilinos SYSTEM INTERFACE ${Trilinos_INCLUDE_DIRS})
 target_link_libraries(sprekk_trilinos INTERFACE ${Trilinos_LIBRARIES} MPI::MPI_CXX)

@@ -25,9 +25,9 @@ function(sprekk_package name)
 endfunction()
 
 # What tests find around them. Open MPI may run as root; it uses the memory of this machine at once instead of looking for
-# networks, and ranks that wait leave the processor to others.
+# networks, ranks that wait leave the processor to others, and a single rank starts without a daemon.
 set(SPREKK_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-  OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_mpi_yield_when_idle=1)
+  OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_ess_singleton_isolated=1)
 
 # Debian's packages of Python belong to its own interpreter, which need not be the one found first.
 if(SPREKK_TESTS)
@@ -48,8 +48,11 @@ function(sprekk_test name)
     ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}" ${ARG_PROPERTIES})
 endfunction()
 
+set(SPREKK_PRECOMPILED $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # or ccache would not know the files again
+
 # sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...])
-# One GoogleTest program of all .cpp in the current folder, run on each number of ranks.
+# One GoogleTest program of all .cpp in the current folder, run on each number of ranks. Those of whole scenes, which
+# link sprekk_model, share a precompiled header.
 function(sprekk_tests name)
   cmake_parse_arguments(ARG "" "" "RANKS;LINKS" ${ARGN})
   if(NOT ARG_RANKS)
@@ -61,7 +64,10 @@ function(sprekk_tests name)
   endif()
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE sprekk_test_main ${ARG_LINKS})
-  target_compile_definitions(test_${name} PRIVATE SPREKK_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  if("sprekk_model" IN_LIST ARG_LINKS)
+    target_precompile_headers(test_${name} REUSE_FROM sprekk_test_scenes)
+    target_compile_options(test_${name} PRIVATE ${SPREKK_PRECOMPILED})
+  endif()
   foreach(ranks ${ARG_RANKS})
     sprekk_test(${name}.${ranks}
       COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe --bind-to none -np ${ranks} $<TARGET_FILE:test_${name}>

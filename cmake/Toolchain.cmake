@@ -11,7 +11,9 @@ if(SPREKK_LLD)
 endif()
 find_program(SPREKK_CCACHE ccache)
 if(SPREKK_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${SPREKK_CCACHE})
+  # Copies of the sources share what was compiled, also with precompiled headers.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${SPREKK_CCACHE})
 endif()
 add_compile_options(-Wall -Wextra -Wno-unused-parameter)
 if(SPREKK_SANITIZE)

@@ -6,6 +6,10 @@
 
 #include <iostream>
 
+#include "source_dir.hpp"
+
+std::string sprekk::tests::source_dir() { return SPREKK_SOURCE_DIR; }
+
 int main(int argc, char** argv) {
   Tpetra::ScopeGuard guard(&argc, &argv);
   testing::InitGoogleTest(&argc, argv);

@@ -5,7 +5,7 @@
 #include "base/check.hpp"
 #include "solve/block_solver.hpp"
 #include "solve/fine_level.hpp"
-#include "solve/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -13,6 +13,7 @@ namespace {
 using fields::Map;
 using fields::MultiVector;
 using fields::Operator;
+using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
 constexpr int coarse_size_of_muelu = 1000;
@@ -163,8 +164,10 @@ class NodeMultigrid : public BlockSolver {
       const int n = block.block.n_components;
       const auto modes = block.block.near_null_space.make();
       const auto& places = block.block.coordinates;
-      Nodes nodes;
-      const auto look = [&](const RCP<const Matrix>& bulk) { nodes = nodes_of(node_matrix(*bulk, n), modes, places); };
+      multigrid::Nodes nodes;
+      const auto look = [&](const RCP<const Matrix>& bulk) {
+        nodes = multigrid::nodes_of(multigrid::node_matrix(*bulk, n), modes, places);
+      };
       block.bulk ? block.bulk(look) : look(block.matrix);
       multigrid_ = rcp(new Multigrid(block.matrix, std::move(nodes), n, modes));
     }

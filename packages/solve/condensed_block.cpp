@@ -1,6 +1,6 @@
 #include "solve/condensed_block.hpp"
 
-#include "solve/node_kernels.hpp"
+#include "fields/node_kernels.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -34,9 +34,9 @@ void start_from_bulk(const CondensedBlock& condensed) {
   Kokkos::parallel_reduce(
       "copy bulk", Policy(0, from.n_rows()),
       KOKKOS_LAMBDA(LocalIndex row, int& missing) {
-        RowWalk walk(to, row);
-        from.for_row(row, [&](LocalIndex c, std::size_t k) { to.value(walk.find(column(c))) = from.value(k); });
-        missing += walk.n_missing;
+        RowCursor cursor(to, row);
+        from.for_row(row, [&](LocalIndex c, std::size_t k) { to.value(cursor.find(column(c))) = from.value(k); });
+        missing += cursor.n_missing;
       },
       n_missing);
   check_found(n_missing);
@@ -77,11 +77,11 @@ void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& gro
     Kokkos::parallel_reduce(
         "condensed numbers", rows,
         KOKKOS_LAMBDA(LocalIndex row, int& missing) {
-          RowWalk walk(numbers, row);
+          RowCursor cursor(numbers, row);
           for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair)
             for (auto c = column_start(coupling.slot(pair)); c < column_start(coupling.slot(pair) + 1); ++c)
-              marks.set(row, walk.find(column(c)) - walk.row.begin);
-          missing += walk.n_missing;
+              marks.set(row, cursor.find(column(c)) - cursor.row.begin);
+          missing += cursor.n_missing;
         },
         n_missing);
     check_found(n_missing);
@@ -157,7 +157,7 @@ std::uint64_t checksum(const CondensedBlock& condensed) {
   const auto numbers = condensed.matrix->numbers();
   const auto rows = condensed.rows;
   std::uint64_t sum = 0;
-  in_widest_instructions([&] {
+  fields::in_widest_instructions([&] {
     Kokkos::parallel_reduce(
         "checksum", Policy(0, rows.extent(0)),
         KOKKOS_LAMBDA(LocalIndex i, std::uint64_t & partial) {

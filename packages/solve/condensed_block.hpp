@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/check.hpp"
+#include "fields/node_kernels.hpp"
 #include "solve/elimination_plan.hpp"
 
 namespace sprekk::solve {
@@ -26,42 +27,40 @@ struct OwnColumn {
   Map::local_map_type rows, columns;
 };
 
-/// Where columns stand in a row, which has all that are looked for, and none twice: fast for those that come in its
-/// order, or nearly so. Those that it has not are counted, and said to stand where it begins.
-struct RowWalk {
-  const fields::NodeRows& numbers;
+/// Finds columns in a row, which has all that are looked for, and none twice. Those that it has not are counted, and
+/// said to stand where it begins.
+struct RowCursor {
   const fields::NodeRows::Row row;
-  std::size_t at = 0;  // the node that is looked at first
+  const int width;
+  fields::Cursor nodes;
   LocalIndex next = -1;
   std::size_t place_of_next = 0;  // if it is an unknown of the same node
   int n_left = 0;                 // of these
   int n_missing = 0;
 
-  KOKKOS_FORCEINLINE_FUNCTION RowWalk(const fields::NodeRows& of, LocalIndex i) : numbers(of), row(of.row(i)) {}
+  KOKKOS_FORCEINLINE_FUNCTION RowCursor(const fields::NodeRows& of, LocalIndex i)
+      : row(of.row(i)), width(of.width), nodes{&of.column(row.first_node), row.n_nodes} {}
   KOKKOS_FORCEINLINE_FUNCTION std::size_t find(LocalIndex column) {
     if (column == next && n_left > 0) {
       --n_left;
       ++next;
       return place_of_next++;
     }
-    const int width = numbers.width;
-    for (std::size_t n_seen = 0; n_seen < row.n_nodes; ++n_seen) {
-      const std::size_t here = at;
-      at = at + 1 < row.n_nodes ? at + 1 : 0;
-      const LocalIndex component = column - numbers.column(row.first_node + here) * width;
-      if (component < 0 || component >= width) continue;
-      const std::size_t found = row.begin + here * width + component;
-      next = column + 1;
-      place_of_next = found + 1;
-      n_left = width - 1 - component;
-      return found;
+    const LocalIndex component = column % width;
+    const std::size_t node = column < 0 ? row.n_nodes : nodes.find(column / width);
+    if (node == row.n_nodes) {
+      ++n_missing;
+      return row.begin;
     }
-    ++n_missing;
-    return row.begin;
+    const std::size_t found = row.begin + node * width + component;
+    next = column + 1;
+    place_of_next = found + 1;
+    n_left = width - 1 - component;
+    return found;
   }
 };
 
-/// Throws an Error that says how many columns walks have not found.
+/// Throws an Error that says how many columns were not found.
 inline void check_found(int n_missing) {
   SPREKK_CHECK(n_missing == 0, "elimination: {} numbers have no place in the rows of the matrix that must have them",
                n_missing);

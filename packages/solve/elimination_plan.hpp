@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fields/block_problem.hpp"
-#include "solve/halo.hpp"
+#include "fields/halo.hpp"
 
 namespace sprekk::solve {
 
@@ -14,6 +14,7 @@ using fields::Block;
 using fields::BlockProblem;
 using fields::BlockVector;
 using fields::CrsMatrix;
+using fields::Halo;
 using fields::Map;
 using fields::Matrix;
 using fields::Vector;

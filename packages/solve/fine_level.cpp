@@ -230,7 +230,8 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
   RCP<const Operator> smoother;
   if (P.is_null()) {
     const int most_ranks = system.reproducible ? 1 : system.joined->map()->getComm()->getSize();
-    if (direct_.is_null()) direct_ = rcp(new DirectInverse(smoothed_->matrix(), "around crack tips", most_ranks));
+    if (direct_.is_null())
+      direct_ = rcp(new multigrid::DirectInverse(smoothed_->matrix(), "around crack tips", most_ranks));
     direct_->setup(system.symmetric);
     smoother = direct_;
   } else {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solve/block_solver.hpp"
-#include "solve/direct_inverse.hpp"
+#include "multigrid/direct_inverse.hpp"
 
 namespace sprekk::solve {
 
@@ -36,7 +36,7 @@ class FineLevel {
   RCP<const Matrix> product_;               // P^T A P
   std::shared_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   std::shared_ptr<JoinedRows> rows_;        // the rows of S with all columns
-  RCP<DirectInverse> direct_;               // the inverse of the former, of blocks that enrich
+  RCP<multigrid::DirectInverse> direct_;    // the inverse of the former, of blocks that enrich
   RCP<const Cycle> cycle_;
 };
 

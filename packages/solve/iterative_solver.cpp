@@ -11,13 +11,15 @@
 #include "solve/block_solver.hpp"
 #include "solve/families.hpp"
 #include "solve/fine_level.hpp"
-#include "solve/multigrid.hpp"
+#include "solve/reuse.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
 
 using fields::MultiVector;
 using fields::Operator;
+using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
 ParameterList krylov_defaults() {
@@ -119,15 +121,20 @@ class IterativeSolver : public LinearSolver {
   /// Multigrid of an earlier matrix stays, as long as solves with it are worth it.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
-    kept_ = !renew_ && !preconditioner_.is_null() && !families_ && system.symmetric == system_.symmetric &&
-            !system.diagonal.front().matrix.is_null() && n_changed(*system.diagonal.front().matrix) <= most_changed;
+    const bool keeps = reuse_.may_keep() && !families_ && system.symmetric == system_.symmetric &&
+                       !system.diagonal.front().matrix.is_null() &&
+                       n_changed(*system.diagonal.front().matrix) <= most_changed;
     system_ = system;
     system_.reproducible = reproducible_;
     symmetric_ = system.symmetric && !families_;  // a sweep over families is not symmetric
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
     set_scale();
-    make_preconditioner(is_careful());
+    if (keeps)
+      reuse_.keep();
+    else
+      reuse_.make(is_careful());
+    make_preconditioner();
     return failure_;
   }
 
@@ -179,28 +186,21 @@ class IterativeSolver : public LinearSolver {
       report.converged = failure_.empty();
       return report;
     }
-    const int expected = static_cast<int>(std::ceil(-pace_ * std::log10(tolerance)));
-    const bool kept = kept_, looks = !kept && !looked_at_;
-    iterate(b, x, tolerance, kept ? expected + most_more : looks ? most_careless : 0, report);
-    const bool ended = report.reason.empty() && report.residual <= 2 * tolerance;
-    const bool too_long = looks && report.iterations >= most_careless;
-    if (!ended && (kept || too_long)) {
-      careful_ = careful_ || too_long;
-      kept_ = false;
+    iterate(b, x, tolerance, reuse_.most_iterations(tolerance), report);
+    if (reuse_.gives_up(report.iterations, report.reason.empty() && report.residual <= 2 * tolerance)) {
       if (!report.reason.empty() || !std::isfinite(report.residual)) {  // what the library left is no start
         x.putScalar(0);
         report = {};
       }
-      make_preconditioner(true);
+      reuse_.make(true);
+      make_preconditioner();
       report.reason = failure_;
       const int before = report.iterations;
       const Real from = before > 0 ? report.residual : 1;
       if (failure_.empty()) iterate(b, x, tolerance, 0, report);
-      take_pace(report.iterations - before, report.residual / from, tolerance / from);
-    } else if (kept) {
-      renew_ = report.iterations > expected + most_more / 2;
+      reuse_.learn(report.iterations - before, report.residual / from, tolerance / from);
     } else {
-      take_pace(report.iterations, report.residual, tolerance);
+      reuse_.learn(report.iterations, report.residual, tolerance);
     }
     if (!report.reason.empty()) return report;
     report.converged = report.residual <= std::max(10 * tolerance, acceptable_linear_residual);
@@ -210,13 +210,8 @@ class IterativeSolver : public LinearSolver {
     return report;
   }
 
-  /// Of new multigrid, which made the residual smaller by this factor.
-  void take_pace(int iterations, Real factor, Real wanted) {
-    if (const Real gained = std::max(factor, wanted); gained < 0.1) pace_ = -iterations / std::log10(gained);
-  }
-
-  /// Whether multigrid's cycles are looked at, or need not be: else only once a solve has taken many iterations.
-  bool is_careful() const { return careful_ || symmetric_ || families_ || !has_cycles_; }
+  /// Whether multigrid's cycles are tried, or need not be: else only once a solve has taken many iterations.
+  bool is_careful() const { return reuse_.is_careful() || symmetric_ || families_ || !has_cycles_; }
 
   /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
   int describe_multigrid(const Block& block) {
@@ -226,7 +221,7 @@ class IterativeSolver : public LinearSolver {
     }
     auto& list = parameters_.sublist("multigrid");
     list.set("coarsest level", Multigrid::coarse_size, "unknowns at most");
-    list.set("degree of Chebyshev's polynomial", Chebyshev::usual_degree);
+    list.set("degree of Chebyshev's polynomial", multigrid::Chebyshev::usual_degree);
     return Multigrid::coarse_size;
   }
 
@@ -265,27 +260,27 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
-  void make_preconditioner(bool careful) {
+  void make_preconditioner() {
+    const bool keeps = reuse_.is_of_earlier_system();
     failure_.clear();
-    system_.diagonal.front().careful = careful;
-    if (!kept_) looked_at_ = careful;
-    if (const auto& first = system_.diagonal.front().matrix; !kept_ && !first.is_null())
+    system_.diagonal.front().careful = reuse_.state() != Reuse::State::unchecked;
+    if (const auto& first = system_.diagonal.front().matrix; !keeps && !first.is_null())
       diagonal_ = diagonal_of(*first);
-    if (!solver_.is_null() && !kept_)
+    if (!solver_.is_null() && !keeps)
       prepare(system_.diagonal.front().block.name, [&] { solver_->setup(system_.diagonal.front()); });
     for (int f = 0; families_ && f < families_->n() && failure_.empty(); ++f)
       prepare(families_->name(f), [&] { families_->setup(f, system_); });
     if (fine_level_)
       prepare(system_.diagonal.front().block.name,
-              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system_, kept_); }); });
-    renew_ = false;
+              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system_, keeps); }); });
     if (!failure_.empty()) {
       make_solvers(blocks_);  // what the libraries left may differ among ranks
       preconditioner_ = Teuchos::null;
+      reuse_.lose();
     } else if (fine_level_) {
       ++fine_cost_->n_setups;
       preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
-    } else if (!kept_) {
+    } else if (!keeps) {
       preconditioner_ = families_ ? families_->sweep(system_) : solver_->inverse();
     }
   }
@@ -388,14 +383,11 @@ class IterativeSolver : public LinearSolver {
   static constexpr Real most_noise = 0.1;
   static constexpr Real much = 0.1;        // that a diagonal may change,
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
-  static constexpr int most_more = 4;      // iterations that it may then take more
   LinearSystem system_;
-  RCP<const Vector> diagonal_;                             // when multigrid was made
-  static constexpr int most_careless = 40;                 // iterations, after which multigrid is looked at
-  bool has_cycles_ = false;                                // of our own multigrid, which can be looked at
-  bool careful_ = false, looked_at_ = false;               // multigrid is always looked at from now on; this one was
-  bool symmetric_ = false, kept_ = false, renew_ = false;  // multigrid is that of an earlier system; is to be made anew
-  Real pace_ = 0;                                          // iterations for a digit, with new multigrid
+  RCP<const Vector> diagonal_;  // when multigrid was made
+  bool has_cycles_ = false;     // of our own multigrid, which can be tried
+  bool symmetric_ = false;
+  Reuse reuse_;
   std::string failure_ = "the matrix was not set up";
 };
 

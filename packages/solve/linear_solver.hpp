@@ -88,7 +88,7 @@ class LinearSolver {
   /// Makes ready to solve with this system. Empty, or what failed.
   virtual std::string setup(const LinearSystem& system) = 0;
 
-  /// x <- A^-1 b; of a tolerance of 1 or more it may leave the residual unknown.
+  /// x <- A^-1 b to a relative residual of the tolerance, or as near as rounding allows.
   virtual LinearReport solve(const Vector& b, Vector& x, Real tolerance) = 0;
 
   /// About the inverse of the system of the last set-up, as Krylov's method uses it; null if there is none.

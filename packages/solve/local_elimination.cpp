@@ -8,7 +8,7 @@
 
 #include "base/over_ranks.hpp"
 #include "solve/condensed_block.hpp"
-#include "solve/node_kernels.hpp"
+#include "fields/node_kernels.hpp"
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
@@ -152,7 +152,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     const View<Real*> z("responses", m * start(start.extent(0) - 1) + Response::strip);
     response.value = z;
     for (const auto& fill : response.fill) fill(z);
-    in_widest_instructions([&] {
+    fields::in_widest_instructions([&] {
       Kokkos::parallel_for(
           "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
             lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
@@ -175,13 +175,13 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   const auto numbers = block(r, s).matrix->numbers();
   const auto values_of_component = values_of_components(group, r);
   int n_missing = 0;
-  in_widest_instructions([&] {
+  fields::in_widest_instructions([&] {
     Kokkos::parallel_reduce(
         "condense", Policy(0, coupling.row_start.extent(0) - 1),
         KOKKOS_LAMBDA(LocalIndex row, int& missing) {
           constexpr int strip = Response::strip;
           Real factor[max_small_size];
-          RowWalk walk(numbers, row);
+          RowCursor cursor(numbers, row);
           for (LocalIndex pair = coupling.row_start(row); pair < coupling.row_start(row + 1); ++pair) {
             for (int i = 0; i < m; ++i) factor[i] = 0;
             for (LocalIndex run = coupling.first(pair); run < coupling.first(pair + 1); ++run) {
@@ -192,7 +192,7 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
             const auto first = column_start(coupling.slot(pair)), end = column_start(coupling.slot(pair) + 1);
             const auto n_columns = static_cast<LocalIndex>(end - first);
             for (LocalIndex begin = 0; begin < n_columns; begin += strip) {
-              Numbers<strip> sum, z;
+              fields::Numbers<strip> sum, z;
               for (int i = 0; i < m; ++i) {
                 z.load(&value(m * first + i * n_columns + begin));
                 sum.add(factor[i], z);
@@ -200,10 +200,10 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
               Real sums[strip];
               sum.store(sums);
               for (int k = 0; k < strip && begin + k < n_columns; ++k)
-                numbers.value(walk.find(column(first + begin + k))) -= sums[k];
+                numbers.value(cursor.find(column(first + begin + k))) -= sums[k];
             }
           }
-          missing += walk.n_missing;
+          missing += cursor.n_missing;
         },
         n_missing);
   });

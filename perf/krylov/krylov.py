@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Krylov and Newton iterations from ten thousand to a million unknowns: a network of fractures in all states, of hexahedra and of tetrahedra.
 
-Every linear solve goes from zero to a relative residual of 1e-8."""
+Every linear solve goes from zero to a relative residual of 1e-8. --against MueLu runs each scene a second time, with MueLu in place of Sprekk's own
+multigrid, and says how many times as much that takes."""
 import math
 import re
 import sys
@@ -21,16 +22,24 @@ STATES = {  # which sides move how far, and the joint
     "mixed": linear.table(xx=0.007, yy=-0.006, zz=-0.012, shear=0.012) + linear.joint(stiffness=1, dilation=2),
     "open": linear.table(xx=0.01, yy=0.012, zz=-0.01, shear=0.002) + linear.joint(stiffness=1),
 }
+OTHERS = {"MueLu": (f"{linear.SOLVER}.MueLu.verbosity=none",)}  # any entry of its section puts MueLu in the place of the own multigrid
+COMPARED = {"iterations": lambda run: run.mean, "set_up": lambda run: run.seconds("set-up"), "solve": lambda run: run.seconds("solve"),
+            "memory": lambda run: run.bytes[0]}
 COLUMNS = {"cells, state": "", "edge": "d", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d",
            "mean": ".1f", "max": ".4g", "residual": ".0e", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f", "kB/unknown": ".1f"}
 
 
 @dataclass
 class Row:
-    """A state on a mesh."""
+    """A state on a mesh, with the own multigrid or another."""
     series: str
     edge: int
+    other: str
     run: linear.Run
+
+    @property
+    def name(self):
+        return f"{self.series}, {self.other}" if self.other else self.series
 
     @property
     def seconds(self):
@@ -38,7 +47,7 @@ class Row:
 
     def values(self):
         run = self.run
-        return [self.series, self.edge, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean,
+        return [self.name, self.edge, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean,
                 run.most, run.residual, *(run.seconds(what) for what in linear.TIMERS), run.bytes[0] / 1e3 / max(1, run.unknowns)]
 
 
@@ -70,18 +79,26 @@ def summary(rows, quick):
             "newton_growth": growth(rows, first, last, lambda run: run.newton), "exponent": exponent(rows, first)}
 
 
+def ratios(rows, other):
+    """Of the other multigrid to the own one, for all of COMPARED: the geometric mean over what ran with both."""
+    own = {(row.series, row.edge): row.run for row in rows if not row.other}
+    pairs = [(own[row.series, row.edge], row.run) for row in rows if row.other and (row.series, row.edge) in own]
+    return {f"{other}_{what}": math.exp(np.mean([math.log(of(theirs) / of(ours)) for ours, theirs in pairs])) if pairs else math.nan
+            for what, of in COMPARED.items()}
+
+
 def draw(rows, file):
-    """Iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra."""
+    """Iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra, dotted for another multigrid."""
     import style
     figure, axes = style.plt.subplots(1, 3, figsize=(10.5, 3.4))
-    names, states = sorted({row.series for row in rows}), list(STATES)
+    names, states = sorted({row.name for row in rows}), list(STATES)
     whats = (("Krylov iterations of a solve: mean, largest (-)", lambda row: row.run.mean), ("Newton iterations of a step (-)", lambda row: row.run.newton),
              ("set-up, assembly and solution (s)", lambda row: row.seconds))
     for ax, (label, what) in zip(axes, whats):
         for name in names:
-            of = [row for row in rows if row.series == name]
-            cell, state = name.split(", ")
-            look = dict(color=style.LINES[states.index(state)], linestyle="-" if cell == "hexahedra" else "--")
+            of = [row for row in rows if row.name == name]
+            cell, state, *other = name.split(", ")
+            look = dict(color=style.LINES[states.index(state)], linestyle=":" if other else "-" if cell == "hexahedra" else "--")
             x = [row.run.unknowns for row in of]
             ax.plot(x, [what(row) for row in of], label=name, marker="o", markersize=3.5, **look)
             if ax is axes[0]:
@@ -100,6 +117,7 @@ def draw(rows, file):
 def main(words):
     parser = linear.parser("krylov", __doc__)
     parser.add_argument("--largest", type=float, default=1.2e6, metavar="N", help="no mesh with more unknowns than this (1.2e6)")
+    parser.add_argument("--against", choices=OTHERS, help="run each scene with this multigrid as well")
     options = parser.parse_args(words)
     series = {f"{cell}, {state}": (f"Mesh.cell={shape}", *sets) for cell, shape in (("hexahedra", "hexahedron"), ("tetrahedra", "tetrahedron"))
               for state, sets in STATES.items()}
@@ -107,24 +125,26 @@ def main(words):
             if (re.search(QUICK[edge], name) if options.quick else 3 * (edge + 1)**3 <= options.largest)]
     chosen = linear.matching(options, runs, lambda run: run[1])
     options.output.mkdir(parents=True, exist_ok=True)
-    print_table, rows, failed = linear.Table(COLUMNS, 20), [], []
-    for edge, name in chosen:
-        run = linear.run(options, (*linear.cells(edge), *series[name]), f"{name.replace(', ', '_')}_{edge}")
+    print_table, rows, failed = linear.Table(COLUMNS, 27 if options.against else 20), [], []
+    for edge, name, other in [(*run, other) for run in chosen for other in ("", options.against) if other is not None]:
+        run = linear.run(options, (*linear.cells(edge), *series[name], *OTHERS.get(other, ())), f"{name.replace(', ', '_')}_{edge}{other}")
         if run.failure:
-            failed.append(f"failed: {name}, {edge}: {run.failure}")
+            failed.append(f"failed: {name}, {edge}{other and ' with ' + other}: {run.failure}")
         if run.steps:
-            rows.append(Row(name, edge, run))
+            rows.append(Row(name, edge, other, run))
             print_table.add(rows[-1].values(), failed[-1:] if run.failure else ())
-    if not rows:
+    own = [row for row in rows if not row.other]
+    if not own:
         sys.exit("\n".join(failed))
     print_table.write(options.output / "krylov.csv")
     draw(rows, options.output / "krylov.png")
-    total = summary(rows, options.quick)
+    total = summary(own, options.quick)
     wrong = failed + (linear.missed(total, QUICK_BOUNDS) if options.quick else [])
     print("\n".join(["", *wrong, f"krylov.csv and krylov.png in {options.output}"]))
     if not options.quick:
         print("\n".join(linear.missed(total, BOUNDS)))
-    print("max_krylov={max_krylov:.4g} growth={growth:.2f} newton_growth={newton_growth:.2f} exponent={exponent:.2f}".format(**total))
+    print("max_krylov={max_krylov:.4g} growth={growth:.2f} newton_growth={newton_growth:.2f} exponent={exponent:.2f}".format(**total),
+          *(f"{what}={ratio:.2f}" for what, ratio in (ratios(rows, options.against) if options.against else {}).items()))
     return 1 if wrong else 0
 
 

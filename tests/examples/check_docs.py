@@ -4,11 +4,12 @@
     check_docs.py quotes ROOT              code in a ```cpp, ```xml or ```cmake block is literally in the file that the comment
                                            before the block names (<!-- from PATH -->), relative links lead somewhere, and
                                            the version is that of CMakeLists.txt
-    check_docs.py commands ROOT BINARY MPIEXEC PAGE
-                                           every command in a ```sh or ```console block of the page ends with status 0,
+    check_docs.py commands ROOT BINARY MPIEXEC PAGES...
+                                           every command in a ```sh or ```console block of the pages ends with status 0,
                                            or N if "# exit N" follows; the lines below a command in a ```console block
                                            are lines of what it prints. Blocks after <!-- not run: REASON --> are left
-                                           out, as are the commands that build
+                                           out, as are the commands that build. Pages share a folder, and a scene
+                                           that several run in the same way is run once
     check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
     check_docs.py change ROOT PAGE TARGETS...
                                            the page's ```diff block applies to a copy of the sources, the targets build
@@ -36,7 +37,7 @@ class Skipped(str):
 
 
 def pages(root):
-    return [root / "README.md", *sorted((root / "docs").glob("*.md"))]
+    return [root / "README.md", *sorted((root / "docs").glob("*.md")), *sorted(root.glob("packages/*/README.md"))]
 
 
 def check_quotes(root):
@@ -133,17 +134,18 @@ def run(command, folder, time_limit=600):
                           timeout=time_limit)
 
 
-def check_commands(root, binary, mpiexec, page):
+def check_commands(root, binary, mpiexec, *pages):
+    done = {}
     with tempfile.TemporaryDirectory() as folder:
         prepare(Path(folder), root, binary, mpiexec)
-        for block in BLOCK.finditer((root / page).read_text()):
-            if block["kind"] not in ("sh", "console") or block["reason"]:
-                continue
-            yield from check_block(page, block, folder)
+        for page in pages:
+            for block in BLOCK.finditer((root / page).read_text()):
+                if block["kind"] in ("sh", "console") and not block["reason"]:
+                    yield from check_block(page, block, folder, done)
 
 
 def check_change(root, page, *targets):
-    """ccache, where it is, knows what the change does not touch: paths are taken from the folder of the copy."""
+    """ccache, where it is, knows what the change does not touch."""
     if missing := [program for program in ("cmake", "ninja", "patch") if not shutil.which(program)]:
         yield Skipped(f"not run, this machine lacks {missing[0]}")
         return
@@ -152,7 +154,6 @@ def check_change(root, page, *targets):
         copy = Path(folder).resolve() / "copy"
         shutil.copytree(root, copy, ignore=lambda where, names: [name for name in names if name in (".git", "output") or (
             Path(where) == root and name.startswith("build"))])
-        os.environ.update(CCACHE_BASEDIR=str(copy), CCACHE_NOHASHDIR="1")
         for block in BLOCK.finditer(text):
             if block["kind"] == "diff":
                 (copy / "page.diff").write_text(block["content"])
@@ -166,13 +167,15 @@ def check_change(root, page, *targets):
                 yield from check_block(page, block, copy)
 
 
-def check_block(page, block, folder):
-    """Runs the commands of a block in the folder and compares what they print."""
+def check_block(page, block, folder, runs=None):
+    """Runs the commands of a block in the folder and compares what they print; `runs` keeps those of scenes in xml/."""
     for command, expected in commands(block):
         if missing := missing_program(command):
             yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
             continue
-        done = run(command, folder)
+        done = (runs or {}).get(command) or run(command, folder)
+        if runs is not None and re.fullmatch(r"\./sprekk run xml/\S+", command):
+            runs[command] = done
         status = re.search(r"# exit (\d)", command)
         if done.returncode != (int(status[1]) if status else 0):
             yield f"{page}: {command}: exit status {done.returncode}\n{done.stdout}"

@@ -3,11 +3,24 @@
 
 #include <Teuchos_DefaultMpiComm.hpp>
 
+#include <mpi.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <optional>
+#include <thread>
 
 namespace sprekk::tests {
 namespace {
+
+/// Until all ranks are here, asleep: those that MPI lets wait would take the processor from the one that works.
+void wait_for_all(const Comm& comm) {
+  MPI_Request request;
+  MPI_Ibarrier(*dynamic_cast<const Teuchos::MpiComm<int>&>(comm).getRawMpiComm(), &request);
+  for (int done = 0; !done; MPI_Test(&request, &done, MPI_STATUS_IGNORE))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
 
 RCP<const Comm> alone() { return rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)); }
 
@@ -64,23 +77,30 @@ struct Counts {
   int open = 0, stick = 0, slip = 0;
 };
 
-/// Runs all steps of a scene on all ranks and on each alone, and compares after each step: solved to round-off, since
-/// Newton's tolerance is a difference, too. Returns how many faces were in which state over all steps.
+/// Runs all steps of a scene on all ranks and on rank 0 alone, which compares after each step: solved to round-off,
+/// since Newton's tolerance is a difference, too. Returns how many faces were in which state over all steps.
 Counts expect_same_answer(model::Scene scene) {
   scene.solver.tolerance = 1e-13;
-  model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone());
+  const auto comm = Tpetra::getDefaultComm();
+  model::Model together(scene, comm);
+  std::optional<model::Model> single;
+  if (comm->getRank() == 0) single.emplace(scene, alone());
   Counts counts;
   for (Real t : scene.time.times()) {
     SCOPED_TRACE(t);
-    const auto report = together.step_to(t), reference = single.step_to(t);
+    const auto report = together.step_to(t);
     EXPECT_TRUE(report.converged) << report.reason;
-    EXPECT_TRUE(reference.converged) << reference.reason;
-    EXPECT_EQ(report.cuts, reference.cuts);
-    const auto a = gathered(together), b = gathered(single);
-    expect_same(single.system().scales(), a, b);
-    for (const auto& field : b)
+    const auto a = gathered(together);
+    for (const auto& field : a)
       if (field.name == "state")
         for (Real s : field.values) ++(s == 0 ? counts.open : s == 1 ? counts.stick : counts.slip);
+    if (single) {
+      const auto reference = single->step_to(t);
+      EXPECT_TRUE(reference.converged) << reference.reason;
+      EXPECT_EQ(report.cuts, reference.cuts);
+      expect_same(single->system().scales(), a, gathered(*single));
+    }
+    wait_for_all(*comm);
   }
   return counts;
 }

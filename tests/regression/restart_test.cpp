@@ -2,6 +2,7 @@
 #include "base/check.hpp"
 #include "io/checkpoints.hpp"
 #include "model/run.hpp"
+#include "source_dir.hpp"
 
 #include <gtest/gtest.h>
 #include <Teuchos_DefaultSerialComm.hpp>
@@ -31,7 +32,7 @@ void run(int ranks, const std::string& output, std::vector<std::string> override
   if (!comm.is_null()) {
     overrides.insert(overrides.end(), {"Output.checkpoints.steps=1", "Output.vtu=false", "Solver.tolerance=1e-13"});
     model::RunOptions options;
-    options.scene = SPREKK_SOURCE_DIR "/xml/verification/crossing_3d.xml";
+    options.scene = source_dir() + "/xml/verification/crossing_3d.xml";
     options.output = output;
     options.overrides = overrides;
     options.restart = restart;

@@ -18,9 +18,10 @@ USES = {
     "contact": "base mesh fields",
     "assembly": "base mesh fields contact",
     "physics": "base laws mesh fields contact assembly",
-    "solve": "base fields",
+    "multigrid": "base fields",
+    "solve": "base fields multigrid",
     "io": "base mesh fields",
-    "model": "base laws mesh fields contact assembly physics solve io",
+    "model": "base laws mesh fields contact assembly physics multigrid solve io",
 }
 FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files beside them
 SOURCES = {".hpp", ".cpp", ".h"}
@@ -30,7 +31,7 @@ HOST_ONLY = re.compile(
     r"\bMPI_COMM_WORLD\b|\bgetDefaultComm\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
 # Rooms that know no physics, by the words of those there are; the law of a room may be broken in these files: where
 # assembly meets contact, the point driver and the error estimate, which wait for rooms of their own.
-GENERIC = {"base", "mesh", "fields", "assembly", "solve", "io", "model"}
+GENERIC = {"base", "mesh", "fields", "assembly", "multigrid", "solve", "io", "model"}
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"
     r"|viscosity)\b", re.IGNORECASE)

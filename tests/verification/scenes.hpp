@@ -3,6 +3,7 @@
 
 #include "mesh/box.hpp"
 #include "model/model.hpp"
+#include "source_dir.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Core.hpp>
@@ -19,7 +20,7 @@ using Matrix3 = std::array<Vector3, 3>;
 
 /// Reads xml/NAME.
 inline model::Scene read_scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::read_scene(*Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/" + name, overrides);
+  return model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/" + name, overrides);
 }
 
 /// Whether the communicator's ranks agree that something is true somewhere. Collective.

@@ -44,7 +44,7 @@ TEST(MshError, Fractures) {
 
 TEST(MshError, Files) {
   EXPECT_THAT(error_of([] { read_msh("no/such.msh"); }), HasSubstr("no/such.msh: there is no such file"));
-  EXPECT_THAT(error_of([] { read_msh(SPREKK_SOURCE_DIR); }), HasSubstr("is a folder"));
+  EXPECT_THAT(error_of([] { read_msh(tests::source_dir()); }), HasSubstr("is a folder"));
   EXPECT_THAT(refusal(""), HasSubstr("is empty"));
   EXPECT_THAT(refusal(" \n\n"), HasSubstr("is empty"));
   EXPECT_THAT(refusal("solid cube\n"), HasSubstr("line 1: found \"solid cube\""));

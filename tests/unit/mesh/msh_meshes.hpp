@@ -7,10 +7,13 @@
 
 #include "mesh/msh_reader.hpp"
 #include "meshes.hpp"
+#include "source_dir.hpp"
 
 namespace sprekk::mesh::testing {
 
-inline std::string path_of(const std::string& name) { return SPREKK_SOURCE_DIR "/tests/data/meshes/" + name + ".msh"; }
+inline std::string path_of(const std::string& name) {
+  return tests::source_dir() + "/tests/data/meshes/" + name + ".msh";
+}
 
 inline std::string content_of(const std::string& name) {
   std::ifstream file(path_of(name), std::ios::binary);

@@ -21,23 +21,24 @@ std::vector<Real> some_values(std::size_t n) {
 }
 
 /// A row with the unknowns 8, 9, 2, 3, in this order.
-TEST(RowWalk, FindsWhatARowHasAndCountsWhatItHasNot) {
+TEST(RowCursor, FindsWhatARowHasAndCountsWhatItHasNot) {
   fields::NodeRows numbers{.height = 1, .width = 2};
   numbers.start = View<std::size_t*>("start", 2);
   numbers.start(1) = 2;
   numbers.column = View<LocalIndex*>("column", 2);
   numbers.column(0) = 4;
   numbers.column(1) = 1;
-  solve::RowWalk walk(numbers, 0);
-  EXPECT_EQ(walk.find(9), 1u);
-  EXPECT_EQ(walk.find(2), 2u);
-  EXPECT_EQ(walk.find(3), 3u);
-  EXPECT_NO_THROW(solve::check_found(walk.n_missing));
-  walk.find(6);
-  walk.find(0);
-  EXPECT_EQ(walk.n_missing, 2);
-  EXPECT_EQ(walk.find(8), 0u);
-  EXPECT_THROW(solve::check_found(walk.n_missing), Error);
+  solve::RowCursor cursor(numbers, 0);
+  EXPECT_EQ(cursor.find(9), 1u);
+  EXPECT_EQ(cursor.find(2), 2u);
+  EXPECT_EQ(cursor.find(3), 3u);
+  EXPECT_NO_THROW(solve::check_found(cursor.n_missing));
+  cursor.find(6);
+  cursor.find(0);
+  cursor.find(-1);
+  EXPECT_EQ(cursor.n_missing, 3);
+  EXPECT_EQ(cursor.find(8), 0u);
+  EXPECT_THROW(solve::check_found(cursor.n_missing), Error);
 }
 
 /// A state with open and closed faces.

@@ -5,8 +5,7 @@
 #include "base/check.hpp"
 #include "dense.hpp"
 #include "solve/condensed_solve.hpp"
-#include "solve/direct_inverse.hpp"
-#include "truss.hpp"
+#include "unit/multigrid/truss.hpp"
 
 namespace sprekk::test {
 namespace {
@@ -99,59 +98,6 @@ TEST(DirectSolver, RefusesUnknownParameters) {
   Teuchos::ParameterList list;
   list.set("ICNTL(99)", 1);
   EXPECT_THROW(solve::make_direct_solver(list), Error);
-}
-
-/// Grids whose unknowns are few enough for dense factors, too many, and enough for several ranks.
-constexpr int few = 8, many = 20, shared = 70;
-
-/// Distance of A^-1 A x from x, over the largest of x.
-Real error_of(const solve::DirectInverse& inverse, const CrsMatrix& A) {
-  Vector x(A.getDomainMap()), b(A.getRangeMap()), y(A.getDomainMap());
-  for (std::size_t i = 0; i < x.getLocalLength(); ++i)
-    x.replaceLocalValue(i, std::cos(0.1 * x.getMap()->getGlobalElement(i)));
-  A.apply(x, b);
-  inverse.apply(b, y, Teuchos::NO_TRANS, 1, 0);
-  y.update(-1, x, 1);
-  return y.normInf() / x.normInf();
-}
-
-void scale(CrsMatrix& A, Real factor) {
-  A.resumeFill();
-  A.scale(factor);
-  A.fillComplete(A.getDomainMap(), A.getRangeMap());
-}
-
-TEST(DirectInverse, InvertsFewAndManyUnknowns) {
-  for (const int n : {few, many, shared}) {
-    Grid grid(n);
-    const int n_rows = grid.matrix->getGlobalNumRows(), n_ranks = grid.matrix->getComm()->getSize();
-    ASSERT_EQ(n_rows <= solve::DirectInverse::most_dense, n == few);
-    ASSERT_EQ(n_rows >= 2 * solve::DirectInverse::least_of_a_rank, n == shared);
-    Vector factors(grid.matrix->getRowMap());  // not symmetric
-    for (std::size_t i = 0; i < factors.getLocalLength(); ++i)
-      factors.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
-    grid.matrix->leftScale(factors);
-    solve::DirectInverse inverse(grid.matrix, "test", n_ranks);
-    for (const Real factor : {1, 3}) {
-      scale(*grid.matrix, factor);
-      inverse.setup(false);
-      EXPECT_LT(error_of(inverse, *grid.matrix), 1e-10) << n;
-    }
-  }
-}
-
-TEST(DirectInverse, ThrowsWhereTheMatrixIsSingular) {
-  for (const int n : {few, many, shared}) {
-    Grid grid(n);
-    scale(*grid.matrix, 0);
-    solve::DirectInverse inverse(grid.matrix, "test", grid.matrix->getComm()->getSize());
-    try {
-      inverse.setup(false);
-      ADD_FAILURE() << n;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("test: "), std::string::npos) << error.what();
-    }
-  }
 }
 
 TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {

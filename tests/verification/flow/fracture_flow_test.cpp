@@ -162,7 +162,7 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
 TEST(FractureFlow, TwoFracturesMeetOnTheBoundary) {
   auto scene = read_scene("flow/source_2d.xml");
   scene.mesh_file.emplace();
-  scene.mesh_file->path = std::string(SPREKK_SOURCE_DIR) + "/tests/data/meshes/meeting_on_boundary.msh";
+  scene.mesh_file->path = source_dir() + "/tests/data/meshes/meeting_on_boundary.msh";
   scene.materials.at("rock").permeability = {base::Expression(1e-12)};
   auto& joint = scene.materials["joint"];
   joint.type = "joint";

@@ -15,7 +15,7 @@ void expect_uniform_stress(const std::string& file, int n_fractures) {
   const Real trace = (xx + yy) / 4, e_xx = (xx - trace) / 2, e_xy = xy / 2, e_yy = (yy - trace) / 2;
   model::Scene scene;
   scene.mesh_file.emplace();
-  scene.mesh_file->path = std::string(SPREKK_SOURCE_DIR) + "/tests/data/meshes/" + file;
+  scene.mesh_file->path = source_dir() + "/tests/data/meshes/" + file;
   auto& rock = scene.materials["rock"];
   rock.type = "elastic";
   rock.G = rock.lambda = base::Expression(1);
@@ -60,7 +60,7 @@ TEST(Gmsh, UniformStressPassesThroughEveryMesh) {
 model::Scene gmsh_scene(const std::string& file, int n_fractures) {
   model::Scene scene;
   scene.mesh_file.emplace();
-  scene.mesh_file->path = std::string(SPREKK_SOURCE_DIR) + "/tests/data/meshes/" + file + ".msh";
+  scene.mesh_file->path = source_dir() + "/tests/data/meshes/" + file + ".msh";
   scene.materials["rock"].type = "elastic";
   scene.materials["joint"].type = "joint";
   scene.bulk.material = "rock";

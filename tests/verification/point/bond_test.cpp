@@ -35,7 +35,7 @@ TEST(Bond, TheCurveHasItsPeak) {
 /// A tension that the bond does not bear ends the curve; what is before it is there, and the reason has the strength.
 TEST(Bond, KeepsTheStatesBeforeItBreaks) {
   const auto curves = model::drive_points(
-      model::read_point_scene(*Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/point/bond.xml",
+      model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
                               {"Point.control={traction, jump}", "Point.path={3e6*t, 0}", "Time.steps=11"}));
   ASSERT_EQ(curves.size(), 1u);
   ASSERT_EQ(curves[0].states.size(), 3u);
@@ -106,9 +106,8 @@ TEST(Bond, ConstantCohesionStays) {
 TEST(Bond, EnergiesAreRequiredWithStrengths) {
   for (const char* entry : {"fracture energy", "shear fracture energy"}) {
     try {
-      auto scene =
-          model::read_point_scene(*Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/point/bond.xml",
-                                  {fmt::format("Materials.cemented joint.{}=0", entry)});
+      auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
+                                           {fmt::format("Materials.cemented joint.{}=0", entry)});
       ADD_FAILURE() << entry;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(entry), std::string::npos) << error.what();

@@ -118,7 +118,7 @@ void expect_lawful(const model::PointScene& scene, const std::vector<PointState>
 
 TEST(Control, RandomJointsOnRandomPathsObeyTheLaw) {
   std::mt19937 random(20240603);
-  const std::string path = std::string(SPREKK_SOURCE_DIR) + "/xml/point/turning_shear.xml";
+  const std::string path = source_dir() + "/xml/point/turning_shear.xml";
   for (int i = 0; i < 300; ++i) {
     const auto overrides = random_case(random);
     SCOPED_TRACE(fmt::format("case {}: {}", i, fmt::join(overrides, "; ")));
@@ -145,9 +145,10 @@ std::string message(const Overrides& overrides) {
 TEST(Control, WhatDeterminesNoStateIsAnErrorThatSaysWhy) {
   const std::string rigid = "Materials.joint.tangential stiffness=infinite";
   EXPECT_EQ(
-      message({"Point.control={traction, traction}", "Point.path={-0.3, 0.05*t}"}), SPREKK_SOURCE_DIR
-      "/xml/point/cyclic_shear.xml: Sprekk > Point: step 4 of 8, t = 4: no state found for traction "
-      "n = -0.3, traction t = 0.2: the shear traction exceeds the friction bound, the joint slides without bound");
+      message({"Point.control={traction, traction}", "Point.path={-0.3, 0.05*t}"}),
+      source_dir() +
+          "/xml/point/cyclic_shear.xml: Sprekk > Point: step 4 of 8, t = 4: no state found for traction "
+          "n = -0.3, traction t = 0.2: the shear traction exceeds the friction bound, the joint slides without bound");
   const std::pair<Overrides, const char*> cases[] = {
       {{"Point.control={traction, jump}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},
       {{"Point.control={jump, traction}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},

@@ -3,6 +3,7 @@
 
 #include "base/check.hpp"
 #include "model/point.hpp"
+#include "source_dir.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <fmt/ranges.h>
@@ -17,8 +18,8 @@ using model::PointState;
 
 /// The states of xml/point/NAME.
 inline std::vector<PointState> drive(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::drive_point(model::read_point_scene(*Tpetra::getDefaultComm(),
-                                                    std::string(SPREKK_SOURCE_DIR) + "/xml/point/" + name, overrides));
+  return model::drive_point(
+      model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides));
 }
 
 }  // namespace sprekk::tests

@@ -7,8 +7,7 @@ namespace sprekk::tests {
 namespace {
 
 model::PointScene shear_tests(const std::vector<std::string>& overrides = {}) {
-  return model::read_point_scene(*Tpetra::getDefaultComm(),
-                                 std::string(SPREKK_SOURCE_DIR) + "/xml/point/shear_tests.xml", overrides);
+  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/shear_tests.xml", overrides);
 }
 
 TEST(Specimens, AreWhatTheyAreAlone) {

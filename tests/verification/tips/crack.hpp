@@ -6,8 +6,8 @@
 
 namespace sprekk::tests {
 inline model::Scene crack(const std::string& name, const std::vector<std::string>& overrides) {
-  return model::read_scene(*Tpetra::getDefaultComm(),
-                           std::string(SPREKK_SOURCE_DIR) + "/tests/verification/tips/" + name + ".xml", overrides);
+  return model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/tests/verification/tips/" + name + ".xml",
+                           overrides);
 }
 
 /// The same crack in a box of squares or cubes, or of their parts; in 3D a slab in plane strain.

@@ -58,7 +58,7 @@ model::Scene block(int dim, const Discretisation& d, int n, std::vector<std::str
 model::Scene graded_block(int dim, const Discretisation& d) {
   auto scene = read_scene(fmt::format("verification/free_sides_{}d.xml", dim));
   scene.mesh_file.emplace();
-  scene.mesh_file->path = fmt::format("{}/tests/data/meshes/free_sides_{}.msh", SPREKK_SOURCE_DIR, d.cell);
+  scene.mesh_file->path = fmt::format("{}/tests/data/meshes/free_sides_{}.msh", source_dir(), d.cell);
   scene.mesh_file->order = d.order;
   scene.mesh_file->fractures["fracture"].reference_normal = {0, 0, 0};
   scene.mesh_file->fractures["fracture"].reference_normal->at(dim - 1) = 1;

@@ -75,8 +75,8 @@ void set(physics::JointMaterial& joint, const Law& law) {
 }
 
 std::vector<model::PointState> at_a_point(const Law& law) {
-  auto scene = model::read_point_scene(
-      *Tpetra::getDefaultComm(), std::string(SPREKK_SOURCE_DIR) + "/xml/point/cyclic_shear.xml", along_path("shear"));
+  auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/cyclic_shear.xml",
+                                       along_path("shear"));
   set(scene.materials.at("joint"), law);
   return model::drive_point(scene);
 }

@@ -1,0 +1,57 @@
+// Groups of nodes that become the nodes of a coarser level, and the motions of the finer one that they keep.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "multigrid/node_matrix.hpp"
+
+namespace sprekk::multigrid {
+
+/// Which owned nodes are neighbours, in rows as in NodeGraph; without ghosts, and without a node itself.
+struct Neighbours {
+  std::vector<std::size_t> start;
+  std::vector<LocalIndex> node;
+};
+
+/// What is known of the nodes of a level before they are grouped.
+struct Nodes {
+  Neighbours neighbours;
+  std::vector<bool> free;    ///< [node]: couples to others, ghosts included; those that do not are left to smoothing
+  std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
+  int n_modes = 0;
+  std::vector<std::array<Real, 3>> place;  ///< [node] m; empty: not known
+  std::vector<bool> weak;  ///< [entry of the graph] a coupling to do without, besides those that are far; empty: none
+};
+
+/// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
+/// null for the constant ones; `places` [node, dim], null if they are not known. Without modes, couplings are weak that
+/// are small beside the diagonals of both, and no neighbours: so what conducts well and what does not stay apart
+/// (Vanek, Mandel and Brezina 1996). Collective.
+Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes,
+               const RCP<const MultiVector>& places = Teuchos::null);
+
+/// How far each node reaches, [node] m: not much farther than to its nearest neighbour. Nodes couple strongly that one
+/// of the two reaches: in cells that are much longer than wide, those across short edges, where a smoother does little;
+/// what they join is less flat on the next level. Without limit where places are not known. Stored data.
+std::vector<Real> reach(const Nodes& nodes);
+
+/// How flat cells are: the distance of the third nearest neighbour, in distances of the nearest one, at most 100; the
+/// mean over all nodes. It is 1 to 1.4 of cubes and of needles, and 1 where places are not known. Collective.
+Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm);
+
+/// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours in reach are all in no
+/// aggregate yet makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel
+/// and Brezina 1996). One with fewer nodes than `enough` also takes neighbours of these neighbours, those first that
+/// most of these are neighbours of. Aggregates hold nodes of one rank only. Stored data.
+struct Aggregates {
+  LocalIndex n = 0;
+  std::vector<LocalIndex> of;
+};
+Aggregates aggregate(const Nodes& nodes, std::size_t enough = 0);
+
+/// An orthonormal basis of the motions on each aggregate: [node, unknown, mode], zero for motions that others make up.
+/// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis. Stored data.
+std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& aggregates, Nodes& coarse);
+
+}  // namespace sprekk::multigrid

@@ -1,0 +1,217 @@
+#include "multigrid/multigrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/over_ranks.hpp"
+#include "multigrid/block_sizes.hpp"
+
+namespace sprekk::multigrid {
+namespace {
+
+using Policy = Kokkos::RangePolicy<Execution>;
+
+/// By how much of itself the diagonal of the last matrix is raised: parts of rock that float would make it singular.
+constexpr Real raise = 1e-8;
+
+constexpr Real most_growth = 5;  // of the residual in a cycle
+constexpr int most_widenings = 4;
+constexpr int most_degree = 24;
+
+/// Levels end where there are more coarse nodes than this share of the fine ones: all alone, or one on each rank.
+constexpr Real least_coarsening = 0.8;
+
+/// Nodes of an aggregate of the finest level. In space a coarse node has six unknowns; nodes with few neighbours, as in
+/// tetrahedra, would make so many coarse ones that the levels below took half of the memory and time of the finest one.
+/// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Collective.
+std::size_t enough_for(const Nodes& nodes, const NodeGraph& graph) {
+  constexpr int modes_in_space = 6;
+  constexpr std::size_t long_row = 27, enough = 36;
+  constexpr GlobalIndex share = 20;
+  if (nodes.n_modes != modes_in_space) return 0;
+  std::array<GlobalIndex, 2> here{0, graph.n_rows()};
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i) here[0] += graph.start(i + 1) - graph.start(i) >= long_row;
+  const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
+  return share * all[0] < all[1] ? enough : 0;
+}
+
+/// Of the smoother on the finest level. Jumps that alternate along the long edges of fractures do no work on contact,
+/// which is as stiff as the short edges of flat cells: the diagonal is too large for them by the square of the aspect
+/// ratio, and aggregates do not represent them. On that level it costs least to smooth them.
+int degree_for(Real flatness) {
+  return static_cast<int>(std::lround(std::clamp<Real>(1.2 * flatness, Chebyshev::usual_degree, most_degree)));
+}
+
+GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
+
+void raise_diagonal(CrsMatrix& matrix) {
+  const auto local = matrix.getLocalMatrixHost();
+  const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
+  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row)) local.values(k) *= 1 + raise;
+}
+
+}  // namespace
+
+bool Multigrid::can_solve(int n_components, int n_modes) {
+  const auto nothing = [](auto, auto) {};
+  return try_sizes(n_components, n_components, nothing) && try_sizes(n_components, n_modes, nothing) &&
+         try_sizes(n_modes, n_modes, nothing);
+}
+
+Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
+                     const RCP<const MultiVector>& modes)
+    : map_(matrix->row_map()), finest_(matrix), size_(n_components) {
+  add_level(node_matrix(*matrix, size_));
+  shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
+  degree_ = modes.is_null() ? Chebyshev::usual_degree : degree_for(flatness(nodes, *map_->getComm()));
+  while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
+    const auto& A = levels_.back().A;
+    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, A.graph) : 0);
+    Nodes coarse;
+    const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
+    auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
+    if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
+    levels_.back().smoother = std::make_unique<Chebyshev>(A);
+    if (modes.is_null()) {  // what is weak on the next level its matrix tells
+      levels_.back().smoother->update(A);
+      galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
+      nodes = nodes_of(galerkin->coarse(), modes);
+      nodes.motion = std::move(coarse.motion);
+      nodes.place = std::move(coarse.place);
+    } else {
+      nodes = std::move(coarse);
+    }
+    levels_.back().to_coarse = std::move(galerkin);
+    add_level(levels_.back().to_coarse->coarse());
+  }
+  std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
+  for (const auto& level : levels_) here[1] += level.A.value.extent(0);
+  const auto all = base::sum_over_ranks(*map_->getComm(), here);
+  operator_complexity_ = all[1] / all[0];
+}
+
+void Multigrid::add_level(const NodeMatrix& A) {
+  const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
+  const auto& halo = *A.graph.columns;
+  levels_.push_back(
+      {A, {}, {}, vector(levels_.empty() ? 0 : halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
+}
+
+void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful) {
+  if (matrix != finest_ || !shares_) {
+    const auto values = node_matrix(*matrix, size_).value;
+    base::collectively(*map_->getComm(), [&] {
+      SPREKK_CHECK(values.extent(0) == levels_.front().A.value.extent(0),
+                   "multigrid: the graph of the matrix has changed");
+    });
+    levels_.front().A.value = values;
+  }
+  finest_ = matrix;
+  for (auto& level : levels_) {
+    if (!level.to_coarse) continue;
+    const bool finest = &level == &levels_.front();
+    level.smoother->update(level.A, finest && symmetric ? degree_ : Chebyshev::usual_degree);
+    level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
+  }
+  factor_last(symmetric);
+  for (int widenings = 0; careful && !symmetric && !(growth() <= most_growth) && widenings < most_widenings;
+       ++widenings)
+    for (auto& level : levels_)
+      if (level.smoother) level.smoother->widen();
+}
+
+void Multigrid::factor_last(bool symmetric) {
+  if (n_nodes(levels_.back().A) == 0) return;  // no node couples to another: smoothing is all
+  const auto last = crs_matrix(levels_.back().A);
+  raise_diagonal(*last);
+  if (last_.is_null()) {
+    last_matrix_ = last;
+    last_ = rcp(new DirectInverse(last_matrix_, "the coarsest level of multigrid"));
+  } else {
+    Kokkos::deep_copy(last_matrix_->getLocalMatrixDevice().values, last->getLocalMatrixDevice().values);
+  }
+  last_->setup(symmetric);
+}
+
+/// |b - A M b| / |b| of a vector b that is the same on any number of ranks. Large where eigenvalues of a matrix that is
+/// not symmetric lie so far from the real axis that the smoother enlarges what belongs to them.
+Real Multigrid::growth() const {
+  Vector b(map_), Mb(map_), r(map_);
+  for (std::size_t i = 0; i < b.getLocalLength(); ++i)
+    b.replaceLocalValue(i, std::cos(static_cast<Real>(map_->getGlobalElement(i))));
+  apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
+  finest_->apply(Mb, r);
+  r.update(1, b, -1);
+  return r.norm2() / b.norm2();
+}
+
+void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const {
+  const auto given = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto result = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  const auto to = levels_.front().x;
+  const Policy rows(0, given.extent(0));
+  for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
+    cycle(0, Kokkos::subview(given, Kokkos::ALL(), v));
+    Kokkos::parallel_for(
+        "give", rows, KOKKOS_LAMBDA(LocalIndex i) {
+          result(i, v) = beta == 0 ? alpha * to(i) : alpha * to(i) + beta * result(i, v);
+        });
+  }
+}
+
+void Multigrid::cycle(std::size_t level, const ConstView<Real*>& b) const {
+  const auto& [A, smoother, to_coarse, _, x, r] = levels_[level];
+  if (!to_coarse) return solve_last(b);
+  smoother->apply(b, x, false);
+  residual(A, x, b, r);
+  product(to_coarse->restriction(), r, levels_[level + 1].b);
+  cycle(level + 1, levels_[level + 1].b);
+  add_product(to_coarse->prolongation(), levels_[level + 1].x, x);
+  residual(A, x, b, r);
+  smoother->apply(r, x, true);
+}
+
+void Multigrid::solve_last(const ConstView<Real*>& from) const {
+  if (last_.is_null()) return;
+  const auto to = levels_.back().x;
+  MultiVector b(last_->getDomainMap(), 1), x(last_->getRangeMap(), 1);
+  const Policy rows(0, from.extent(0));
+  {
+    const auto values = b.getLocalViewDevice(Tpetra::Access::OverwriteAll);
+    Kokkos::parallel_for(
+        "take", rows, KOKKOS_LAMBDA(LocalIndex i) { values(i, 0) = from(i); });
+  }
+  last_->apply(b, x, Teuchos::NO_TRANS, 1, 0);
+  const auto values = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  Kokkos::parallel_for(
+      "give", rows, KOKKOS_LAMBDA(LocalIndex i) { to(i) = values(i, 0); });
+}
+
+double Multigrid::bytes() const {
+  double sum = 0;
+  for (const auto& level : levels_) {
+    if (level.smoother) sum += level.smoother->bytes();
+    if (level.to_coarse) sum += level.to_coarse->bytes();
+  }
+  return sum;
+}
+
+/// Of each level: its matrix twice for residuals, its copy for the smoother, interpolation and restriction.
+double Multigrid::cycle_bytes() const {
+  double sum = 0;
+  for (const auto& level : levels_) {
+    if (!level.to_coarse) continue;
+    const auto matrix = [](const auto& A, std::size_t number) {
+      return static_cast<double>(A.value.extent(0) * number + A.graph.n_entries() * sizeof(LocalIndex));
+    };
+    sum += 2 * matrix(level.A, sizeof(Real)) +
+           2 * (level.smoother->degree() - 1) * matrix(level.A, sizeof(RoundedMatrix::Number));
+    sum +=
+        matrix(level.to_coarse->prolongation(), sizeof(float)) + matrix(level.to_coarse->restriction(), sizeof(float));
+  }
+  return sum;
+}
+
+}  // namespace sprekk::multigrid

@@ -1,0 +1,69 @@
+// Multigrid on blocks of nodes.
+#pragma once
+
+#include "multigrid/chebyshev.hpp"
+#include "multigrid/direct_inverse.hpp"
+#include "multigrid/galerkin.hpp"
+
+namespace sprekk::multigrid {
+
+/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Each
+/// rank, and each piece of rock on it, keeps at least one node on every level. It throws where the last level is
+/// singular. All members are collective unless they return stored data.
+class Multigrid : public fields::Operator {
+ public:
+  static constexpr int coarse_size =
+      DirectInverse::most_dense;  ///< no further level below so many unknowns: a direct solve
+
+  /// Whether there is code for that many unknowns of a node and motions.
+  static bool can_solve(int n_components, int n_modes);
+
+  /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
+  /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
+  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes);
+  /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
+  Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components, const RCP<const MultiVector>& modes,
+            const RCP<const MultiVector>& places = Teuchos::null)
+      : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
+
+  /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
+  /// cycle, and smooths less if the residual grows much in it.
+  void setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful = true);
+
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override;
+
+  /// Whether cells are so flat that the smoother of the finest level has a higher degree.
+  bool flat() const { return degree_ > Chebyshev::usual_degree; }
+  /// Entries of the matrices of all levels over those of the finest.
+  double operator_complexity() const { return operator_complexity_; }
+  double bytes() const;        ///< that this rank has stored
+  double cycle_bytes() const;  ///< of matrices that this rank reads in a V-cycle
+
+ private:
+  struct Level {
+    NodeMatrix A;
+    std::unique_ptr<Chebyshev> smoother;
+    std::unique_ptr<Galerkin> to_coarse;
+    View<Real*> b, x, r;  // [owned], none on the finest level; [all], [all]
+  };
+
+  void add_level(const NodeMatrix& A);
+  void factor_last(bool symmetric);
+  Real growth() const;
+  void cycle(std::size_t level, const ConstView<Real*>& b) const;
+  void solve_last(const ConstView<Real*>& b) const;
+
+  RCP<const Map> map_;
+  RCP<const Matrix> finest_;
+  int size_;
+  int degree_;  // of the smoother on the finest level, of a symmetric matrix
+  double operator_complexity_ = 1;
+  bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
+  std::vector<Level> levels_;
+  RCP<CrsMatrix> last_matrix_;
+  RCP<DirectInverse> last_;
+};
+
+}  // namespace sprekk::multigrid

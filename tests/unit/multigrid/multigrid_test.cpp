@@ -1,0 +1,267 @@
+#include "multigrid/multigrid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+
+#include "base/check.hpp"
+#include "truss.hpp"
+
+namespace sprekk::test {
+namespace {
+
+/// Trilinear elements of the Laplacian in cells 1 x 1 x h, on [n, n, n] nodes, with a little of the identity.
+struct FlatCells {
+  explicit FlatCells(int n, Real h = 0.1) : map(rcp(new Map(n * n * n, 0, Tpetra::getDefaultComm()))) {
+    matrix = rcp(new CrsMatrix(map, 27));
+    places = rcp(new MultiVector(map, 3));
+    const Real stiffness[] = {-1, 2, -1}, mass[] = {1 / 6.0, 4 / 6.0, 1 / 6.0};
+    for (const GlobalIndex node : map->getNodeElementList()) {
+      const int p[] = {int(node % n), int(node / n % n), int(node / n / n)};
+      for (int k = 0; k < 3; ++k) places->replaceGlobalValue(node, k, p[k] * (k == 2 ? h : 1));
+      for (int k = 0; k < 27; ++k) {
+        const int d[] = {k % 3, k / 3 % 3, k / 9}, q[] = {p[0] + d[0] - 1, p[1] + d[1] - 1, p[2] + d[2] - 1};
+        if (*std::min_element(q, q + 3) < 0 || *std::max_element(q, q + 3) >= n) continue;
+        const Real value = h * (stiffness[d[0]] * mass[d[1]] + mass[d[0]] * stiffness[d[1]]) * mass[d[2]] +
+                           mass[d[0]] * mass[d[1]] * stiffness[d[2]] / h + (k == 13 ? 1e-3 : 0);
+        const GlobalIndex column = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);
+        matrix->insertGlobalValues(node, 1, &value, &column);
+      }
+    }
+    matrix->fillComplete();
+  }
+  RCP<const Map> map;
+  RCP<CrsMatrix> matrix;
+  RCP<MultiVector> places;
+};
+
+/// S = S^T, and S damps what multigrid cannot: on the upper part of the spectrum 1 - S A is small.
+TEST(Chebyshev, IsSymmetricAndSmooths) {
+  const Truss truss(8, true);
+  const auto A = multigrid::node_matrix(*truss.matrix, 3);
+  multigrid::Chebyshev smoother(A);
+  smoother.update(A);
+  const LocalIndex n_all = A.graph.columns->n_all();
+  const auto x = random_vector(n_all, 3, 4), y = random_vector(n_all, 3, 5), Sx = zeros(n_all, 3), Sy = zeros(n_all, 3);
+  smoother.apply(x, Sx, false);
+  smoother.apply(y, Sy, false);
+  const std::size_t n = 3 * A.graph.n_rows();
+  EXPECT_NEAR(dot(Sx, y, n), dot(x, Sy, n), 1e-12 * std::sqrt(dot(Sx, Sx, n) * dot(y, y, n)));
+
+  const auto e = zeros(n_all, 3), r = zeros(n_all, 3);  // neighbours move against each other
+  for (LocalIndex i = 0; i < A.graph.n_rows(); ++i) {
+    const auto p = truss.place(A.graph.columns->owned()->getGlobalElement(i));
+    for (int k = 0; k < 3 && p[0] > 0; ++k) e(3 * i + k) = (p[0] + p[1] + p[2]) % 2 ? 1 : -1;
+  }
+  const Real before = dot(e, e, n);
+  multigrid::product(A, e, r);
+  const auto correction = zeros(n_all, 3);
+  smoother.apply(r, correction, false);
+  for (std::size_t i = 0; i < n; ++i) e(i) -= correction(i);
+  EXPECT_LT(std::sqrt(dot(e, e, n) / before), 0.15);
+}
+
+/// The error's factor in an iteration x += M (b - A x), by the power method.
+Real contraction(const CrsMatrix& A, multigrid::Multigrid& M) {
+  Vector e(A.getRowMap()), r(A.getRowMap()), correction(A.getRowMap());
+  e.randomize(-1, 1);
+  Real factor = 0;
+  for (int k = 0; k < 30; ++k) {
+    const Real before = e.norm2();
+    A.apply(e, r);
+    M.apply(r, correction, Teuchos::NO_TRANS, 1, 0);
+    e.update(-1, correction, 1);
+    factor = e.norm2() / before;
+    e.scale(1 / e.norm2());
+  }
+  return factor;
+}
+
+TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
+  for (const int n : {9, 15}) {
+    const Truss truss(n, true);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), true);
+    EXPECT_LT(contraction(*truss.matrix, M), 0.35) << n;
+    EXPECT_GT(M.operator_complexity(), n == 9 ? 1.0 : 1.02);
+    EXPECT_LT(M.operator_complexity(), 1.6);
+  }
+}
+
+/// With aggregates of more than a node's neighbours.
+TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
+  for (const int n : {9, 15, 21}) {
+    const Truss truss(n, true, 0, 0, true);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), true);
+    EXPECT_LT(contraction(*truss.matrix, M), 0.75) << n;
+    EXPECT_LT(M.operator_complexity(), 1.25) << n;
+  }
+}
+
+TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
+  const auto flatness = [](Real h, bool placed) {
+    const FlatCells cells(8, h);
+    const auto ones = rcp(new MultiVector(cells.map, 1));
+    ones->putScalar(1);
+    const auto nodes =
+        multigrid::nodes_of(multigrid::node_matrix(*cells.matrix, 1), ones, placed ? cells.places : Teuchos::null);
+    return multigrid::flatness(nodes, *cells.map->getComm());
+  };
+  EXPECT_NEAR(flatness(0.1, true), 10, 0.1);
+  EXPECT_NEAR(flatness(1e-3, true), 100, 1e-10);
+  EXPECT_NEAR(flatness(1, true), 1, 0.1);
+  EXPECT_NEAR(flatness(10, true), 1, 0.1);
+  EXPECT_EQ(flatness(0.1, false), 1);
+}
+
+/// The same matrix with the unknowns of a node together, or apart as far as `together` says for this rank.
+RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, bool together) {
+  const auto local = A.getLocalMatrixHost();
+  const View<std::size_t*> start("start", local.numRows() + 1);
+  const View<LocalIndex*> column("column", local.nnz());
+  for (LocalIndex row = 0; row < local.numRows(); ++row) start(row + 1) = local.graph.row_map(row + 1);
+  for (std::size_t k = 0; k < column.extent(0); ++k) column(k) = local.graph.entries(k);
+  const int size = together ? 3 : 1;
+  const auto matrix =
+      rcp(new const fields::Matrix(A.getRowMap(), A.getColMap(), A.getDomainMap(), start, column, size, size));
+  for (std::size_t k = 0; k < column.extent(0); ++k) matrix->numbers().value(k) = local.values(k);
+  return matrix;
+}
+
+/// However the matrix is stored, and if only some ranks have the unknowns of a node together.
+TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
+  const Truss truss(9, true);
+  const int rank = truss.map->getComm()->getRank();
+  Vector b(truss.map), expected(truss.map), x(truss.map);
+  b.randomize();
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  M.apply(b, expected, Teuchos::NO_TRANS, 1, 0);
+  for (const bool together : {true, rank % 2 == 1, rank % 2 == 0}) {
+    const auto A = in_nodes(*truss.matrix, together);
+    ASSERT_EQ(A->numbers().width, together ? 3 : 1);
+    multigrid::Multigrid of_nodes(A, *A, 3, truss.modes);
+    of_nodes.setup(A, true);
+    of_nodes.apply(b, x, Teuchos::NO_TRANS, 1, 0);
+    x.update(-1, expected, 1);
+    EXPECT_LT(x.normInf(), 1e-12 * expected.normInf());
+  }
+}
+
+/// Flat cells are coarsened across their short edges first: which are those, the places tell.
+TEST(Multigrid, ContractsInFlatCells) {
+  const FlatCells cells(16);
+  const auto with = [&](const RCP<MultiVector>& places) {
+    multigrid::Multigrid M(wrapped(cells.matrix), *wrapped(cells.matrix), 1, Teuchos::null, places);
+    M.setup(wrapped(cells.matrix), true);
+    EXPECT_LT(M.operator_complexity(), 1.8);
+    return contraction(*cells.matrix, M);
+  };
+  EXPECT_LT(with(cells.places), 0.5);
+  EXPECT_GT(with(Teuchos::null), 0.7);
+}
+
+/// The way of matrices that are not symmetric leads to about the same for those that are: R is rounded more often.
+TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
+  const Truss truss(13, true);
+  Vector b(truss.map), y(truss.map), z(truss.map);
+  b.randomize();
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  M.apply(b, y, Teuchos::NO_TRANS, 1, 0);
+  M.setup(wrapped(truss.matrix), false);
+  M.apply(b, z, Teuchos::NO_TRANS, 1, 0);
+  z.update(-1, y, 1);
+  EXPECT_LT(z.normInf(), 1e-6 * y.normInf());
+}
+
+/// Eigenvalues far off the real axis: the smoother takes a wider interval rather than enlarge what belongs to them.
+TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
+  for (const Real skew : {1.0, 3.0}) {
+    const Truss truss(9, true, skew);
+    multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+    M.setup(wrapped(truss.matrix), false);
+    Vector b(truss.map), Mb(truss.map), r(truss.map);
+    for (std::size_t i = 0; i < b.getLocalLength(); ++i) {
+      const auto row = static_cast<Real>(truss.map->getGlobalElement(static_cast<LocalIndex>(i)));
+      b.replaceLocalValue(static_cast<LocalIndex>(i), std::sin(row * row));
+    }
+    M.apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
+    truss.matrix->apply(Mb, r);
+    r.update(1, b, -1);
+    EXPECT_LT(r.norm2() / b.norm2(), 20) << skew;  // the set-up tries another vector, and allows 5
+  }
+}
+
+/// No unknown couples to another: multigrid is its smoother.
+TEST(Multigrid, NeedsNoCoarseNodes) {
+  const auto map = rcp(new Map(2000, 0, Tpetra::getDefaultComm()));
+  const auto matrix = rcp(new CrsMatrix(map, 1));
+  for (const GlobalIndex row : map->getNodeElementList()) {
+    const Real value = 2;
+    matrix->insertGlobalValues(row, 1, &value, &row);
+  }
+  matrix->fillComplete();
+  multigrid::Multigrid M(wrapped(matrix), *wrapped(matrix), 1, Teuchos::null);
+  M.setup(wrapped(matrix), true);
+  Vector b(map), x(map), r(map);
+  b.randomize();
+  M.apply(b, x, Teuchos::NO_TRANS, 1, 0);
+  matrix->apply(x, r);
+  r.update(1, b, -1);
+  EXPECT_LT(r.norm2(), 0.2 * b.norm2());
+}
+
+/// Another matrix with the same graph takes the place of the first; one with another graph is refused.
+TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
+  const Truss truss(9, true), other(9, true, 0.01), larger(10, true);
+  Vector b(truss.map), x(truss.map), y(truss.map);
+  b.randomize();
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes),
+      of_other(wrapped(other.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  M.setup(wrapped(other.matrix), false);
+  M.apply(b, x, Teuchos::NO_TRANS, 1, 0);
+  of_other.setup(wrapped(other.matrix), false);
+  of_other.apply(b, y, Teuchos::NO_TRANS, 1, 0);
+  y.update(-1, x, 1);
+  EXPECT_LT(y.normInf(), 1e-12 * x.normInf());
+  EXPECT_THROW(M.setup(wrapped(larger.matrix), true), Error);
+}
+
+/// alpha M b + beta y of two vectors at once, linear to rounding; other values on the same graph.
+TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
+  const Truss truss(9, true);
+  multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);
+  M.setup(wrapped(truss.matrix), true);
+  MultiVector b(truss.map, 2), Mb(truss.map, 2), y(truss.map, 2);
+  b.randomize();
+  y.putScalar(3);
+  M.apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
+  M.apply(b, y, Teuchos::NO_TRANS, 2, 0.5);
+  y.update(-2, Mb, 1);
+  Vector sum(truss.map), M_sum(truss.map);
+  sum.update(1, *b.getVector(0), 1, *b.getVector(1), 0);
+  M.apply(sum, M_sum, Teuchos::NO_TRANS, 1, 0);
+  M_sum.update(-1, *Mb.getVector(0), -1, *Mb.getVector(1), 1);
+  const Real size = Mb.getVector(0)->normInf();
+  EXPECT_LT(M_sum.normInf(), 1e-12 * size);
+  for (int v = 0; v < 2; ++v) {
+    Vector rest(*y.getVector(v), Teuchos::Copy), ones(truss.map);
+    ones.putScalar(1);
+    rest.update(-1.5, ones, 1);
+    EXPECT_LT(rest.normInf(), 1e-12 * std::max(1.0, size));
+  }
+  truss.matrix->resumeFill();
+  truss.matrix->scale(4);
+  truss.matrix->fillComplete();
+  M.setup(wrapped(truss.matrix), true);
+  MultiVector quarter(truss.map, 2);
+  M.apply(b, quarter, Teuchos::NO_TRANS, 4, 0);
+  quarter.update(-1, Mb, 1);
+  EXPECT_LT(quarter.getVector(0)->normInf(), 1e-10 * size);
+}
+
+}  // namespace
+}  // namespace sprekk::test

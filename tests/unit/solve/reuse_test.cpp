@@ -1,0 +1,59 @@
+// When a preconditioner is kept, given up and made anew.
+#include "solve/reuse.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sprekk::test {
+namespace {
+
+using solve::Reuse;
+using State = Reuse::State;
+
+TEST(Reuse, KeepsWhatServesAndRenewsWhatIsWorn) {
+  Reuse reuse;
+  EXPECT_FALSE(reuse.may_keep());
+  reuse.make(true);
+  EXPECT_EQ(reuse.most_iterations(1e-8), 0);
+  reuse.learn(16, 1e-8, 1e-8);  // two iterations for a digit
+  ASSERT_TRUE(reuse.may_keep());
+  reuse.keep();
+  EXPECT_EQ(reuse.most_iterations(1e-4), 8 + Reuse::most_more);
+  EXPECT_FALSE(reuse.gives_up(9, true));
+  reuse.learn(9, 1e-4, 1e-4);
+  EXPECT_EQ(reuse.state(), State::kept);
+  reuse.learn(11, 1e-4, 1e-4);
+  EXPECT_EQ(reuse.state(), State::worn);
+  EXPECT_TRUE(reuse.is_of_earlier_system());
+  EXPECT_FALSE(reuse.may_keep());
+  reuse.learn(8, 1e-4, 1e-4);  // of another right-hand side
+  EXPECT_TRUE(reuse.may_keep());
+  EXPECT_TRUE(reuse.gives_up(12, false));
+  EXPECT_FALSE(reuse.is_careful());  // it was only too old
+}
+
+TEST(Reuse, IsCarefulOnceASolveWithUntriedCyclesIsLong) {
+  Reuse reuse;
+  reuse.make(false);
+  EXPECT_EQ(reuse.most_iterations(1e-8), Reuse::most_unchecked);
+  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked - 1, false));  // the library gave up before
+  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked, true));
+  EXPECT_FALSE(reuse.is_careful());
+  EXPECT_TRUE(reuse.gives_up(Reuse::most_unchecked, false));
+  EXPECT_TRUE(reuse.is_careful());
+  reuse.make(true);
+  EXPECT_FALSE(reuse.gives_up(1000, false));  // nothing better is to be had
+}
+
+TEST(Reuse, LearnsNothingFromSolvesThatGainLessThanADigit) {
+  Reuse reuse;
+  reuse.make(true);
+  reuse.learn(20, 1e-10, 1e-10);
+  reuse.learn(7, 0.5, 1e-10);
+  reuse.keep();
+  EXPECT_EQ(reuse.most_iterations(1e-10), 20 + Reuse::most_more);
+  reuse.lose();
+  EXPECT_FALSE(reuse.may_keep());
+}
+
+}  // namespace
+}  // namespace sprekk::test
