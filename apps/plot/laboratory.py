@@ -5,6 +5,9 @@ import numpy as np
 from read import PlotError
 from style import FAINT, MOST_CURVES, Quantity, give_room, look, plt
 
+REACHED = 1e-3  # of a strength: as near to it a shear traction is at it
+ABOVE = 1.15    # times the largest shear traction: strengths beyond that are not drawn
+
 
 def specimens(path):
     """{name: {column: values}} of a CSV of `sprekk point` of several specimens; None of any other."""
@@ -30,6 +33,22 @@ def size(curve, kind):
     return parts[0] if len(parts) == 1 else np.linalg.norm(parts, axis=0)
 
 
+def bounds(ax, curves, compression, shear):
+    """The largest strength of specimens that reach it; of others, whose compression varies, the strength on the way."""
+    largest, peaks = max(np.max(np.abs(size(c, "traction"))) for c in curves.values()), []
+    for k, curve in enumerate(curves.values()):
+        stress, strength = -curve["traction_n"], curve["strength"]
+        peak = np.argmax(strength)
+        if abs(size(curve, "traction")[peak]) >= (1 - REACHED) * strength[peak]:
+            peaks.append((stress[peak], strength[peak]))
+        elif np.ptp(stress) > 0:
+            shown = np.where(strength <= ABOVE * largest, strength, np.nan)
+            ax.plot(compression(stress), shear(shown), color=look(k % MOST_CURVES)["color"], linestyle=":", linewidth=0.8)
+    if peaks:
+        ax.plot(*(quantity(values) for quantity, values in zip((compression, shear), np.array(sorted(peaks)).T)), "o", color=FAINT,
+                markersize=4, markerfacecolor="none", label="largest strength")
+
+
 def of_specimens(curves, title):
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 3.4))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
@@ -42,10 +61,7 @@ def of_specimens(curves, title):
         left.plot(slip(size(curve, "jump")), shear(size(curve, "traction")), label=name, **line)
         middle.plot(slip(size(curve, "jump")), opening(curve["jump_n"]), **line)
         right.plot(compression(-curve["traction_n"]), shear(size(curve, "traction")), **line)
-    peaks = np.array([[-c["traction_n"][k], c["strength"][k]] for c in curves.values() for k in [np.argmax(c["strength"])]])
-    order = np.argsort(peaks[:, 0], kind="stable")
-    right.plot(compression(peaks[order, 0]), shear(peaks[order, 1]), "o", color=FAINT, markersize=4,
-               markerfacecolor="none", label="largest strength")
+    bounds(right, curves, compression, shear)
     left.set(xlabel=slip.label, ylabel=shear.label, title="shear")
     middle.set(xlabel=slip.label, ylabel=opening.label, title="dilation and closure")
     right.set(xlabel=compression.label, ylabel=shear.label, title="stress path")

@@ -59,29 +59,4 @@ struct Mobility {
   }
 };
 
-/// How well a fracture lets a fluid through along itself. Its hydraulic aperture is its aperture, a less at the start
-/// and what it has widened since, but not less than that of asperities.
-struct Conduit {
-  Real aperture = 0;      ///< a at the start, m
-  Real least = 0;         ///< of the hydraulic aperture, m
-  Real permeability = 0;  ///< k_t, m^2; 0: that of the cubic law, (hydraulic aperture)^2/12
-  Real viscosity = 1;     ///< mu, Pa s
-
-  KOKKOS_INLINE_FUNCTION Real hydraulic_aperture(Real widening = 0) const {
-    const Real a = aperture + widening;
-    return a > least ? a : least;
-  }
-  /// Hydraulic aperture times k_t/mu, m^3/(Pa s), and its derivative in the widening.
-  KOKKOS_INLINE_FUNCTION Real transmissivity(Real widening = 0) const {
-    return transmissivity_of(hydraulic_aperture(widening));
-  }
-  KOKKOS_INLINE_FUNCTION Real transmissivity_of(Real a) const {
-    return a * (permeability > 0 ? permeability : a * a / 12) / viscosity;
-  }
-  KOKKOS_INLINE_FUNCTION Real dtransmissivity(Real widening) const {
-    const Real a = aperture + widening;
-    return a > least ? (permeability > 0 ? permeability : a * a / 4) / viscosity : 0;
-  }
-};
-
 }  // namespace sprekk::laws

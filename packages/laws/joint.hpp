@@ -285,10 +285,13 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///                                                            R = lambda               open
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Without a bond T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and
-/// stick; so do those that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b:
-/// else rounding would say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p -
-/// p_old is zero to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
+/// Of laws that remember the b at p = p_old counts, too. Faces stick only if |z| is not above it, as it will be when
+/// they do: else those that bear more the more they slip would stick for what they had slipped, and then no more. And
+/// slip against z has no larger b: else joints that slip weakens would have states that slide backwards. Without a bond
+/// T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and stick; so do those
+/// that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b: else rounding would
+/// say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p - p_old is zero to
+/// rounding its direction is noise; its size then grows along z, as it does when sliding begins.
 ///
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
@@ -321,7 +324,12 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     }
   }
   T b = 0;
+  bool bears_at_rest = true;
   Cohesion<T> cohesion;
+  const auto bound = [&](const auto& at) {
+    const T friction = law.friction_bound(at);
+    return bonded ? law.with_cohesion(at, friction, cohesion) : friction;
+  };
   // the normal component: its residual, and the bound that goes with it
   const auto is_open = [&] {
     at.lambda_n = lambda[0];
@@ -337,15 +345,23 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
       R[0] = -pushed;
       at.lambda_n = y;
     }
-    b = law.friction_bound(at);
-    if (bonded) b = law.with_cohesion(at, b, cohesion);
+    b = bound(at);
+    if (remembers && (at.slip_of_step < 0 || size <= b)) {
+      auto rest = at;
+      rest.slip_of_step = 0;
+      for (int i = 0; i < dim - 1; ++i) rest.plastic_jump[i] = p_old[i];
+      rest.plastic_slip = norm(rest.plastic_jump);
+      const T least = bound(rest);
+      bears_at_rest = !(size > least);
+      if (at.slip_of_step < 0 && least < b) b = least;
+    }
     return false;
   };
   if (is_open()) {
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
-  if (size <= b || (size <= (1 + 1e-10) * b && c.tangential * norm(step) <= 1e-10 * b)) {
+  if ((bears_at_rest && size <= b) || (size <= (1 + 1e-10) * b && c.tangential * norm(step) <= 1e-10 * b)) {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
   }

@@ -42,10 +42,12 @@ class PointDriver {
     std::vector<PointState> states;
     for (int jumps = 0; jumps < most_jumps; ++jumps) {
       const Memory begin = memory();
-      const auto next = step(t);
+      const auto next = step_or_last(from, t);
       const Memory end = memory();
       const Real least = least_jump * distance(begin.plastic, end.plastic);
+      beyond_ = next.slip_jumps ? std::vector<Real>(end.x, end.x + 2 * dim) : std::vector<Real>();
       const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t, least) : Jump{};
+      beyond_.clear();
       if (!(jump.size > least)) {
         remember(end);
         states.push_back(next);
@@ -59,6 +61,9 @@ class PointDriver {
     states.push_back(step(t));
     return states;
   }
+
+  /// How often the law was evaluated so far with its derivatives, once for each iteration of Newton's method.
+  long evaluations() const { return evaluations_; }
 
  private:
   static constexpr int most_jumps = 8;      // of slip in a step
@@ -114,6 +119,29 @@ class PointDriver {
     jump.after.remark = jump_in_words(jump);
     return jump;
   }
+  /// The state at t, from that at `from` on. Where there is none, tells by bisection up to when there is one.
+  PointState step_or_last(Real from, Real t) {
+    const Memory begin = memory();
+    try {
+      return step(t);
+    } catch (const Error& error) {
+      Real last = from, none = t;
+      while (none - last > resolution * (t - from)) {
+        const Real middle = last + (none - last) / 2;
+        remember(begin);
+        (has_state(middle) ? last : none) = middle;
+      }
+      if (last == from) throw;
+      throw Error(fmt::format("{}; the last state is that at t = {:.9g}", error.what(), last));
+    }
+  }
+  bool has_state(Real t) {
+    try {
+      return step(t), true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
   bool slip_jumps_by(Real t) {
     try {
       return step(t).slip_jumps;
@@ -145,11 +173,14 @@ class PointDriver {
     Real old[2 * dim];
     std::copy_n(x_, 2 * dim, old);
     std::string reason;
-    for (Start start : {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}}) {
+    for (Start start :
+         {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}, {.beyond = true}}) {
       for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
         for (int i = 0; i < 2 * dim; ++i)
           x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
         if (start.elastic && !stretch()) break;
+        if (start.beyond && beyond_.empty()) break;
+        if (start.beyond) std::copy_n(beyond_.begin(), 2 * dim, x_);
         const std::string failure = solve(factor, start.damped);
         if (failure.empty()) return accept(t);
         if (reason.empty()) reason = failure;
@@ -157,7 +188,7 @@ class PointDriver {
     }
     std::string prescribed;
     for (int i = 0; i < dim; ++i)
-      prescribed += fmt::format("{}{} {} = {}", i ? ", " : "", control(i), axis(dim, i), d_[i]);
+      prescribed += fmt::format("{}{} {} = {:.9g}", i ? ", " : "", control(i), axis(dim, i), d_[i]);
     const std::string beyond = beyond_strength();
     throw Error(fmt::format("t = {}: no state found for {}: {}", t, prescribed, beyond.empty() ? reason : beyond));
   }
@@ -178,11 +209,11 @@ class PointDriver {
     std::copy_n(base_, dim, x_ + dim);
   }
 
-  /// Where Newton's method starts, the last state, that stretched, or one without traction, and whether its steps are
-  /// damped. These and the factor on the typical stiffness steer the iteration; which solution is found, if there are
-  /// several, depends on them.
+  /// Where Newton's method starts, the last state, that stretched, one without traction, or one beyond a jump of slip,
+  /// and whether its steps are damped. These and the factor on the typical stiffness steer the iteration; which
+  /// solution is found, if there are several, depends on them.
   struct Start {
-    bool damped = false, released = false, elastic = false;
+    bool damped = false, released = false, elastic = false, beyond = false;
   };
 
   /// Moves x to where what is prescribed only stretches a joint with a bond: a state that is whole comes before one
@@ -287,6 +318,7 @@ class PointDriver {
   /// f and its column-major Jacobian J at x.
   laws::ContactState evaluate(Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
     using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
+    ++evaluations_;
     Fad w[dim], lambda[dim], R[dim];
     for (int i = 0; i < dim; ++i) {
       w[i] = Fad(2 * dim, i, x_[i]);
@@ -384,6 +416,8 @@ class PointDriver {
     return fmt::format("the tension of {:.6g} Pa exceeds the tensile strength, {:.6g} Pa now", d_[0], strength);
   }
 
+  mutable long evaluations_ = 0;
+  std::vector<Real> beyond_;  // x of a state beyond a jump that is sought
   const PointPath& point_;
   laws::Joint law_;
   laws::Augmentation c_;

@@ -42,6 +42,11 @@ model::Scene make_scene(const std::string& cell, Real compressibility) {
   joint.dilation_angle = base::Expression(5);
   joint.initial_aperture = base::Expression(1);
   joint.residual_aperture = base::Expression(0.8);
+  if (compressibility > 0) {  // both sides of where roughness begins to count, 1.12 m
+    joint.hydraulic_aperture = "Barton";
+    joint.entry("joint roughness coefficient") = base::Expression(263);
+    joint.residual_aperture = base::Expression(0.5);
+  }
   joint.normal_permeability = base::Expression(0.1);
   scene.bulk.material = "rock";
   scene.bulk.gravity.assign(dim, 0.5);

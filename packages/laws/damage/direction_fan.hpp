@@ -151,7 +151,8 @@ class DirectionFan {
     using std::abs;
     if (size_ <= capacity) return;
     Merged without[capacity + more];
-    for (int j = 0; j < size_; ++j) without[j] = merged(j);
+    const Real rounding = 1e-13 * largest();
+    for (int j = 0; j < size_; ++j) without[j] = merged(j, rounding);
     while (size_ > capacity) {
       int best = -1;
       for (int j = 0; j < size_; ++j)
@@ -167,14 +168,14 @@ class DirectionFan {
         nodes_[j] = nodes_[j + 1];
         without[j] = without[j + 1];
       }
-      without[best - 1] = merged(best - 1);
-      if (best < size_) without[best] = merged(best);
+      without[best - 1] = merged(best - 1, rounding);
+      if (best < size_) without[best] = merged(best, rounding);
     }
   }
 
   /// Either the slope's jump at the node is spread over both sectors, or the value at the node is kept, whichever is
-  /// nearer to the function so far. A node where nothing changes costs nothing.
-  KOKKOS_INLINE_FUNCTION Merged merged(int j) const {
+  /// nearer to the function so far. A node where nothing changes but by `rounding` costs nothing.
+  KOKKOS_INLINE_FUNCTION Merged merged(int j, Real rounding) const {
     using std::abs, std::sin, std::tan;
     const Node &at = nodes_[j], &l = nodes_[j > 0 ? j - 1 : size_ - 1], &r = nodes_[j + 1 < size_ ? j + 1 : 0];
     const Real to_l = at.angle - l.angle + (j > 0 ? 0 : turn), to_r = r.angle - at.angle + (j + 1 < size_ ? 0 : turn);
@@ -194,7 +195,6 @@ class DirectionFan {
       one.cost = larger(one.high, -one.low);
       if (q == spread || one.cost < best.cost) best = one;
     }
-    const Real rounding = 1e-13 * largest();
     if (abs(jump) < rounding && abs(at.curvature - l.curvature) < rounding) best.cost = 0;
     return best;
   }

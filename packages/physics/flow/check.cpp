@@ -42,6 +42,9 @@ void compare_fractures(Comparison& c) {
     if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
       c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
              "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
+    if (scene.flow && !Mechanics::is_in(scene))  // else mechanics asks for all
+      for (const auto& [entry, what] : joint->missing("hydraulic aperture"))
+        c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry), what);
   }
 }
 

@@ -53,7 +53,7 @@ laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Re
 
 void Flow::Joint::describe(base::Section& s) {
   entry_of_place(s, residual_aperture, "residual aperture", "m", base::at_least(0),
-                 "the hydraulic aperture, with \"Flow\", is the aperture, but not less than this");
+                 "the hydraulic aperture, with \"Flow\", is not less than this");
   entry_of_place(
       s, tangential_permeability, "tangential permeability", "m^2", base::positive(),
       "k_t of the flow along the fracture, with \"Flow\"; without it the cubic law holds, (hydraulic aperture)^2/12");

@@ -54,7 +54,7 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, R
   const auto& given = joint.tangential_permeability;
   const Real k = given ? value_at("tangential permeability", *given, base::positive(), x) : 0,
              across = value_at("normal permeability", joint.normal_permeability, base::positive_or_infinite(), x);
-  const FractureFlowParameters::Face face{.along = {aperture + opening, residual, k, viscosity},
+  const FractureFlowParameters::Face face{.along = {aperture + opening, residual, k, viscosity, joint.walls(x)},
                                           .exchange = 2 * across / (a * viscosity)};
   SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
                "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
@@ -191,7 +191,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   std::vector<Real> aperture;
   for (const auto& face : fractures.faces) {
     darcy.exchange.push_back(face.exchange);
-    aperture.push_back(face.along.hydraulic_aperture());
+    aperture.push_back(face.along.mechanical_aperture());
   }
   const auto fluid = darcy.fluid;
   const auto all_carried = carried_in(scene);

@@ -35,7 +35,9 @@ class FractureFlow final : public assembly::Module {
         {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "fracture pressure"}},
          [this](const auto& state) { return pressures(state); }},
         {{"fluid flux", "m^2/s", fields::Entity::fracture_face, 3, {Summary::mean, "fluid flux", "global"}},
-         [this](const auto& state) { return fluxes(state); }}};
+         [this](const auto& state) { return fluxes(state); }},
+        {{"hydraulic aperture", "m", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "hydraulic aperture"}},
+         [this](const auto& state) { return apertures(state); }}};
     d.linear = is_linear();
     return d;
   }
@@ -134,6 +136,15 @@ class FractureFlow final : public assembly::Module {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) values.push_back(p(mesh_->facets->fracture_face[f]));
+    return values;
+  }
+
+  std::vector<Real> apertures(const assembly::State& state) const {
+    View<Real*>::HostMirror widening("widening", mesh_->n_fracture_faces());
+    if (widens_) Kokkos::deep_copy(widening, state.x[widening_]);
+    std::vector<Real> values;
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      values.push_back(parameters_.faces[f].along.hydraulic_aperture(widening(f)));
     return values;
   }
 

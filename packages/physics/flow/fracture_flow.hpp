@@ -3,7 +3,7 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
-#include "laws/darcy.hpp"
+#include "laws/conduit.hpp"
 #include "physics/hybrid_cell.hpp"
 #include "physics/outflow.hpp"
 
@@ -36,8 +36,8 @@ struct FractureFlowParameters {
 /// with q_i as in HybridDiffusion, T its hybrid form on the face, with the transmissivity
 /// for the mobility. All faces that end in a ridge have its pressure, so what flows into an intersection flows out of
 /// it. Between a face and its ridge in a fracture that cuts it lies half of the width of that, which T gets as a
-/// resistance 1/(exchange of that x aperture x length of the ridge). Outputs: "fracture pressure" p_F, and "fluid flux"
-/// sum_i q_i d_i / (A e_F), Darcy velocity times aperture (faces, m^2/s).
+/// resistance 1/(exchange of that x aperture x length of the ridge). Outputs: "fracture pressure" p_F, "fluid flux"
+/// sum_i q_i d_i / (A e_F), Darcy velocity times aperture (faces, m^2/s), and "hydraulic aperture".
 std::unique_ptr<assembly::Module> make_fracture_flow(mesh::Shape shape, FractureFlowParameters parameters);
 
 }  // namespace sprekk::physics

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/types.hpp"
-#include "laws/darcy.hpp"
+#include "laws/conduit.hpp"
 
 namespace sprekk::physics {
 

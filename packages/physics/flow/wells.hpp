@@ -3,6 +3,7 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
+#include "laws/conduit.hpp"
 #include "laws/fluid.hpp"
 #include "physics/flux_scheme.hpp"
 #include "physics/physics.hpp"

@@ -101,7 +101,9 @@ const std::vector<Role>& roles() {
       {"closure", "law of the closing under compression", &JointMaterial::closure, kinds(laws::ClosureKinds())},
       {"bond", "law of the strength that faces have beside friction", &JointMaterial::bond, kinds(laws::BondKinds())},
       {"damage", "law of the wear of friction and dilation", &JointMaterial::damage, kinds(laws::DamageKinds())},
-      {"damage driver", "what slip counts in damage", &JointMaterial::damage_driver, kinds(laws::DriverKinds())}};
+      {"damage driver", "what slip counts in damage", &JointMaterial::damage_driver, kinds(laws::DriverKinds())},
+      {"hydraulic aperture", "the aperture that a fluid flows in, with \"Flow\"", &JointMaterial::hydraulic_aperture,
+       kinds(laws::ApertureKinds())}};
   return all;
 }
 
@@ -341,11 +343,11 @@ bool JointMaterial::is_uniform() const {
   return uniform;
 }
 
-std::vector<std::array<std::string, 2>> JointMaterial::missing() const {
+std::vector<std::array<std::string, 2>> JointMaterial::missing(const std::string& only) const {
   std::vector<std::array<std::string, 2>> all;
   for (const auto& role : roles())
     for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
-      if (!needed || !given.empty()) return;
+      if (!needed || (!only.empty() && role.name != only) || !given.empty()) return;
       if (names.size() > 1)
         all.push_back({"", give_one_of(names)});
       else
@@ -397,6 +399,13 @@ JointParameters JointMaterial::joint(const Point& x) const {
   const std::string gain = gain_by_slip(joint.law);
   SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;
+}
+
+laws::HydraulicAperture JointMaterial::walls(const Point& x) const {
+  check(x);
+  laws::HydraulicAperture walls;
+  set_part(walls, laws::ApertureKinds(), hydraulic_aperture, *this, x);
+  return walls;
 }
 
 std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Real largest) const {

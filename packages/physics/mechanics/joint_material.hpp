@@ -3,6 +3,7 @@
 
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
+#include "laws/conduit.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <array>
@@ -20,7 +21,8 @@ struct JointMaterial {
   using Point = std::array<Real, 3>;
 
   /// Kinds; at first the first ones of their lists.
-  std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver;
+  std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver,
+      hydraulic_aperture;
 
   std::optional<Value> tangential_stiffness, friction_coefficient, friction_angle, dilation_angle, maximum_closure,
       normal_stiffness;
@@ -36,14 +38,16 @@ struct JointMaterial {
   /// Reports what entries tell together, after the last entry of a section without errors.
   void compare_entries(base::Section& section) const;
   /// What is missing for a joint of rock that deforms, as pairs (entry, what is wrong), the entry empty if there are
-  /// several that would do.
-  std::vector<std::array<std::string, 2>> missing() const;
+  /// several that would do; or for the laws of one role alone.
+  std::vector<std::array<std::string, 2>> missing(const std::string& role = "") const;
   /// The laws that it cannot have in 3D, as pairs (entry, what is wrong).
   std::vector<std::array<std::string, 2>> only_in_2d() const;
   bool is_uniform() const;  ///< no value depends on the place
   /// The laws at a point. Throws an Error that names the entry, the value and the point where a value is out of range.
   JointParameters joint(const Point& x) const;
   void check(const Point& x) const;  ///< throws the same
+  /// The hydraulic aperture by the mechanical one at a point. Throws the same.
+  laws::HydraulicAperture walls(const Point& x) const;
 
   /// How much faster than the compression the bound on the shear traction rises, by the law's derivative.
   struct Slope {

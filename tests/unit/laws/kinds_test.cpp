@@ -135,6 +135,27 @@ TEST(KindsOfJoints, BondsHaveTheirDerivatives) {
   });
 }
 
+/// Of closed joints, narrow and wide ones; at a kink that of one side. Never above the mechanical aperture.
+TEST(KindsOfJoints, HydraulicAperturesHaveTheirDerivatives) {
+  for_each_kind(ApertureKinds(), [](auto law) {
+    if constexpr (std::is_same_v<decltype(law), BartonAperture>) law.complete();
+    for (const Real a : {-1e-3, -1e-9, 0.0, 1e-9, 1e-5, 1e-4, 1e-3, 0.1}) {
+      const Real h = 1e-6 * std::abs(a) + 1e-12;
+      if (a > 0) EXPECT_LE(law.hydraulic(a), a);
+      EXPECT_NEAR(law.slope(a), (law.hydraulic(a + h) - law.hydraulic(a - h)) / (2 * h), 1e-5) << a;
+    }
+  });
+}
+
+/// JRC 10: JRC^2.5 = 316.2277660168 um, so that 100 um carry as 31.6 um and 0.4 mm as if they were smooth.
+TEST(KindsOfJoints, BartonsHydraulicApertureKnownByHand) {
+  BartonAperture law{10};
+  law.complete();
+  EXPECT_NEAR(law.hydraulic(1e-4), 31.62277660168e-6, 1e-16);
+  EXPECT_EQ(law.hydraulic(4e-4), 4e-4);
+  EXPECT_EQ(law.hydraulic(-1e-4), 0);
+}
+
 TEST(KindsOfJoints, DamageHasItsDerivatives) {
   for_each_kind(DamageKinds(), [](const auto& law) {
     for (const bool friction : {false, true})
@@ -247,6 +268,25 @@ TEST(JointLaw, LawsKeepNumbersOfAFace) {
     EXPECT_EQ(contact_residual<2>(law, {1, 1}, w, lambda, old, R, history), ContactState::slip);
     EXPECT_NEAR(R[1], -0.5 / 1.3 * (0.4 - (-0.02 + 0.04)), 1e-15);
   }
+}
+
+/// Where slip weakens the joint, a bound that goes on to negative slip rises there. Neither it nor the bound of slip
+/// that a face would undo by sticking makes a state.
+TEST(JointLaw, NoStateSlidesBackwardsOrSticksForItsSlip) {
+  const JointLaw<LinearShear, SlipWeakeningFriction> softens{{}, {0.6, 0.4, 0.2}};
+  const JointLaw<LinearShear, MobilisedBartonChoubeyFriction> hardens{{}, {{0, 1, 30, 70}, 1}};
+  const Real zero[1] = {}, old[1] = {};
+  const auto residual = [&](const auto& law, Real slip, Real shear, Real(&R)[2]) {
+    const Real w[] = {0, slip}, lambda[] = {-0.3, shear};
+    return contact_residual<2>(law, {1, 1e-6}, w, lambda, old, R, {zero, 0});
+  };
+  Real R[2];
+  residual(softens, -0.05, 0.3 * (0.4 + 0.2 * 1.25), R);  // the line through peak and residual bound
+  EXPECT_GT(std::abs(R[1]), 0.01);
+  EXPECT_EQ(residual(softens, 0.05, 0.3 * (0.4 + 0.2 * 0.75), R), ContactState::slip);
+  EXPECT_NEAR(R[1], 0, 1e-15);
+  EXPECT_EQ(residual(hardens, 0.5, 0.1, R), ContactState::slip);  // bears 0.3 tan(30 degrees) as long as it has slipped
+  EXPECT_NEAR(R[1], 0.1 - 0.3 * std::tan(M_PI / 6), 1e-15);
 }
 
 }  // namespace

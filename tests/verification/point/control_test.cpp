@@ -148,7 +148,8 @@ TEST(Control, WhatDeterminesNoStateIsAnErrorThatSaysWhy) {
       message({"Point.control={traction, traction}", "Point.path={-0.3, 0.05*t}"}),
       source_dir() +
           "/xml/point/cyclic_shear.xml: Sprekk > Point: step 4 of 8, t = 4: no state found for traction "
-          "n = -0.3, traction t = 0.2: the shear traction exceeds the friction bound, the joint slides without bound");
+          "n = -0.3, traction t = 0.2: the shear traction exceeds the friction bound, the joint slides without bound; "
+          "the last state is that at t = 3.6");
   const std::pair<Overrides, const char*> cases[] = {
       {{"Point.control={traction, jump}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},
       {{"Point.control={jump, traction}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},

@@ -11,15 +11,21 @@
 
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace sprekk::tests {
 
 using model::PointState;
 
+inline model::PointScene read(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name,
+                                 overrides);
+}
+
 /// The states of xml/point/NAME.
 inline std::vector<PointState> drive(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::drive_point(
-      model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides));
+  return model::drive_point(read(name, overrides));
 }
 
 }  // namespace sprekk::tests

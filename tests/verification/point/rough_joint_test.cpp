@@ -25,6 +25,23 @@ TEST(RoughJoint, SlidesAtItsStrength) {
   }
 }
 
+/// Angles at which slabs slide, by sigma_n = gamma h cos(t): roots of tan(t) = b(sigma_n)/sigma_n to ten digits, not
+/// from this program. That of JRC 10 slides at the cap on its friction angle, and without one at no angle.
+TEST(RoughJoint, SlabsSlideAtTheirAngle) {
+  const std::map<std::string, Real> angles = {
+      {"rough", 60.080516063}, {"smooth", 44.907117311}, {"very rough", 70}, {"very rough, no cap", 90}};
+  for (const auto& curve : model::drive_points(read("tilt.xml"))) {
+    SCOPED_TRACE(curve.specimen + ": " + curve.failure);
+    const Real angle = angles.at(curve.specimen);
+    EXPECT_NEAR(static_cast<Real>(curve.states.size()), std::min(angle, Real(89)), 1);  // one for each degree
+    EXPECT_EQ(curve.failure.empty(), angle == 90);
+    const std::string told = "the last state is that at t = ";
+    const auto at = curve.failure.find(told);
+    if (angle < 90) ASSERT_NE(at, std::string::npos);
+    if (angle < 90) EXPECT_NEAR(std::stod(curve.failure.substr(at + told.size())), angle, 1e-7);
+  }
+}
+
 /// Rock of 5 GPa/m that is not moved resists the dilation: N (1/5 GPa/m + 1/20 GPa/m) = d + tan(theta) u_p, with the
 /// displacement d that presses it to 1 MPa at first.
 TEST(RoughJoint, GainsStrengthWhereItCannotOpen) {

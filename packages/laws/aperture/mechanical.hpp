@@ -1,0 +1,17 @@
+// A hydraulic aperture that is the mechanical one.
+#pragma once
+
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+struct MechanicalAperture {
+  static constexpr const char *name = "mechanical", *meaning = "that by which the walls are apart, of smooth walls";
+  static std::vector<Parameter<MechanicalAperture>> parameters() { return {}; }
+
+  KOKKOS_INLINE_FUNCTION Real hydraulic(Real a) const { return a; }
+  /// Derivative of that.
+  KOKKOS_INLINE_FUNCTION Real slope(Real) const { return 1; }
+};
+
+}  // namespace sprekk::laws

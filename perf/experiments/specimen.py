@@ -1,0 +1,77 @@
+"""An injection-shear test as a scene: a specimen of poroelastic rock with an inclined fracture between platens, in plane strain.
+
+The joint's friction and the stiffness of specimen and machine are those that were fitted at a point. What opens the joint for
+the fluid has three coefficients, fitted to the flow of the rising stages."""
+import json
+import math
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENE = ROOT / "xml/poro/injection_shear_2d.xml"
+ANGLE = math.radians(30)       # of the fracture with the axis
+ROCK, POISSON = 67e9, 0.32     # Pa, -
+CONFINED = 30e6                # Pa
+MACHINE, WIDTH = 0.01, 0.0505  # m: height of the layer, width of the specimen
+STAGE = 600.0                  # s
+STIFF = 1e17                   # Pa/m: of joints that the effective stress does not close
+
+
+@dataclass
+class Specimen:
+    length: float             # m
+    hydraulic_aperture: float  # m, in the first stage: of the measured flow by the cubic law
+    joint: dict               # entries of the joint
+    stiffness: float          # Pa/m, of specimen and machine along the fracture
+
+
+def aperture(columns, slip, hydraulic, rising, outlet):
+    """(at no stress, m; its growth with slip, -; its loss with the effective stress, m/Pa), of the flow of the rising stages."""
+    stress = columns["effective normal stress"][0]
+    root = np.cbrt(columns["flow rate"][0] / (columns["injection pressure"][0] - outlet))
+    A = np.array([np.ones_like(slip), slip / np.max(slip), -stress / stress[0]]).T[rising]
+    wide, grows, closes = np.linalg.lstsq(A, root[rising], rcond=None)[0] * hydraulic / root[0]
+    return wide, grows / np.max(slip), closes / stress[0]
+
+
+def entries(specimen, shear, wide, dilation, closes):
+    """--set for the scene. `shear` is the shear stress of the first stage, `dilation` a tangent."""
+    axial = specimen.stiffness / (math.sin(ANGLE) * math.cos(ANGLE)**2)  # of specimen and machine, shortened along the axis
+    machine = 1 / (1 / axial - specimen.length * (1 - POISSON**2) / ROCK)
+    rise = WIDTH / math.tan(ANGLE)
+    low, top = (specimen.length - rise) / 2, specimen.length + MACHINE
+    network = "Mesh file.network"
+    differential = shear / (math.sin(ANGLE) * math.cos(ANGLE))
+    values = {f"{network}.domain.upper corner": f"{{{WIDTH}, {top}}}",
+              f"{network}.fractures.cut.lines.line.points": f"{{0, {low}, {WIDTH}, {low + rise}}}",
+              f"{network}.regions.machine.lower corner": f"{{0, {specimen.length}}}",
+              f"{network}.regions.machine.upper corner": f"{{{WIDTH}, {top}}}",
+              "Materials.machine.Young's modulus": machine * MACHINE,
+              "Bulk.initial stress": f"{{{-CONFINED}, {-CONFINED - differential}, {-CONFINED}, 0}}",
+              "Materials.saw cut.initial aperture": wide,
+              "Materials.saw cut.dilation angle": math.degrees(math.atan(dilation)),
+              "Materials.saw cut.normal stiffness": 1 / closes if closes > 1 / STIFF else STIFF}
+    values.update({f"Materials.saw cut.{name}": value for name, value in specimen.joint.items()})
+    return [word for path, value in values.items() for word in ("--set", f"{path}={value}")]
+
+
+def run(binary, directory, words):
+    """{quantity: values at the ends of the stages} of the scene with these entries, with signs as in the tables."""
+    directory.mkdir(parents=True, exist_ok=True)
+    mesh = directory / "specimen.msh"
+    for command in ([sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", binary, str(SCENE), "-o", str(mesh), "--quiet", *words],
+                    [binary, "run", str(SCENE), "--output", str(directory), "--set", f"Mesh file.path={mesh}", *words]):
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(done.stderr.strip())
+    steps = json.loads((directory / "results.json").read_text())["steps"]
+    ends = [step for step in steps if abs(step["time"] / STAGE - round(step["time"] / STAGE)) < 1e-9]
+    cut = [step["fractures"]["cut"] for step in ends]
+    traction = np.array([face["mean_traction"]["local"] for face in cut])
+    slip, opening = (np.array([face[name] for face in cut]) for name in ("mean_slip", "mean_opening"))
+    return {"effective normal stress": -traction[:, 0], "shear stress": abs(traction[:, 1]), "slip": slip - slip[0],
+            "normal displacement": opening[0] - opening, "flow rate": np.array([-step["inflows"]["east"] for step in ends])}
