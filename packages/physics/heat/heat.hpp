@@ -52,6 +52,7 @@ struct Heat : Physics<Heat> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene) { return is_in(scene); }
   static bool has_rates(const Scene& scene) { return is_in(scene); }
+  static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);

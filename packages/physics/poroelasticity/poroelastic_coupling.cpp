@@ -3,6 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/hybrid_diffusion.hpp"
 #include "physics/poroelasticity/coupling_volumes.hpp"
 
 #include <algorithm>
@@ -158,7 +159,9 @@ class PoroelasticCoupling final : public assembly::Module {
         KOKKOS_LAMBDA(int i) { rows(i) += rate * schur(i); });
   }
 
-  void initial(const assembly::Rows& x) const override;
+  void initial(const assembly::Rows& x) const override {
+    put_initial(*mesh_, parameters_.initial, x[pressures_[0]], x[pressures_[1]]);
+  }
 
   /// What was in the rows of pressures, times dt.
   void commit(assembly::State& state) const override {
@@ -268,24 +271,6 @@ template <Shape shape>
 void PoroelasticCoupling<shape>::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   for_each_rate(*this, [&](const auto& part) { part.assembler->add_jacobian(part.at(state.rate), state, J); });
   for_each_opening(*this, [&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
-}
-
-template <Shape shape>
-void PoroelasticCoupling<shape>::initial(const assembly::Rows& x) const {
-  constexpr int n_ridges = mesh::n_face_corners(shape);
-  const auto p = Kokkos::create_mirror_view(x[pressures_[0]]), trace = Kokkos::create_mirror_view(x[pressures_[1]]);
-  const auto put = [&](LocalIndex facet, const mesh::Vector& place) {
-    if (facet < mesh_->facets->n_owned) trace(facet) = this->initial(place);
-  };
-  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    if (c < mesh_->n_owned_cells) p(c) = mean_initial(c);
-    for (int k = 0; k < n_faces; ++k)
-      put(mesh_->facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(*mesh_, c, k)));
-  }
-  for (LocalIndex f = 0; f < mesh_->n_fracture_faces(); ++f)
-    for (int k = 0; k < n_ridges; ++k) put(mesh_->facets->ridge[f * n_ridges + k], mesh::ridge_centre(*mesh_, f, k));
-  Kokkos::deep_copy(x[pressures_[0]], p);
-  Kokkos::deep_copy(x[pressures_[1]], trace);
 }
 
 template <Shape shape>
