@@ -84,7 +84,7 @@ def of_run(directory, options):
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             yield "fractures", fractures.of_step(rock, joints, names, title)
             yield "maps", maps.of_step(rock, joints, names, title)
-            yield "mohr", mohr.of_step(rock, joints, scene, title)
+            yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:
