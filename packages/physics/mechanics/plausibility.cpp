@@ -24,24 +24,33 @@ namespace {
 
 constexpr Real huge = std::numeric_limits<Real>::max();
 
-/// A value and where it is.
+/// The largest of values and where it is; of equal ones the place with the least x, then y, then z, on any ranks.
 struct Extreme {
   Real value = -huge;
   mesh::Vector x{};
+
+  void offer(Real other, const mesh::Vector& at) {
+    if (other > value || (other == value && at < x)) *this = {other, at};
+  }
 };
 
-/// The largest over all ranks, element by element, of the lowest rank that has it.
+/// The largest over all ranks, element by element.
 void take_largest(const Comm& comm, std::vector<Extreme>& all) {
-  std::vector<Real> value, x;
-  std::vector<int> rank;
+  std::vector<Real> value;
   for (const auto& one : all) value.push_back(one.value);
   const auto most = base::max_over_ranks(comm, value);
-  for (std::size_t k = 0; k < all.size(); ++k) rank.push_back(value[k] == most[k] ? comm.getRank() : comm.getSize());
-  rank = base::min_over_ranks(comm, rank);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    for (const Real component : all[k].x) x.push_back(rank[k] == comm.getRank() ? component : 0);
-  x = base::sum_over_ranks(comm, x);
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = {most[k], {x[3 * k], x[3 * k + 1], x[3 * k + 2]}};
+  std::vector<bool> here;
+  for (std::size_t k = 0; k < all.size(); ++k) here.push_back(value[k] == most[k]);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Real> x;
+    for (std::size_t k = 0; k < all.size(); ++k) x.push_back(here[k] ? all[k].x[i] : huge);
+    const auto least = base::min_over_ranks(comm, x);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      here[k] = here[k] && x[k] == least[k];
+      all[k].x[i] = least[k];
+    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].value = most[k];
 }
 
 /// Calls look(), which errors of expressions end: a step that gets there tells them. Not collective.
@@ -85,8 +94,7 @@ void add_displacements(const Setting& setting, int i, Real t, bool constant, Pie
         continue;
       for_each_face_of(setting.mesh, condition, [&](const mesh::Vector& x, int piece) {
         const Real u = condition.displacement[i](x, t);
-        for (const int side : {0, 1})
-          if (auto& extreme = all[2 * piece + side]; (side ? -u : u) > extreme.value) extreme = {side ? -u : u, x};
+        for (const int side : {0, 1}) all[2 * piece + side].offer(side ? -u : u, x);
       });
     }
   });
@@ -244,7 +252,8 @@ std::vector<std::string> joint_doubts(const Setting& setting) {
         own.try_emplace(doubt.entry, doubt, std::vector<int>()).first->second.second.push_back(single);
   for (const auto& [entry, found] : own) {
     const auto& [doubt, singles] = found;
-    const auto others = singles.size() > 1 ? fmt::format(", as {} more are doubted", singles.size() - 1) : "";
+    const auto n = singles.size() - 1;
+    const auto others = n > 0 ? fmt::format(", with {} other{} like it", n, n > 1 ? "s" : "") : "";
     all.push_back(implausible(
         fmt::format("{}: fracture \"{}\" > \"{}\"", scene.origin, mesh.single_fractures[singles[0]].name, entry),
         doubt.what + others, doubt.why, doubt.advice));
@@ -276,7 +285,7 @@ std::string tension_doubt(const Setting& setting) {
       std::vector<Real> stress;
       for (const auto& component : initial.value[mesh.cell_region[cell]]) stress.push_back(component(x, 0));
       const Real principal = largest_principal(stress);
-      if (principal > highest[0].value) highest[0] = {principal, x};
+      highest[0].offer(principal, x);
       volumes[0] += principal > 0;
       volumes[1] += 1;
       for (int i = 0; i < 3; ++i) compression = std::max(compression, std::abs(stress[i]));
