@@ -147,12 +147,14 @@ class Probes(ProgramTest):
                 self.near(self.table(f"p{k}"), "displacement x [m]", size * x * EXX, tolerance=1e-6)
                 self.near(self.table(f"p{k}"), "displacement y [m]", size * y * EYY, tolerance=1e-6)
             self.near(self.table("along"), "stress YY [Pa]", *[-LOAD] * 50, tolerance=1e-5)
-        for name, flat, size in (("crossing_2d", (0.25, 0.5, 1, 0.5), 0.8), ("crossing_2d", (0.25, 0.5, 1, 0.5), 8)):
-            scene, at = self.at_utm(f"verification/{name}.xml", size)
-            for ranks in (1, 2, 3):
-                self.run_scene(scene, QUIET, *probe("flat", line=at(*flat), points=40, outputs="{slip}"),
-                               *probe("whole", fracture="flat", outputs="{max_slip}"), ranks=ranks)
+        for dim, flat, size, all_ranks in ((2, (0.25, 0.5, 1, 0.5), 0.8, (1, 2, 3)), (3, (0.25, 0.25, 0.5, 0.75, 0.75, 0.5), 0.4, (2,))):
+            scene, at = self.at_utm(f"verification/crossing_{dim}d.xml", size)
+            for ranks in all_ranks:
+                self.run_scene(scene, QUIET, "Time.schedule={2}", *probe("flat", line=at(*flat), points=40, outputs="{slip}"), ranks=ranks)
                 self.assertGreater(max(self.table("flat")["slip [m]"]), 0)
+        scene, at = self.at_utm(INJECTION, 0.1)
+        self.run_scene(scene, QUIET, "Time.steps=1", *probe("ten metres above", point=at(-5, -990)), *probe("along the fault", line=at(-55, -1000, 55, -1000)))
+        self.assertGreater(self.table("well")["pressure [Pa]"][-1], 10e6)
 
     def test_any_number_of_ranks(self):
         tables = []
