@@ -142,7 +142,8 @@ class Probes(ProgramTest):
             scene, at = self.at_utm(PATCH, size)
             points = [(0.7, 1.9), (2, 3), (0, 0), (1, 0.1), (2 / 3, 0.75), (2, 1.234)]
             self.run_scene(scene, QUIET, *(word for k, x in enumerate(points) for word in probe(f"p{k}", point=at(*x), outputs="{displacement}")),
-                           *probe("along", line=at(0, 0, 2, 3), points=50, outputs="{stress}"))
+                           *probe("along", line=at(0, 0, 2, 3), points=50, outputs="{stress}"),
+                           *probe("rounded", point=f"{{{5e5 + size!r}, {math.nextafter(6.7e6 + 3 * size, 1e9)!r}}}", outputs="{stress}"))
             for k, (x, y) in enumerate(points):
                 self.near(self.table(f"p{k}"), "displacement x [m]", size * x * EXX, tolerance=1e-6)
                 self.near(self.table(f"p{k}"), "displacement y [m]", size * y * EYY, tolerance=1e-6)
