@@ -283,6 +283,17 @@ class Pictures(PlotTest):
             self.assertEqual(labels, ["1", "2", "3", "4", "5"] if n == 5 else ["25", "26", "27", "28", "29", "30", "others"])
             self.assertEqual(len({line.get_color() for line in legend.get_lines()}), len(labels))
 
+    def test_traces_have_the_names_of_the_results(self):
+        """In the order of results.json, whatever their places; without the name of their set in its own column."""
+        surface = self.crossing_traces(4)
+        surface.cell_data["single fracture"] = np.array([3, 3, 1, 1, 0, 0, 2, 2])
+        singles = [{"name": name} for name in ("A", "set 7", "C 1", "D")]
+        traces = fractures.traces_of(surface, 0, "set", singles)
+        self.assertEqual([(t.name, t.label, t.faces.tolist()) for t in traces],
+                         [("A", "A", [4, 5]), ("set 7", "7", [2, 3]), ("C 1", "C 1", [6, 7]), ("D", "D", [0, 1])])
+        axes = fractures.along(surface, ["set"], "run", 1e-3, 1e6, singles).axes
+        self.assertEqual([text.get_text() for text in axes[-1].get_yticklabels()], ["A", "7", "C 1", "D"])
+
     def test_many_fractures_fit_a_page(self):
         """In the order of their numbers, four beside each other."""
         surface = self.crossing_traces(11)
