@@ -6,6 +6,8 @@ import gmsh
 import numpy as np
 from shapes import NetworkError
 
+FAR = 20  # sizes of the domain
+
 
 @dataclass
 class Mesh:
@@ -24,8 +26,9 @@ def make_mesh(plan, sizes):
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.logger.start()
-        model = Model(plan)
-        set_sizes(sizes)
+        origin = origin_of(plan.network.domain)
+        model = Model(plan, origin)
+        set_sizes(sizes, origin)
         try:
             gmsh.model.mesh.generate(plan.dim)
         except Exception as error:  # what gmsh throws has no type of its own
@@ -36,12 +39,20 @@ def make_mesh(plan, sizes):
         gmsh.finalize()
 
 
+def origin_of(domain):
+    """Where gmsh has its origin: near by, as it multiplies coordinates with each other; at that of the network if that is
+    not far, so that meshes stay the same."""
+    middle = np.zeros(3)
+    middle[:domain.dim] = 0.5 * (domain.low + domain.high)
+    return middle if np.linalg.norm(middle) > FAR * domain.size else np.zeros(3)
+
+
 class Model:
     """The plan's points, edges and faces in gmsh, which numbers them from 1."""
 
-    def __init__(self, plan):
-        self.plan, geo = plan, gmsh.model.geo
-        for k, x in enumerate(plan.points):
+    def __init__(self, plan, origin):
+        self.plan, self.origin, geo = plan, origin, gmsh.model.geo
+        for k, x in enumerate(plan.points - origin):
             geo.addPoint(*x, 0, k + 1)
         self.line = {edge: geo.addLine(edge[0] + 1, edge[1] + 1) for edge in plan.edges}
         self.faces = plan.faces()
@@ -72,7 +83,7 @@ class Model:
         tags, x, _ = gmsh.model.mesh.getNodes()
         number = np.zeros(int(tags.max()) + 1, int)
         number[tags.astype(int)] = np.arange(len(tags))
-        points = x.reshape(-1, 3)
+        points = x.reshape(-1, 3) + self.origin
 
         def elements(of, tag=-1):
             types, _, nodes = gmsh.model.mesh.getElements(of, tag)
@@ -108,13 +119,13 @@ def foremost(plan, owners):
     return None
 
 
-def set_sizes(sizes):
+def set_sizes(sizes, origin):
     """Fields of gmsh: for each size the distance from the points that ask for it, and the least of all."""
     network, field = sizes.network, gmsh.model.mesh.field
     level = np.round(2 * np.log2(sizes.sizes / network.size)).astype(int)
     fields = []
     for value in np.unique(level):
-        points = sizes.points[level == value]
+        points = sizes.points[level == value] - origin
         size = min(network.size, network.size * 2.0 ** (value / 2))
         if size >= network.size:
             continue

@@ -82,9 +82,10 @@ def of_run(directory, options):
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
-            yield "fractures", fractures.of_step(rock, joints, names, title)
-            yield "maps", maps.of_step(rock, joints, names, title)
-            yield "mohr", mohr.of_step(rock, joints, scene, title)
+            singles = content.get("single_fractures", [])
+            yield "fractures", fractures.of_step(rock, joints, names, title, singles)
+            yield "maps", maps.of_step(rock, joints, names, title, singles)
+            yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:

@@ -41,6 +41,7 @@ def of_run(steps, title):
         right.text(0.5, 0.5, "nothing but rounding", transform=right.transAxes, ha="center", color=FAINT)
         right.set_yticks([])
     for ax in (left, right):
+        ax.set_xlim(0.4, len(steps) + 0.6)
         ax.xaxis.set_major_locator(plt.MaxNLocator(integer=True))
         ax.tick_params(which="both", color=FAINT)
     return figure

@@ -6,6 +6,7 @@ from style import (FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, colour_ba
 
 
 STRAIGHT = np.cos(np.radians(30))
+MOST_NAMES = 15  # of traces beside each other
 
 
 def onward(face, at, others, n_there, faces, key, points):
@@ -23,9 +24,10 @@ def chains(segments):
     """Faces of a fracture one after the other: lists of faces with the arc length at their ends, (n + 1); one for each trace,
     also where traces cross."""
     points, faces = segments.points, [tuple(s[:2]) for s in segments.polygons]
-    tolerance = 1e-9 * np.max(np.ptp(points, axis=0))
+    used = sorted({p for face in faces for p in face})
+    tolerance = 1e-9 * np.max(np.ptp(points[used], axis=0))
     place = {}  # one number for all points of a place
-    key = [place.setdefault(tuple(np.round(points[p] / tolerance)), len(place)) for p in range(len(points))]
+    key = {p: place.setdefault(tuple(np.round((points[p] - points[used[0]]) / tolerance)), len(place)) for p in used}
     around = {}
     for i, face in enumerate(faces):
         for p in face:
@@ -47,9 +49,8 @@ def chains(segments):
     return found
 
 
-def part(surface, number):
-    """The faces of one fracture."""
-    chosen = np.flatnonzero(surface.cell_data["fracture"] == number)
+def part(surface, chosen):
+    """Some of the faces."""
     return read.Surface(surface.points, [surface.polygons[i] for i in chosen],
                         {name: values[chosen] for name, values in surface.cell_data.items()}, {})
 
@@ -83,21 +84,35 @@ ROWS = {"tangential jump": ("tangential jump", "slip"), "opening": ("opening",),
 
 
 class Trace:
-    """A trace in 2D: its name, faces, arc length at their ends (m), and how it is drawn."""
+    """A trace in 2D: its name, the same within its set, faces, arc length at their ends (m), and how it is drawn."""
 
-    def __init__(self, name, faces, arc, colour):
-        self.name, self.faces, self.arc, self.colour = name, faces, arc, colour
+    def __init__(self, name, label, faces, arc, colour):
+        self.name, self.label, self.faces, self.arc, self.colour = name, label, faces, arc, colour
 
 
-def traces_of(surface, number, name):
-    """The traces of a fracture, largest tangential jumps in colour and named by their numbers if there are several."""
+def chains_of(surface, chosen):
+    """(faces, arc length) of each chain among some faces, from the lowest x on."""
+    found = [(chosen[chain], arc) for chain, arc in chains(part(surface, chosen))]
+    return sorted(found, key=lambda chain: tuple(np.min(surface.points[surface.polygons[chain[0][0]][:2]], axis=0)))
+
+
+def traces_of(surface, number, name, singles=()):
+    """The traces of a fracture, largest tangential jumps in colour: those of its single fractures, in their order and by
+    the names that results.json has of them; without these by their places and numbers."""
     chosen = np.flatnonzero(surface.cell_data["fracture"] == number)
-    found = [(chosen[chain], arc) for chain, arc in chains(part(surface, number))]
-    found.sort(key=lambda trace: tuple(np.min(surface.points[surface.polygons[trace[0][0]][:2]], axis=0)))
+    if singles and "single fracture" in surface.cell_data:
+        of = surface.cell_data["single fracture"][chosen].astype(int)
+        order = np.argsort(of, kind="stable")
+        groups = np.split(chosen[order], np.flatnonzero(np.diff(of[order])) + 1)
+        named = [(singles[int(surface.cell_data["single fracture"][faces[0]])]["name"], faces) for faces in groups]
+        found = [(single, *chain) for single, faces in named for chain in chains_of(surface, faces)]
+    else:
+        found = chains_of(surface, chosen)
+        found = [(f"{name} {k + 1}" if len(found) > 1 else name, *chain) for k, chain in enumerate(found)]
     jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
-    shown = foremost([np.max(jump[faces]) for faces, _ in found], len(LINES))
-    return [Trace(f"{name} {k + 1}" if len(found) > 1 else name, faces, arc, LINES[shown.index(k)] if k in shown else FAINT)
-            for k, (faces, arc) in enumerate(found)]
+    shown = foremost([np.max(jump[faces]) for _, faces, _ in found], len(LINES))
+    return [Trace(one, one.removeprefix(name + " "), faces, arc, LINES[shown.index(k)] if k in shown else FAINT)
+            for k, (one, faces, arc) in enumerate(found)]
 
 
 def draw_curves(ax, traces, row, drawn, quantity):
@@ -116,14 +131,17 @@ def draw_states(ax, traces, state, first):
         ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], state[trace.faces][None, :], cmap=STATE_COLOURS, vmin=-0.5, vmax=2.5)
     ax.set(xlabel="arc length (m)", ylim=(len(traces) + 0.5, 0.5))
     ax.yaxis.set_major_locator(plt.MaxNLocator(6, integer=True, min_n_ticks=1) if len(traces) > 1 else plt.NullLocator())
+    named = 1 < len(traces) <= MOST_NAMES
+    if named:
+        ax.set_yticks(range(1, len(traces) + 1), [trace.label for trace in traces], fontsize=5)
     if first:
-        ax.set_ylabel("state", rotation=0, ha="right", va="center", labelpad=4 if len(traces) == 1 else 8)
+        ax.set_ylabel("state", rotation=0 if not named else 90, ha="right" if not named else "center", va="center", labelpad=4 if len(traces) == 1 else 8)
     ax.grid(False)
 
 
 def legend_of_traces(ax, traces):
     """Which colour is which trace, above a column."""
-    handles = [plt.Line2D([], [], color=t.colour, label=t.name.split()[-1]) for t in traces if t.colour != FAINT]
+    handles = [plt.Line2D([], [], color=t.colour, label=t.label) for t in traces if t.colour != FAINT]
     if len(handles) < len(traces):
         handles.append(plt.Line2D([], [], color=FAINT, linewidth=0.6, label="others"))
     ax.add_artist(ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 0.98), ncol=len(handles), columnspacing=0.7,
@@ -131,22 +149,23 @@ def legend_of_traces(ax, traces):
     ax.legend_ = None  # drawn once, and room for another
 
 
-def legend_of_lines(ax, row, one):
+def legend_of_lines(ax, row, n_traces):
     """Which line is which quantity of a row that has two; of one trace by colour, too."""
+    one = n_traces == 1
     handles = [plt.Line2D([], [], color=LINES[i] if one else INK, linestyle="--" if i else "-", label=name) for i, name in enumerate(row)]
-    ax.legend(handles=handles, loc="best", fontsize=7, handlelength=1.6, frameon=True, framealpha=0.7, edgecolor="none")
+    ax.legend(handles=handles, loc="best" if n_traces <= MOST_NAMES else "upper right", fontsize=7, handlelength=1.6, frameon=True, framealpha=0.7, edgecolor="none")
 
 
 MOST_COLUMNS = 4
 
 
-def along(surface, names, title, length, stress):
+def along(surface, names, title, length, stress, singles=()):
     """2D: a column for each fracture, values over the arc length; of many fractures, several rows of columns."""
     named = {number: names[number] if number < len(names) else f"fracture {number}" for number in set(surface.cell_data["fracture"].astype(int))}
     numbers = sorted(named, key=lambda number: natural(named[number]))
-    traces = {number: traces_of(surface, number, named[number]) for number in numbers}
+    traces = {number: traces_of(surface, number, named[number], singles) for number in numbers}
     columns = min(len(numbers), MOST_COLUMNS)
-    blocks, strips = -(-len(numbers) // columns), min(0.2 + 0.05 * max(map(len, traces.values())), 1.5)
+    blocks, strips = -(-len(numbers) // columns), min(0.2 + 0.06 * max(map(len, traces.values())), 1.5)
     width, height = max(5.2, 3.6 * columns), blocks * (5.4 + 1.6 * strips)
     figure = plt.figure(figsize=(width, height))
     figure.set_layout_engine("none")  # the constrained one takes minutes for many axes
@@ -174,7 +193,7 @@ def along(surface, names, title, length, stress):
             legend_of_traces(column[0], traces[number])
         for ax, row in zip(column, ROWS.values()):
             if k % columns == 0 and len(row) > 1:
-                legend_of_lines(ax, row, len(traces[number]) == 1)
+                legend_of_lines(ax, row, len(traces[number]))
     patches = [plt.Rectangle((0, 0), 1, 1, color=STATE_COLOURS(i)) for i in range(3)]
     figure.legend(patches, STATES, loc="upper right", bbox_to_anchor=(1, 1), ncol=3, columnspacing=1, handlelength=1.2, borderaxespad=0)
     return figure
@@ -198,9 +217,9 @@ def on_faces(surface, title, length, stress):
     return figure
 
 
-def of_step(rock, grid, names, title):
-    """Of the grids of the rock and of the fractures, at least one face."""
+def of_step(rock, grid, names, title, singles=()):
+    """Of the grids of the rock and of the fractures, at least one face; `singles` as in results.json."""
     plane = grid.GetCell(0).GetCellDimension() == 1
     surface = read.segments(grid) if plane else read.surface(grid)
     sizes = scales(rock, surface.cell_data)
-    return along(surface, names, title, *sizes) if plane else on_faces(surface, title, *sizes)
+    return along(surface, names, title, *sizes, singles) if plane else on_faces(surface, title, *sizes)

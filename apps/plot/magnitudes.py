@@ -3,6 +3,7 @@ import numpy as np
 from style import LINES, STYLES, plt
 
 FEWEST = 20  # fractures with a magnitude; fewer say nothing about a distribution
+FEWEST_OF_SLOPE = 50  # above the magnitude from which on the sample is complete
 
 
 def b_value(magnitudes, least):
@@ -34,7 +35,7 @@ def of_step(step, title):
     ax.semilogy(magnitudes, count, "o", markersize=3, color=LINES[0], label=f"{len(magnitudes)} fractures")
     least = complete(magnitudes)
     above = magnitudes >= least
-    if above.sum() >= FEWEST and magnitudes[-1] > least:
+    if above.sum() >= FEWEST_OF_SLOPE and magnitudes[-1] > least:
         b, error = b_value(magnitudes, least)
         ax.semilogy(
             magnitudes[above],

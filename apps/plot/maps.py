@@ -96,17 +96,17 @@ def name_beside(ax, surface, trace, others):
     return text
 
 
-def write_names(ax, surface, names):
+def write_names(ax, surface, names, singles):
     """At traces that fractures.png shows in colour."""
     texts = []
     for number in sorted(set(surface.cell_data["fracture"].astype(int))):
-        traces = traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}")
+        traces = traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
         for trace in [trace for trace in traces if trace.colour != FAINT]:
             texts.append(name_beside(ax, surface, trace, texts))
 
 
-def of_step(rock, joints, names, title):
-    """Of the grids of the rock and of the fractures, which have these names."""
+def of_step(rock, joints, names, title, singles=()):
+    """Of the grids of the rock and of the fractures, which have these names; `singles` as in results.json."""
     plane = read.is_plane(rock)
     surface = read.segments(joints) if plane else read.surface(joints)
     skin = read.surface(rock)
@@ -120,7 +120,7 @@ def of_step(rock, joints, names, title):
         if plane:
             draw_lines(ax, surface, outline, values, norm, colours)
             if k == 3:
-                write_names(ax, surface, names)
+                write_names(ax, surface, names, singles)
         else:
             draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
         colour_bar(figure, ax, norm, colours, label, **bar)

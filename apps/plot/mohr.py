@@ -1,14 +1,15 @@
-"""Stress on fracture faces in Mohr's diagram: shear against normal compression, beside the strength of the joints and
-the circles of the mean stress in the rock."""
+"""Stress on fracture faces in Mohr's diagram: shear against normal compression, beside the strength of the joints, the
+paths of the fractures that slip most, and the circles of the mean stress in the rock."""
 import math
 
 import numpy as np
 import read
 from bulk import tensors
 from fractures import effective, scales
-from style import FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, STYLES, plt, without_noise
+from style import FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, STYLES, foremost, look, plt, without_noise
 
 MOST_ENVELOPES = 4
+MOST_PATHS = 3  # of single fractures
 
 
 def number(joint, name, default=None):
@@ -70,16 +71,11 @@ def draw_circles(ax, principal, traction):
             )
 
 
-def draw_envelopes(ax, scene, traction, largest):
-    """Of the joints that fractures name, up to the largest compression; those of laws that are not known are named."""
-    used = list(
-        dict.fromkeys(
-            fracture.get("material") for fracture in scene.get("Fractures", {}).values() if isinstance(fracture, dict)
-        )
-    )
+def draw_envelopes(ax, joints, traction, largest):
+    """Of joints, {name: entries}, up to the largest compression; those of laws that are not known are named."""
     normal, unknown, drawn = np.linspace(0, largest, 200), [], 0
-    for name in used:
-        bound = strength(scene.get("Materials", {}).get(name, {}), normal)
+    for name, joint in joints.items():
+        bound = strength(joint, normal)
         if bound is None or drawn == MOST_ENVELOPES:
             unknown.append(str(name))
         else:
@@ -91,16 +87,44 @@ def draw_envelopes(ax, scene, traction, largest):
         ax.plot([], [], linestyle="", label=f"no strength drawn of {', '.join(unknown)}")
 
 
-def of_step(rock, joints, scene, title):
-    """Of the grids of the rock and of the fractures, and the scene as read.scene has it. Circles only where no fluid
-    makes a difference between the stress of the rock and that of the fractures."""
+def stress_paths(content, time):
+    """{name: compressions and shear tractions over the steps up to a time}, means over the single fractures that slip
+    most; none of a run of one step."""
+    steps = [step for step in content["steps"] if step.get("single_fractures") and step["time"] <= time]
+    if len(steps) < 2 or "max_slip" not in steps[-1]["single_fractures"]:
+        return {}
+    slip = [value or 0 for value in steps[-1]["single_fractures"]["max_slip"]]
+    shown = [k for k in foremost(slip, MOST_PATHS) if slip[k] > 0]
+    means = np.array(
+        [[step["single_fractures"]["mean_traction_local"][k] for k in shown] for step in steps], dtype=float
+    )
+    names = [content["single_fractures"][k]["name"] for k in shown]
+    return {name: (-means[:, k, 0], np.linalg.norm(means[:, k, 1:], axis=1)) for k, name in enumerate(names)}
+
+
+def joints_of(scene, content, names):
+    """{name: entries} of the joints that fractures name, and of those of their own that some single fractures have."""
+    materials = scene.get("Materials", {})
+    used = [f.get("material") for f in scene.get("Fractures", {}).values() if isinstance(f, dict)]
+    joints = {name: materials.get(name, {}) for name in used}
+    for one in content.get("single_fractures", []):
+        if one["name"] in names and one.get("own_joint"):
+            joints[one["name"]] = {**materials.get(one["own_joint"]["material"], {}), **one["own_joint"]}
+    return joints
+
+
+def of_step(rock, joints, scene, title, content, time):
+    """Of the grids of the rock and of the fractures, the scene as read.scene has it, and results.json, of which the paths
+    up to here. Circles only where no fluid makes a difference between the stress of the rock and that of the
+    fractures."""
     data = read.arrays(joints.GetCellData())
     size = scales(rock, data)[1]
     local = data["traction local"]
     normal, shear = without_noise(-local[:, 0], size), without_noise(np.linalg.norm(local[:, 1:], axis=1), size)
     wet = effective(data)
     principal = np.zeros(0) if wet else mean_stress(rock)
-    traction = Quantity(wet + "normal compression", "Pa", normal, shear, principal)
+    paths = stress_paths(content, time)
+    traction = Quantity(wet + "normal compression", "Pa", normal, shear, principal, *(v for path in paths.values() for v in path))
     figure, ax = plt.subplots(figsize=(6.4, 4.4))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     for k, name in enumerate(STATES):
@@ -117,9 +141,16 @@ def of_step(rock, joints, scene, title):
                 label=f"faces that {name}" if k else "open faces",
             )
     draw_circles(ax, principal, traction)
-    draw_envelopes(ax, scene, traction, 1.05 * max(np.max(normal, initial=0), np.max(principal, initial=0)))
+    highest = [np.max(shear, initial=0), 0.5 * np.ptp(principal) if len(principal) else 0]
+    for k, (name, path) in enumerate(paths.items()):
+        line = {key: look(k)[key] for key in ("color", "linestyle")}
+        ax.plot(*map(traction, path), linewidth=0.9, label=f"path of {name}", **line)
+        ax.plot(*(traction(values[-1:]) for values in path), "s", markersize=4, color=line["color"])
+        highest.append(np.max(path[1]))
+    largest = max([np.max(normal, initial=0), np.max(principal, initial=0), *(np.max(path[0]) for path in paths.values())])
+    draw_envelopes(ax, joints_of(scene, content, paths), traction, 1.05 * largest)
     ax.axvline(0, color=FAINT, linewidth=0.6, zorder=1)
-    top = traction(max(np.max(shear, initial=0), 0.5 * np.ptp(principal) if len(principal) else 0))
+    top = traction(max(highest))
     ax.set_ylim(-0.02 * (top or 1), 1.25 * (top or 1))
     ax.set(xlabel=traction.label, ylabel=f"shear traction ({traction.unit})")
     ax.legend(loc="upper left", bbox_to_anchor=(1, 1))

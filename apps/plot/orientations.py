@@ -46,7 +46,7 @@ def draw_stereonet(ax, sets):
     """Poles of planes: (colour, polygons) of each part."""
     for colour, polygons in sets:
         trend, radius = poles(polygons)
-        ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="white", markeredgewidth=0.4, clip_on=False, zorder=5)
+        ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="0.2", markeredgewidth=0.3, clip_on=False, zorder=5)
     ax.set_ylim(0, 1)
     ax.set_yticks([])
     ax.set_title("poles, lower hemisphere, equal areas", fontsize=9)

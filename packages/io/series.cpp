@@ -52,12 +52,11 @@ class Variable {
   Handle space_, properties_, set_;
 };
 
-void write_table(hid_t file, const SeriesTable& table, std::size_t number, const TimeUnit& unit,
-                 const std::vector<SeriesRow>& rows) {
+void write_table(hid_t file, const SeriesTable& table, const TimeUnit& unit) {
   const Handle group(H5Gcreate2(file, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, table.name);
   const auto n_places = table.n_places(), n_columns = table.columns.size(), n_known = table.place_columns.size();
   std::vector<Real> times;
-  for (const auto& row : rows) times.push_back(row.time / unit.seconds);
+  for (const auto& row : table.rows) times.push_back(row.time / unit.seconds);
   const Variable time(group, {"time", unit.name}, {times.size()}, times);
   time.set_scale("time");
   std::optional<Variable> place;
@@ -73,9 +72,9 @@ void write_table(hid_t file, const SeriesTable& table, std::size_t number, const
   }
   for (std::size_t c = 0; c < n_columns; ++c) {
     std::vector<Real> values;
-    for (const auto& row : rows)
-      for (std::size_t k = 0; k < n_places; ++k) values.push_back(row.values[number][k * n_columns + c]);
-    std::vector<hsize_t> extents = {rows.size()};
+    for (const auto& row : table.rows)
+      for (std::size_t k = 0; k < n_places; ++k) values.push_back(row.values[k * n_columns + c]);
+    std::vector<hsize_t> extents = {times.size()};
     if (place) extents.push_back(n_places);
     const Variable variable(group, table.columns[c], extents, values);
     variable.attach(time, 0);
@@ -85,65 +84,63 @@ void write_table(hid_t file, const SeriesTable& table, std::size_t number, const
 
 }  // namespace
 
-std::string to_csv(const SeriesTable& table, std::size_t number, const TimeUnit& unit,
-                   const std::vector<SeriesRow>& rows, bool titles) {
+std::string to_csv(const SeriesTable& table, const TimeUnit& unit, bool last_alone) {
   std::string text;
-  if (titles) {
+  if (!last_alone) {
     text = fmt::format("time [{}]", unit.name);
     for (const auto* columns : {&table.place_columns, &table.columns})
       for (const auto& column : *columns) text += ',' + title(column);
     text += '\n';
   }
   const auto n_places = table.n_places(), n_columns = table.columns.size(), n_known = table.place_columns.size();
-  for (const auto& row : rows)
+  for (std::size_t r = last_alone ? table.rows.size() - 1 : 0; r < table.rows.size(); ++r)
     for (std::size_t k = 0; k < n_places; ++k) {
+      const auto& row = table.rows[r];
       text += fmt::format("{}", row.time / unit.seconds);
       for (std::size_t c = 0; c < n_known; ++c) text += fmt::format(",{}", table.places[k * n_known + c]);
-      for (std::size_t c = 0; c < n_columns; ++c) text += fmt::format(",{}", row.values[number][k * n_columns + c]);
+      for (std::size_t c = 0; c < n_columns; ++c) text += fmt::format(",{}", row.values[k * n_columns + c]);
       text += '\n';
     }
   return text;
 }
 
-std::string to_netcdf(const std::vector<SeriesTable>& tables, const TimeUnit& unit,
-                      const std::vector<SeriesRow>& rows) {
+std::string to_netcdf(const std::vector<SeriesTable>& tables, const TimeUnit& unit) {
   const Handle access(in_memory(), H5Pclose, "access in memory");
   const Handle file(H5Fcreate("series", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "a file in memory");
-  for (std::size_t t = 0; t < tables.size(); ++t) write_table(file, tables[t], t, unit, rows);
+  for (const auto& table : tables) write_table(file, table, unit);
   return image_of(file);
 }
 
 SeriesFiles::SeriesFiles(RCP<const Comm> comm, const std::string& directory, std::vector<SeriesTable> tables,
-                         TimeUnit unit, std::vector<SeriesRow> rows)
-    : comm_(std::move(comm)),
-      directory_(directory),
-      tables_(std::move(tables)),
-      unit_(std::move(unit)),
-      rows_(std::move(rows)) {
+                         TimeUnit unit)
+    : comm_(std::move(comm)), directory_(directory), tables_(std::move(tables)), unit_(std::move(unit)) {
   make_directory(*comm_, directory_ + "/probes");
   base::collectively(*comm_, [&] {
-    if (comm_->getRank() != 0) return;
-    for (std::size_t t = 0; t < tables_.size(); ++t)
-      write_file(path(tables_[t]), to_csv(tables_[t], t, unit_, rows_, true));
+    for (auto& table : tables_)
+      if (comm_->getRank() == 0)
+        write_file(path(table), to_csv(table, unit_));
+      else
+        table.rows.clear();
   });
   write_all();
 }
 
-void SeriesFiles::add(SeriesRow row) {
+void SeriesFiles::add(Real time, std::vector<std::vector<Real>> values) {
   base::collectively(*comm_, [&] {
     if (comm_->getRank() != 0) return;
     for (std::size_t t = 0; t < tables_.size(); ++t) {
-      std::ofstream file(path(tables_[t]), std::ios::app | std::ios::binary);
-      file << to_csv(tables_[t], t, unit_, {row}, false) << std::flush;
-      SPREKK_CHECK(file.good(), "{}: cannot be written", path(tables_[t]));
+      auto& table = tables_[t];
+      table.rows.push_back({time, std::move(values[t])});
+      std::ofstream file(path(table), std::ios::app | std::ios::binary);
+      file << to_csv(table, unit_, true) << std::flush;
+      SPREKK_CHECK(file.good(), "{}: cannot be written", path(table));
     }
   });
-  rows_.push_back(std::move(row));
 }
 
 void SeriesFiles::write_all() const {
   base::collectively(*comm_, [&] {
-    if (comm_->getRank() == 0) write_file(directory_ + "/probes.h5", to_netcdf(tables_, unit_, rows_));
+    if (comm_->getRank() == 0) write_file(directory_ + "/probes.h5", to_netcdf(tables_, unit_));
   });
 }
 

@@ -293,18 +293,26 @@ class Builder {
   /// that is left to split().
   void name_single_fractures() {
     if (msh_.fractures.empty()) return;
-    const int dim = mesh_.dim() - 1;
+    std::map<std::string, std::vector<const MshFile::Fracture*>> of_set;
+    for (const auto& fracture : msh_.fractures)
+      of_set[msh_.group_name(mesh_.dim() - 1, fracture.group)].push_back(&fracture);
     auto& singles = mesh_.single_fractures;
+    std::map<std::string, int> known;
     for (int set = 0; set < static_cast<int>(mesh_.fracture_names.size()); ++set) {
-      std::map<std::string, int> known;  // of the set
-      for (const auto& fracture : msh_.fractures) {
-        if (msh_.group_name(dim, fracture.group) != mesh_.fracture_names[set]) continue;
-        const auto [found, is_new] = known.emplace(fracture.name, static_cast<int>(singles.size()));
-        if (is_new) singles.push_back({fracture.name, set, fracture.properties});
-        single_of_entity_[{fracture.group, fracture.entity}] = found->second;
+      const auto& name_of_set = mesh_.fracture_names[set];
+      for (const auto* fracture : of_set[name_of_set]) {
+        const auto [found, is_new] = known.emplace(fracture->name, static_cast<int>(singles.size()));
+        if (is_new) singles.push_back({fracture->name, set, fracture->properties});
+        const auto& one = singles[found->second];
+        if (one.set != set)
+          fail("$Fractures: \"{}\" is in the sets \"{}\" and \"{}\"; fractures of two sets need two names", one.name,
+               mesh_.fracture_names[one.set], name_of_set);
+        if (one.properties != fracture->properties)
+          fail("$Fractures: \"{}\" is there twice with different entries; what has one name is one fracture", one.name);
+        single_of_entity_[{fracture->group, fracture->entity}] = found->second;
       }
-      whole_.push_back(known.empty() ? static_cast<int>(singles.size()) : -1);
-      if (known.empty()) singles.push_back({mesh_.fracture_names[set], set});
+      whole_.push_back(of_set[name_of_set].empty() ? static_cast<int>(singles.size()) : -1);
+      if (of_set[name_of_set].empty()) singles.push_back({name_of_set, set});
     }
   }
 

@@ -14,7 +14,7 @@ EarlierResults Checkpointing::restore() {
   model_.restore(checkpoint);
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
-  return {std::move(checkpoint.journal), checkpoint.content.at("restarts")};
+  return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes")};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -39,6 +39,7 @@ void Checkpointing::write(const Results& results) {
   const auto scope = model_.timers().scope("checkpoints");
   auto checkpoint = model_.save();
   checkpoint.content["restarts"] = results.restarts();
+  checkpoint.content["probes"] = results.probes_begun();
   checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);

@@ -59,7 +59,7 @@ json unknowns(const assembly::System& system) {
 
 /// Whether a section may be another one where a run goes on, or is compared otherwise.
 bool is_free(const std::string& section) {
-  constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output"};
+  constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output", "Probes"};
   return std::find(std::begin(free), std::end(free), section) != std::end(free);
 }
 
@@ -109,10 +109,11 @@ void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
     const json before = of_checkpoint.value(what, json()), now = of_scene.value(what, json());
     if (what == "Tables" ? !same_tables(before, now) : before != now) different.push_back(what);
   }
-  SPREKK_CHECK(different.empty(),
-               "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver and Output may "
-               "change, and tables get more points at their end",
-               fmt::join(different, ", "));
+  SPREKK_CHECK(
+      different.empty(),
+      "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver, Output and Probes "
+      "may change, and tables get more points at their end",
+      fmt::join(different, ", "));
 }
 
 }  // namespace sprekk::model

@@ -146,7 +146,7 @@ std::vector<Shares> best(const Mesh& mesh, std::vector<Found> here, const std::v
   const auto lowest = base::min_over_ranks(*mesh.comm, number);
   std::vector<Shares> result;
   for (std::size_t k = 0; k < here.size(); ++k) {
-    SPREKK_CHECK(lowest[k] < std::numeric_limits<GlobalIndex>::max(), "({:.6g}, {:.6g}, {:.6g}) is {}", points[k][0],
+    SPREKK_CHECK(lowest[k] < std::numeric_limits<GlobalIndex>::max(), "({:.10g}, {:.10g}, {:.10g}) is {}", points[k][0],
                  points[k][1], points[k][2], where);
     result.push_back(number[k] == lowest[k] && here[k].number == lowest[k] ? std::move(here[k].shares) : Shares());
   }

@@ -2,6 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
+#include "base/xml.hpp"
 
 #include <fmt/ranges.h>
 
@@ -210,7 +211,7 @@ void Probes::add_sum(const std::string& output, const std::string& place, int n,
   });
 }
 
-/// Their names are known with the first step.
+/// Their names are known with the first state.
 void Probes::add_totals(const std::vector<std::string>& names) {
   const auto look = [this, names, t = tables_.size() - 1](const Observation& seen) {
     auto& columns = tables_[t].columns;
@@ -272,21 +273,28 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
   };
 }
 
-io::SeriesRow Probes::row(Real time, const Observation& observation) {
-  io::SeriesRow row{time, {}};
+std::vector<std::vector<Real>> Probes::values(const Observation& observation) {
+  std::vector<std::vector<Real>> all;
   for (std::size_t t = 0; t < tables_.size(); ++t) {
     const auto n_places = tables_[t].n_places();
     std::vector<std::vector<Real>> found;
     for (const auto& look : looks_[t]) found.push_back(look(observation));
-    std::vector<Real> values;
+    auto& values = all.emplace_back();
     for (std::size_t k = 0; k < n_places; ++k)
       for (const auto& one : found) {
         const auto n = one.size() / n_places;
         values.insert(values.end(), one.begin() + k * n, one.begin() + (k + 1) * n);
       }
-    row.values.push_back(std::move(values));
   }
-  return row;
+  return all;
+}
+
+std::vector<std::string> Probes::definitions() const {
+  Scene copy = model_.scene();
+  auto list = base::effective(copy, "Sprekk");
+  std::vector<std::string> texts;
+  for (const auto& table : tables_) texts.push_back(base::to_xml(list.sublist("Probes").sublist(table.name)));
+  return texts;
 }
 
 }  // namespace sprekk::model

@@ -11,7 +11,7 @@
 
 namespace sprekk::model {
 
-/// What is known of a step.
+/// What is known of a state.
 struct Observation {
   const std::vector<assembly::OutputField>& outputs;
   const std::vector<FractureColumn>& sets;          ///< numbers of sets of fractures
@@ -28,10 +28,12 @@ class Probes {
   explicit Probes(const Model& model);
 
   bool empty() const { return tables_.empty(); }
-  /// The values of a step, the same on every rank. Collective.
-  io::SeriesRow row(Real time, const Observation& observation);
-  /// Complete after the first row().
+  /// What each table tells of a state, [table][place * columns + column], the same on every rank. Collective.
+  std::vector<std::vector<Real>> values(const Observation& observation);
+  /// Without rows; complete after the first values().
   const std::vector<io::SeriesTable>& tables() const { return tables_; }
+  /// What the scene says of each, [table].
+  std::vector<std::string> definitions() const;
 
  private:
   using Look = std::function<std::vector<Real>(const Observation&)>;  ///< [place * components + component]

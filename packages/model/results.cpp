@@ -31,10 +31,12 @@ void remove_unsettled(const std::string& directory) {
     std::filesystem::remove_all(directory + '/' + unsettled_name + end, ignored);
 }
 
-/// Removes what an earlier run left of tables; silent. Not collective.
-void remove_tables(const std::string& directory) {
+/// Removes what an earlier run left of tables, but for that of fractures where it is gone on from; silent. Not
+/// collective.
+void remove_tables(const std::string& directory, bool goes_on) {
   std::error_code ignored;
-  for (const char* name : {"/fractures.csv", "/probes.h5"}) std::filesystem::remove(directory + name, ignored);
+  std::filesystem::remove(directory + "/probes.h5", ignored);
+  if (!goes_on) std::filesystem::remove(directory + "/fractures.csv", ignored);
   const std::filesystem::path probes = directory + "/probes";
   for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
     if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
@@ -72,15 +74,28 @@ std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractu
   return blocks;
 }
 
-/// The values of probes that a journal holds, where null stands for no number.
-std::vector<std::vector<Real>> values_of(const json& tables) {
-  std::vector<std::vector<Real>> all;
-  for (const auto& table : tables) {
-    auto& values = all.emplace_back();
-    for (const auto& value : table)
-      values.push_back(value.is_null() ? std::numeric_limits<Real>::quiet_NaN() : value.get<Real>());
-  }
-  return all;
+/// The numbers of a table in a journal, where null stands for none.
+std::vector<Real> values_of(const json& table) {
+  std::vector<Real> values;
+  for (const auto& value : table)
+    values.push_back(value.is_null() ? std::numeric_limits<Real>::quiet_NaN() : value.get<Real>());
+  return values;
+}
+
+/// Null without any.
+json first_of(const std::vector<io::SeriesRow>& rows) {
+  return rows.empty() ? json() : json{{"time", rows.front().time}, {"values", rows.front().values}};
+}
+
+/// The rows of a probe that an earlier run wrote, up to where it is gone on from; `begun`: what it told of the probe.
+std::vector<io::SeriesRow> earlier_rows(const std::string& name, const json& begun, const std::vector<json>& journal) {
+  std::vector<io::SeriesRow> rows;
+  if (const auto& first = begun.at("first"); !first.is_null())
+    rows.push_back({first.at("time"), values_of(first.at("values"))});
+  for (const auto& entry : journal)
+    if (const Real t = entry.at("step").at("time"); rows.empty() || t > rows.front().time)
+      rows.push_back({t, values_of(entry.at("probes").at(name))});
+  return rows;
 }
 
 /// Faces of the three classes of a state.
@@ -108,57 +123,6 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
   }
 }
 
-json block_summary(const assembly::System& system) {
-  json summary;
-  const auto& comm = *system.comm();
-  for (std::size_t b = 0; b < system.blocks().size(); ++b) {
-    const auto& layout = system.layouts()[b];
-    std::array<long long, 2> halo{};
-    if (system.exchanged(static_cast<int>(b)))
-      halo = base::sum_over_ranks(comm, std::array{static_cast<long long>(layout.halo_bytes()),
-                                                   static_cast<long long>(layout.halo_messages())});
-    summary["fields"].push_back({{"name", layout.field().name},
-                                 {"entity", fields::name_of(layout.field().entity)},
-                                 {"components", layout.field().n_components},
-                                 {"unit", layout.field().unit},
-                                 {"unknowns", layout.owned()->getGlobalNumElements()},
-                                 {"halo_bytes", halo[0]},
-                                 {"halo_messages", halo[1]}});
-  }
-  const auto& A = system.matrix();
-  for (int i = 0; i < A.n_blocks(); ++i)
-    for (int j = 0; j < A.n_blocks(); ++j) {
-      const auto kept = i == j ? A.kept(i) : nullptr;
-      if (A(i, j).is_null() && !kept) continue;
-      const auto matrix = kept ? kept->J() : fields::wrapped(A(i, j));
-      const auto& numbers = matrix->numbers();
-      const auto starts = numbers.n_rows() / numbers.height;
-      const auto entries = static_cast<long long>(numbers.value.extent(0));
-      const long long bytes = entries * static_cast<long long>(sizeof(Real)) +
-                              static_cast<long long>(numbers.column.extent(0) * sizeof(LocalIndex)) +
-                              starts * static_cast<long long>(sizeof(std::size_t));
-      const auto sums = base::sum_over_ranks(comm, std::array{static_cast<long long>(entries), bytes});
-      summary["matrices"].push_back({{"row", system.blocks()[i].name},
-                                     {"column", system.blocks()[j].name},
-                                     {"entries", sums[0]},
-                                     {"bytes", sums[1]}});
-    }
-  for (const auto& [field, values] : system.histories()) {
-    const auto bytes = static_cast<long long>(values.size() * sizeof(Real));
-    summary["histories"].push_back({{"name", field.name},
-                                    {"entity", fields::name_of(field.entity)},
-                                    {"components", field.n_components},
-                                    {"bytes", base::sum_over_ranks(comm, bytes)}});
-  }
-  for (const auto& module : system.modules()) summary["modules"].push_back(module->name());
-  for (const auto& group : system.local_groups()) {
-    json names = json::array();
-    for (int b : group.blocks) names.push_back(system.blocks()[b].name);
-    summary["local_groups"].push_back({{"name", group.name}, {"blocks", names}});
-  }
-  return summary;
-}
-
 Results::Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier)
     : model_(model), directory_(std::move(directory)), probes_(model) {
   const auto comm = model_.system().comm();
@@ -169,7 +133,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
     if (comm->getRank() != 0) return;
     io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
     remove_unsettled(directory_);
-    if (!earlier) remove_tables(directory_);
+    remove_tables(directory_, earlier.has_value());
   });
   if (model_.scene().output.vtu) {
     std::vector<Real> written;
@@ -199,21 +163,24 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
   if (!mesh.fracture_names.empty()) json_["single_fractures"] = described_singles(mesh);
-  for (const auto& own : model.scene().own_joints) json_["single_fractures"][own.first]["own_joint"] = true;
+  for (const auto& own : model.scene().own_joints)
+    json_["single_fractures"][own.first]["own_joint"] = physics::own_entries(model.scene(), mesh, own.first);
   const auto& unit = model_.scene().output.time_unit;
   json_["time_unit"] = {{"name", unit}, {"seconds", base::value_in("s", {1, unit})}};
   json_["steps"] = json::array();
   if (earlier) {
-    for (const auto& entry : earlier->journal) {
-      json_["steps"].push_back(entry.at("step"));
-      if (!probes_.empty() && entry.contains("probes"))
-        earlier_rows_.push_back({entry["step"]["time"], values_of(entry["probes"])});
-    }
+    for (const auto& entry : earlier->journal) add(entry.at("step"));
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
+  if (!probes_.empty()) start_probes(earlier);
   write_json();
+}
+
+/// Rank 0 writes the steps and keeps them alone.
+void Results::add(const json& step) {
+  json_["steps"].push_back(model_.mesh().comm->getRank() == 0 ? step : json{{"time", step.at("time")}});
 }
 
 void Results::start_fractures(const std::vector<Real>& written) {
@@ -223,14 +190,47 @@ void Results::start_fractures(const std::vector<Real>& written) {
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
+/// Tables go on where the run before had the same probe. Others begin with the present state, where it means something.
+void Results::start_probes(const std::optional<EarlierResults>& earlier) {
+  auto& system = model_.system();
+  bool known = true;
+  if (!earlier) {
+    auto memory = system.memory();
+    memory.t = model_.time();
+    system.resume(model_.state(), memory);
+    physics::for_each_physics([&](auto physics) { known = known && physics.has_initial_state(model_.scene()); });
+  }
+  const auto outputs = system.outputs(model_.state());
+  json now = reactions();
+  add_fractures(now, outputs);
+  const auto values = probes_.values({outputs, sets_, singles_, now, units_});
+  sets_ = singles_ = {};  // of no step
+  auto tables = probes_.tables();
+  const auto definitions = probes_.definitions();
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    auto& rows = tables[t].rows;
+    const auto before = earlier ? earlier->probes.value(tables[t].name, json::object()) : json::object();
+    if (before.value("definition", "") == definitions[t])
+      rows = earlier_rows(tables[t].name, before, earlier->journal);
+    else if (known)
+      rows = {{model_.time(), values[t]}};
+    probes_begun_[tables[t].name] = {{"definition", definitions[t]}, {"first", first_of(rows)}};
+  }
+  series_.emplace(model_.system().comm(), directory_, std::move(tables),
+                  io::TimeUnit{json_["time_unit"]["name"], json_["time_unit"]["seconds"]});
+}
+
 std::vector<json> Results::journal(int begin) const {
   std::vector<json> entries;
+  if (model_.mesh().comm->getRank() != 0) return entries;
   for (int k = begin; k < n_steps_; ++k) {
     const auto& step = json_["steps"][k];
     const bool written =
         bulk_ && std::binary_search(bulk_->times().begin(), bulk_->times().end(), step["time"].get<Real>());
     entries.push_back({{"step", step}, {"written", written}});
-    if (series_) entries.back()["probes"] = series_->rows()[k].values;
+    if (series_)
+      for (const auto& table : series_->tables())
+        entries.back()["probes"][table.name] = table.rows[table.rows.size() - n_steps_ + k].values;
   }
   return entries;
 }
@@ -249,7 +249,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
   if (!report.converged && report.substeps == 0) {  // nothing new to show
-    json_["steps"].push_back(step);
+    add(step);
     return {0, 0, 0};
   }
   auto outputs = model_.system().outputs(model_.state());
@@ -266,11 +266,11 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
     step["error_estimate"] = estimate.summary();
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
-  json_["steps"].push_back(step);
+  add(step);
   ++n_steps_;
   if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);
-  if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > std::chrono::seconds(5)))
-    write_json();
+  const auto rest = std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(5), 20 * write_took_);
+  if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > rest)) write_json();
   return counts_of_classes(*model_.mesh().comm, outputs);
 }
 
@@ -283,20 +283,14 @@ void Results::add_fractures(json& step, const std::vector<OutputField>& outputs)
   const bool same = mesh.single_fractures.size() == mesh.fracture_names.size();
   singles_ = same ? sets_ : fracture_table(mesh, outputs, Grouping::singles);
   step["fractures"] = by_sets(mesh, sets_);
-  step["single_fractures"] = by_singles(singles_);
+  if (mesh.comm->getRank() == 0) step["single_fractures"] = by_singles(singles_);
   json_["units"] = units(sets_);
 }
 
 void Results::add_probes(const json& step, const std::vector<OutputField>& outputs) {
-  if (probes_.empty()) return;
+  if (!series_) return;
   const auto scope = model_.timers().scope("probes");
-  auto row = probes_.row(step.at("time"), {outputs, sets_, singles_, step, units_});
-  if (!series_) {
-    const std::string unit = json_["time_unit"]["name"];
-    series_.emplace(model_.system().comm(), directory_, probes_.tables(),
-                    io::TimeUnit{unit, json_["time_unit"]["seconds"]}, std::move(earlier_rows_));
-  }
-  series_->add(std::move(row));
+  series_->add(step.at("time"), probes_.values({outputs, sets_, singles_, step, units_}));
 }
 
 /// Those of this state, the largest of all fractures.
@@ -377,6 +371,8 @@ void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
 }
 
 void Results::write_json() {
+  const auto scope = model_.timers().scope("results");
+  const auto begin = std::chrono::steady_clock::now();
   const auto& comm = *model_.system().comm();
   const auto here = static_cast<Real>(base::peak_memory_bytes());
   json_["memory"] = {{"peak_bytes_largest_rank", base::max_over_ranks(comm, here)},
@@ -404,6 +400,7 @@ void Results::write_json() {
   });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();
+  write_took_ = last_write_ - begin;
 }
 
 std::vector<std::string> Results::fracture_digest() const {

@@ -21,6 +21,7 @@ namespace sprekk::model {
 struct EarlierResults {
   std::vector<nlohmann::json> journal;                ///< what Results::journal() gave for all their steps
   nlohmann::json restarts = nlohmann::json::array();  ///< the times at which they went on
+  nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
 };
 
 /// Writes a model's states into a directory, step by step. Everything in it is complete after every write. All members
@@ -30,8 +31,11 @@ class Results {
   /// The steps of `earlier` stay, and those that were written after them go.
   Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier = {});
 
-  /// The steps from number `begin` on, each with whether its fields were written. Stored data.
+  /// The steps from number `begin` on, each with whether its fields were written and what probes saw; none on other
+  /// ranks than 0. Stored data.
   std::vector<nlohmann::json> journal(int begin) const;
+  /// Of each probe by its name: `definition`, and the `first` row of its table.
+  const nlohmann::json& probes_begun() const { return probes_begun_; }
   nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
   int n_steps() const { return n_steps_; }
 
@@ -51,6 +55,8 @@ class Results {
  private:
   nlohmann::json reactions();
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
+  void add(const nlohmann::json& step);
+  void start_probes(const std::optional<EarlierResults>& earlier);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
@@ -64,16 +70,16 @@ class Results {
   std::optional<ErrorEstimator> estimator_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
-  std::vector<io::SeriesRow> earlier_rows_;     // of probes
-  std::optional<io::SeriesFiles> series_;       // from the first step on
+  std::optional<io::SeriesFiles> series_;       // of probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // of what reactions() gives
-  nlohmann::json json_;
+  nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
   std::set<std::string> told_;
   std::vector<std::string> warnings_;
   std::map<std::string, Real> error_bounds_;
   std::chrono::steady_clock::time_point last_write_;
+  std::chrono::steady_clock::duration write_took_{};
 };
 
 /// Leaves a results.json that says why a run never began, or with `only_replace` only in place of one that is there;

@@ -2,6 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/facets.hpp"
 #include "physics/hybrid_rock.hpp"
 
 #include <algorithm>
@@ -67,6 +68,10 @@ class HybridDiffusion final : public assembly::Module {
     outflow_.bind(context, blocks_[1], parameters_.fluid);
   }
 
+  void initial(const assembly::Rows& x) const override {
+    if (parameters_.initial) put_initial(*mesh_, *parameters_.initial, x[blocks_[0]], x[blocks_[1]]);
+  }
+
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     assembler_->add_residual(*op_, state, r);
     outflow_.add_residual(state, r);
@@ -81,10 +86,6 @@ class HybridDiffusion final : public assembly::Module {
 
   bool constant_load() const override {
     return outflow_.constant_in_time() && (parameters_.source.empty() || parameters_.source[0].constant_in_time());
-  }
-
-  void initial(const assembly::Rows& x) const override {
-    if (parameters_.initial) set_hybrid<shape>(*mesh_, *parameters_.initial, x[blocks_[0]], x[blocks_[1]]);
   }
 
   void set_time(Real t, const assembly::Scales&) override {
@@ -184,6 +185,27 @@ class HybridDiffusion final : public assembly::Module {
 };
 
 }  // namespace
+
+void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
+                 const View<Real*>& facets) {
+  const auto in_cells = Kokkos::create_mirror_view(cells), on_facets = Kokkos::create_mirror_view(facets);
+  const auto put = [&](LocalIndex facet, const mesh::Vector& x) {
+    if (facet < mesh.facets->n_owned) on_facets(facet) = u(x, 0);
+  };
+  const int n_faces = mesh::n_faces(mesh.shape), n_ridges = mesh::n_face_corners(mesh.shape);
+  mesh::for_shape(mesh.shape, [&](auto shape) {
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+      if (c < mesh.n_owned_cells)
+        in_cells(c) = assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return u(x, 0); })[1];
+      for (int k = 0; k < n_faces; ++k)
+        put(mesh.facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(mesh, c, k)));
+    }
+  });
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
+    for (int k = 0; k < n_ridges; ++k) put(mesh.facets->ridge[f * n_ridges + k], mesh::ridge_centre(mesh, f, k));
+  Kokkos::deep_copy(cells, in_cells);
+  Kokkos::deep_copy(facets, on_facets);
+}
 
 std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffusionParameters parameters) {
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {

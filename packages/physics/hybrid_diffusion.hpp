@@ -24,14 +24,14 @@ struct HybridDiffusionParameters {
   OutflowNames outflow = {};
   Properties<laws::Mobility> mobility = {};  ///< of cells, K in q = -K grad u
   FluxScheme scheme = FluxScheme::rt0;
-  std::string reason = "";                     ///< why this one
-  laws::Fluid fluid = {};                      ///< of energy: the default, whose density is 1
-  std::array<Real, 3> weight{};                ///< rho_0 g, N/m^3
-  std::vector<base::Expression> source = {};   ///< Q per volume and time; empty or one
-  std::vector<FluxCondition> conditions = {};  ///< those without a fracture
-  bool in_regions = false;                     ///< u of cells is prescribed: they stay in linear solves
-  std::vector<std::string> coupled_by = {};  ///< fields with which, where they are there, cells couple: they stay, too
-  std::optional<base::Expression> initial = {};  ///< u at the start, of x, y, z; none: others set it, or nothing has to
+  std::string reason = "";                       ///< why this one
+  laws::Fluid fluid = {};                        ///< of energy: the default, whose density is 1
+  std::array<Real, 3> weight{};                  ///< rho_0 g, N/m^3
+  std::optional<base::Expression> initial = {};  ///< u at the start; none: it has no meaning
+  std::vector<base::Expression> source = {};     ///< Q per volume and time; empty or one
+  std::vector<FluxCondition> conditions = {};    ///< those without a fracture
+  bool in_regions = false;                       ///< u of cells is prescribed: they stay in linear solves
+  std::vector<std::string> coupled_by = {};      ///< fields with which, where they are there, cells couple: they stay
   std::vector<Real> exchange = {};  ///< [local fracture face] of each of its sides, m/(Pa s): a resistance between the
                                     ///< cell and the pressure of the fracture; infinite: none. Empty: all infinite
 };
@@ -46,5 +46,10 @@ struct HybridDiffusionParameters {
 /// reference conditions. Outputs: u, and the flux q = sum_i q_i d_i / (V e_K) (cells, global components), for a fluid
 /// a volume at the pressure there.
 std::unique_ptr<assembly::Module> make_hybrid_diffusion(mesh::Shape shape, HybridDiffusionParameters parameters);
+
+/// Puts u at the start into unknowns: its means over cells, and its values at the centres of facets, those of fractures
+/// among them.
+void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
+                 const View<Real*>& facets);
 
 }  // namespace sprekk::physics

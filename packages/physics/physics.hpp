@@ -87,6 +87,8 @@ struct Physics {
   static bool needs_facets(const Scene&) { return false; }
   /// Whether it has rates of what it stores, which the scheme in time is of.
   static bool has_rates(const Scene&) { return false; }
+  /// Whether the scene says what its unknowns are at the start; else they mean nothing before the first step.
+  static bool has_initial_state(const Scene&) { return true; }
   /// Names of the sections that bring such rates.
   static std::vector<std::string> sections_with_rates() { return {}; }
   /// Why there is no error estimate with it; empty if there is.

@@ -1,6 +1,7 @@
 #include "physics/scene.hpp"
 
 #include "base/text.hpp"
+#include "base/value.hpp"
 #include "base/xml.hpp"
 #include "physics/material_library.hpp"
 
@@ -151,6 +152,12 @@ bool is_entry(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// The name of the joint that a single fracture has, if for entries of its own.
+const std::string& joint_name(const Scene& scene, const mesh::Mesh& mesh, const mesh::SingleFracture& single) {
+  const auto own = single.properties.find("material");
+  return own == single.properties.end() ? scene.fractures.at(mesh.fracture_names[single.set]).material : own->second;
+}
+
 }  // namespace
 
 std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
@@ -158,11 +165,10 @@ std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
   OwnJoints own{scene.tables, scene.expressions, {}};
   auto list = base::effective(own, "Sprekk");
   std::vector<std::string> errors;
-  for (const auto& [name, set, properties] : mesh.single_fractures) {
-    const auto material = properties.find("material");
-    const auto joint =
-        material == properties.end() ? scene.fractures.at(mesh.fracture_names[set]).material : material->second;
+  for (const auto& single : mesh.single_fractures) {
+    const auto& [name, set, properties] = single;
     if (properties.empty()) continue;
+    const auto& joint = joint_name(scene, mesh, single);
     const auto tell = [&](const std::string& entry, const std::string& what) {
       errors.push_back(fmt::format("{}: fracture \"{}\": {}: {}", scene.origin, name, entry, what));
     };
@@ -186,6 +192,20 @@ std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
     if (const auto found = draft.value.joints.find(mesh.single_fractures[k].name); found != draft.value.joints.end())
       result.emplace(static_cast<int>(k), found->second);
   return result;
+}
+
+std::map<std::string, std::string> own_entries(const Scene& scene, const mesh::Mesh& mesh, int single) {
+  const auto own = scene.own_joints.find(single);
+  if (own == scene.own_joints.end()) return {};
+  const auto& name = joint_name(scene, mesh, mesh.single_fractures[single]);
+  auto joint = own->second, material = scene.materials.at(name);
+  const auto entries = base::effective(joint, name), before = base::effective(material, name);
+  std::map<std::string, std::string> different = {{"material", name}};
+  for (const auto& entry : entries)
+    if (const auto text = base::value_text(entry.second);
+        !before.isParameter(entry.first) || base::value_text(before.getEntry(entry.first)) != text)
+      different.emplace(entry.first, text);
+  return different;
 }
 
 std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::Mesh& mesh) {

@@ -165,6 +165,9 @@ struct Scene : OfAll<detail::Sections> {
 /// their property "material" names, with these entries in place. Properties that are no entries of a joint are passed
 /// over. Error: an entry is wrong, or misspelt; all are told.
 std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh);
+/// Of the joint that a single fracture has of its own: `material`, the one that it is made of, and the entries that
+/// differ from those of that, as effective_input.xml would have them. Empty of others.
+std::map<std::string, std::string> own_entries(const Scene& scene, const mesh::Mesh& mesh, int single);
 /// A line for the names of properties that were passed over, if there are any.
 std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::Mesh& mesh);
 /// The material of a single fracture.

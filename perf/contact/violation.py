@@ -39,6 +39,10 @@ class Joint:
         return self.gap + self.dilation * slip - closing
 
 
+def parsed(value, default=None):
+    return default if value is None else math.inf if value == "infinite" else float(value)
+
+
 class Input:
     """What effective_input.xml says."""
 
@@ -71,8 +75,7 @@ class Input:
         return None
 
     def number(self, *path, default=None):
-        value = self.text(*path)
-        return default if value is None else math.inf if value == "infinite" else float(value)
+        return parsed(self.text(*path), default)
 
     def numbers(self, *path):
         return [float(word) for word in self.text(*path).strip("{} ").split(",")]
@@ -89,9 +92,15 @@ class Input:
         given["E"] = given["G"] * (3 * given["lam"] + 2 * given["G"]) / (given["lam"] + given["G"])
         return given
 
-    def _law(self, name):
-        return JointLaw(lambda entry, default: self.number("Materials", name, entry, default=default),
-                        lambda role: self.text("Materials", name, role) or FIRST_KINDS[role])
+    def of_singles(self, singles):
+        """The laws of single fractures as results.json lists them, entries of their own included."""
+        shared = {name: self._law(self.text("Fractures", name, "material")) for name in self.names("Fractures")}
+        own = [one.get("own_joint", {}) for one in singles]
+        return [self._law(entries["material"], entries) if entries else shared[one["set"]] for one, entries in zip(singles, own)]
+
+    def _law(self, name, own={}):
+        return JointLaw(lambda entry, default: parsed(own.get(entry, self.text("Materials", name, entry)), default),
+                        lambda role: own.get(role) or self.text("Materials", name, role) or FIRST_KINDS[role])
 
     def _joint(self, name):
         def number(entry, default):
@@ -146,19 +155,20 @@ def sorted_by_place(centre, fracture, extent):
     return np.lexsort((place[:, 2], place[:, 1], place[:, 0], fracture))
 
 
-def faces(time, file, laws, extent):
+def faces(time, file, laws, extent, group="fracture"):
+    """`group`: the array with the numbers of the laws, which Faces has as fractures."""
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
     points = read.vtk_to_numpy(grid.GetPoints().GetData())
     centre = np.array([points[cell].mean(axis=0) for cell in read.cells(grid.GetCells())])
-    order = sorted_by_place(centre, data["fracture"], extent)
-    f = Faces(time, centre[order], data["fracture"].astype(int)[order], data["state"].astype(int)[order],
+    order = sorted_by_place(centre, data[group], extent)
+    f = Faces(time, centre[order], data[group].astype(int)[order], data["state"].astype(int)[order],
               *(data[name][order] for name in ("jump local", "plastic jump local", "traction local")),
               data["fluid pressure"][order] if "fluid pressure" in data else np.zeros(len(order)),
               {name: data[name][order] for name in HISTORIES if name in data})
     f.bound, f.distance, f.strength = np.empty((3, len(order)))
-    for k, law in enumerate(laws):
-        on = f.fracture == k
+    for k in np.unique(f.fracture):
+        law, on = laws[k], f.fracture == k
         some = f.on(on)
         f.bound[on], f.distance[on], f.strength[on] = law.bound(some), some.jump[:, 0] - law.closed_gap(some), law.tension(some)
     return f
@@ -171,8 +181,8 @@ class Scales:
     extent: float
 
 
-def history(directory, input_):
-    """The faces of every written step, and the scales of the run."""
+def history(directory, input_, laws=None):
+    """The faces of every written step, and the scales of the run; `laws`: of single fractures, in place of sets."""
     bulk = read.written_steps(directory, "bulk")
     grid = read.grid(bulk[0][1])
     bounds = np.reshape(grid.GetBounds(), (3, 2))
@@ -181,7 +191,8 @@ def history(directory, input_):
     for _, file in bulk[::-(len(bulk) // -BULK_STEPS)] + bulk[-1:]:
         displacement = read.arrays(read.grid(file).GetPointData())["displacement"]
         length = max(length, np.linalg.norm(displacement, axis=1).max())
-    steps = [faces(time, file, input_.laws, extent) for time, file in read.written_steps(directory, "fractures")]
+    of = (input_.laws, extent) if laws is None else (laws, extent, "single fracture")
+    steps = [faces(time, file, *of) for time, file in read.written_steps(directory, "fractures")]
     traction = max(max(np.linalg.norm(step.traction, axis=1).max(), np.abs(step.pressure).max()) for step in steps)
     return steps, Scales(length, max(traction, 1e-9 * input_.modulus * length / extent), extent)
 
@@ -220,9 +231,10 @@ def _wrong_increment(step, before, shear, scales):
 
 def largest(directory, results, input_):
     """The faces of each step, the violation of the run by parts, and how many steps were not judged by direction."""
-    if any(fracture.get("own_joint") for fracture in results.get("single_fractures", [])):
-        raise ValueError("single fractures have joints of their own, which effective_input.xml does not tell")
-    steps, scales = history(directory, input_)
+    singles = results.get("single_fractures", [])
+    own = input_.of_singles(singles) if any(one.get("own_joint") for one in singles) else None
+    laws = input_.laws if own is None else own
+    steps, scales = history(directory, input_, own)
     numbered = list(enumerate(results["steps"]))
     at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before
     worst, skipped, last, path = np.zeros(len(PARTS)), 0, -1, []
@@ -234,8 +246,8 @@ def largest(directory, results, input_):
         if number == 0:
             before = Faces.at_rest(step)
         known = number == last + 1 and results["steps"][number]["substeps"] == 1
-        path = [*path, _segment(step, before, input_.laws)] if known and path is not None else None
-        worst = np.maximum(worst, violation(step, before if known else None, scales, input_.laws, path))
+        path = [*path, _segment(step, before, laws)] if known and path is not None else None
+        worst = np.maximum(worst, violation(step, before if known else None, scales, laws, path))
         skipped, last = skipped + (not known), number
     return steps, scales, worst, skipped
 

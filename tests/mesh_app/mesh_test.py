@@ -125,6 +125,24 @@ class Lines(Conformity):
         self.assertGreater(quality.min(), 0.3)
 
 
+class Places(Conformity):
+    def test_far_from_the_origin(self):
+        """A metre of rock at coordinates of UTM: the mesh is that of the same rock at the origin, but for rounding."""
+        lines = {"a": [[0.2, 0.5], [0.8, 0.55]], "b": [[0.5, 0.2], [0.45, 0.8]]}
+        planes = {"a": square_at(2, 0.5), "b": square_at(1, 0.6, 0.1, 0.9)}
+        for fractures, domain, tip in ((lines, SQUARE, 0.002), (planes, CUBE, 0.04)):
+            found = []
+            for far in (np.zeros(3), np.array([5e5, 6.7e6, -2e3])):
+                moved = {name: np.array(points) + far[:len(points[0])] for name, points in fractures.items()}
+                corners = {k: (np.array(domain[k]) + far[:len(domain[k])]).tolist() for k in ("lower corner", "upper corner")}
+                plan, mesh = meshed(network(moved, {**domain, **corners}, size_at_tips=tip))
+                self.assertEqual(defects(plan, mesh, 1e-7), [])
+                found.append((len(mesh.cells), gamma(mesh.points, mesh.cells)[0].min(), len(mesh.intersections)))
+            self.assertLess(abs(found[1][0] / found[0][0] - 1), 0.05, found)
+            self.assertGreater(found[1][1], 0.7 * found[0][1], found)
+            self.assertLess(abs(found[0][2] - found[1][2]), 3)
+
+
 class Polygons(Conformity):
     def test_crossings(self):
         a = square_at(2, 0.5)

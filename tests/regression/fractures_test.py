@@ -113,6 +113,29 @@ class Fractures(ProgramTest):
         _, err = self.call("check", scene, "--set", mesh_of(self.folder, scene))
         self.assertIn('columns of fractures are passed over that are no entries of a joint: "geologist\'s remark"', err)
 
+    def test_biaxial_and_triaxial_test(self):
+        """The joint slips from the load of Mohr and Coulomb on, which then stays, by what the platens move beyond it."""
+        young, poisson, stiffness, height, confinement = 20e9, 0.2, 50e9, 0.125, 5e6
+        mu, dilation, beta = math.tan(math.radians(30)), math.tan(math.radians(5)), math.atan(0.0866 / 0.05)
+        rise = 2 * mu * confinement / ((1 - mu / math.tan(beta)) * math.sin(2 * beta))
+        for name, ranks, top, area, modulus in (("biaxial_2d", 2, "north", 0.05, young / (1 - poisson**2)), ("triaxial_3d", 1, "top", 0.05**2, young)):
+            scene = f"networks/{name}.xml"
+            r = self.run_scene(scene, mesh_of(self.folder, self.scene(scene)), "Output.vtu=false", ranks=ranks)
+            compliance = height / modulus + math.sin(beta)**2 * math.cos(beta) / stiffness
+            self.assertTrue(6 < 20 * rise * compliance / 0.4e-3 < 7)
+            for k, step in enumerate(r["steps"], 1):
+                shortening = 0.4e-3 * k / 20
+                added = min(shortening / compliance, rise)
+                joint = step["fractures"]["joint"]
+                self.assertAlmostEqual(-step["reactions"][top][-1] / area, confinement + added, delta=1e-6 * rise)
+                self.assertEqual(joint["fraction_slip"], float(k > 6))
+                slip = max(shortening - rise * compliance, 0) / (math.sin(beta) - dilation * math.cos(beta))
+                self.assertAlmostEqual(joint["mean_slip"], slip, delta=1e-6 * 0.4e-3)
+        flat = (ROOT / "xml/networks/biaxial_2d.xml").read_text().replace("{0, 0.019, 0.05, 0.1056}", "{0, 0.05, 0.05, 0.0733}")
+        (self.folder / "flat.xml").write_text(flat)  # 25 degrees: below the friction angle
+        r = self.run_scene(str(self.folder / "flat.xml"), mesh_of(self.folder, self.folder / "flat.xml"), "Output.vtu=false")
+        self.assertEqual({step["fractures"]["joint"]["fraction_slip"] for step in r["steps"]}, {0.0})
+
     def test_any_number_of_ranks(self):
         results = [self.run_mapped(ranks=ranks) for ranks in (1, 2, 3)]
         for r in results[1:]:

@@ -65,6 +65,22 @@ class Plausibility(ProgramTest):
         for text in ('Materials > joint > "friction coefficient": is 30', "rock has 0.2 to 1.2", '"friction angle"'):
             self.assertIn(text, err)
 
+    def test_entries_of_single_fractures(self):
+        """What a table gives single fractures is looked at, too: each entry once, and not what the material has of it."""
+        text = (ROOT / "xml/networks/mapped.csv").read_text().replace(",0.55,", ",3,").replace(",0.35,", ",2,")
+        (self.folder / "mapped.csv").write_text(text)
+        scene = self.folder / "mapped.xml"
+        scene.write_text(self.scene("networks/mapped_2d.xml").read_text())
+        mesh = mesh_of(self.folder, scene)
+        for ranks in (1, 2):
+            err = self.warnings(scene, mesh, ranks=ranks)
+            self.assertEqual(err.count("rock has 0.2 to 1.2"), 1)
+            for words in ('fracture "A1" > "friction coefficient": is 3, with 3 others like it: rock has', 'friction coefficient of the fracture "A1" is 3: above about 1'):
+                self.assertIn(words, err)
+        err = self.warnings(scene, mesh, "Materials.mapped joint.friction coefficient=3")
+        self.assertIn('mapped joint > "friction coefficient": is 3:', err)
+        self.assertIn('fracture "A4" > "friction coefficient": is 2, with 1 other like it:', err)
+
     def test_just_below(self):
         """The bounds themselves are no cause for a warning."""
         for sets in (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],

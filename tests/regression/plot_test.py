@@ -283,6 +283,17 @@ class Pictures(PlotTest):
             self.assertEqual(labels, ["1", "2", "3", "4", "5"] if n == 5 else ["25", "26", "27", "28", "29", "30", "others"])
             self.assertEqual(len({line.get_color() for line in legend.get_lines()}), len(labels))
 
+    def test_traces_have_the_names_of_the_results(self):
+        """In the order of results.json, whatever their places; without the name of their set in its own column."""
+        surface = self.crossing_traces(4)
+        surface.cell_data["single fracture"] = np.array([3, 3, 1, 1, 0, 0, 2, 2])
+        singles = [{"name": name} for name in ("A", "set 7", "C 1", "D")]
+        traces = fractures.traces_of(surface, 0, "set", singles)
+        self.assertEqual([(t.name, t.label, t.faces.tolist()) for t in traces],
+                         [("A", "A", [4, 5]), ("set 7", "7", [2, 3]), ("C 1", "C 1", [6, 7]), ("D", "D", [0, 1])])
+        axes = fractures.along(surface, ["set"], "run", 1e-3, 1e6, singles).axes
+        self.assertEqual([text.get_text() for text in axes[-1].get_yticklabels()], ["A", "7", "C 1", "D"])
+
     def test_many_fractures_fit_a_page(self):
         """In the order of their numbers, four beside each other."""
         surface = self.crossing_traces(11)
@@ -382,8 +393,8 @@ class Pictures(PlotTest):
         self.assertEqual(names, set(content["steps"][-1]["fractures"]))
 
     def test_mohr(self):
-        """Faces as the run wrote them, the circle of the mean stress, a line of the slope of friction."""
-        self.run_scene("verification/crossing_2d.xml")
+        """Faces as the run wrote them, the circle of the mean stress, a line of the slope of friction, paths of means."""
+        content = self.run_scene("verification/crossing_2d.xml")
         ax = self.figures("out")["mohr"].axes[0]
         lines = {line.get_label(): line.get_data() for line in ax.lines}
         joints = read.arrays(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]).GetCellData())
@@ -402,6 +413,13 @@ class Pictures(PlotTest):
         materials = read.scene(self.folder / "out")
         friction = float(next(read.entries(materials["Materials"], "friction coefficient")))
         self.assertAlmostEqual(envelope[1][-1] / envelope[0][-1], friction, 9)
+        for k, one in enumerate(content["single_fractures"]):
+            means = np.array([step["single_fractures"]["mean_traction_local"][k] for step in content["steps"]])
+            size = lines[f"path of {one['name']}"][0] @ means[:, 0] / (means[:, 0] @ means[:, 0])
+            self.assertTrue(np.allclose(lines[f"path of {one['name']}"], [size * means[:, 0], -size * abs(means[:, 1])]))
+        own = {"single_fractures": [{"name": "a", "own_joint": {"material": "joint", "friction coefficient": "0.1"}}, {"name": "b"}]}
+        joints = mohr.joints_of({"Materials": {"joint": {"friction": "Coulomb"}}}, own, ["a", "b"])
+        self.assertEqual(joints, {"a": {"friction": "Coulomb", **own["single_fractures"][0]["own_joint"]}})
 
     def test_thin_bodies_are_drawn_wide(self):
         """Above each other, with nothing left over; square ones beside each other."""
@@ -589,10 +607,12 @@ class Numbers(ProgramTest):
         b, error = magnitudes.b_value(sample, 2.0)
         self.assertLess(abs(b - 1.2), 3 * error)
         self.assertLess(error, 0.05)
-        step = {"single_fractures": {"moment_magnitude": [*sample[:40], None, None]}}
-        x, y = magnitudes.of_step(step, "run").axes[0].lines[0].get_data()
-        self.assertTrue(np.allclose(x, np.sort(sample[:40])))
-        self.assertEqual(y.tolist(), list(range(40, 0, -1)))
+        for n in (40, 400):
+            step = {"single_fractures": {"moment_magnitude": [*sample[:n], None, None]}}
+            points, *line = magnitudes.of_step(step, "run").axes[0].lines
+            self.assertTrue(np.allclose(points.get_xdata(), np.sort(sample[:n])))
+            self.assertEqual(points.get_ydata().tolist(), list(range(n, 0, -1)))
+            self.assertEqual(len(line), n > 50)
         self.assertIsNone(magnitudes.of_step({"single_fractures": {"moment_magnitude": [1.0] * 5}}, "run"))
         self.assertIsNone(magnitudes.of_step({}, "run"))
 

@@ -69,6 +69,12 @@ class Results(ProgramTest):
             self.assertLessEqual(memory["peak_bytes_largest_rank"], memory["peak_bytes_all_ranks"])
             self.assertIn("direct", r["solver"]["choice"])
 
+    def test_steps_do_not_write_all_results(self):
+        """results.json is written anew every few seconds, not after every step: else runs of many steps took quadratic time."""
+        timing = self.run_scene("verification/uniaxial_2d.xml", "Output.vtu=false", "Time.steps=100")["timing"]
+        self.assertEqual(timing["time_steps"]["count"], 100)
+        self.assertLessEqual(timing["results"]["count"], 1 + timing["time_steps"]["seconds"] / 4)
+
     def test_error_estimate(self):
         """Only where it is asked for; on any number of ranks the same, in the fields as in the numbers."""
         self.assertNotIn("error_estimate", self.run_scene("verification/free_sides_2d.xml")["steps"][-1])

@@ -8,11 +8,12 @@ import importlib.util
 import io
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
-from program import ROOT, ProgramTest, main  # noqa: E402
+from program import PROGRAM, ROOT, ProgramTest, main  # noqa: E402
 
 MISSING = [name for name in ("matplotlib", "numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
 if MISSING:
@@ -134,6 +135,24 @@ class Checks(ReportTest):
             )
         )
         self.assertEqual(self.verdicts()["laws of contact and friction"].verdict, "failed")
+
+    def test_joints_of_their_own_are_judged(self):
+        """Traces with entries from a table: the state obeys them, and would not if they were others."""
+        mapped, mesh = self.scene("networks/mapped_2d.xml"), self.folder / "n.msh"
+        mesher = [sys.executable, "-B", ROOT / "apps/mesh", mapped, "-o", mesh, "--program", PROGRAM, "--quiet"]
+        subprocess.run(mesher, check=True)  # whose modules have names of those here
+        self.run_scene(mapped, f"Mesh file.path={mesh}")
+        name = "laws of contact and friction"
+        self.assertEqual(self.verdicts()[name].verdict, "passed", self.verdicts()[name])
+        a1 = self.results()["single_fractures"][0]["own_joint"]
+        self.assertEqual(a1, {"material": "mapped joint", "friction coefficient": "0.55", "initial aperture": "0.0002"})
+
+        def spoil(content):
+            for one in content["single_fractures"]:
+                one.get("own_joint", {})["friction coefficient"] = "0.05"
+
+        self.change(spoil)
+        self.assertEqual(self.verdicts()[name].verdict, "failed")
 
     def test_other_loads_carry_reactions(self):
         self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=2")

@@ -106,6 +106,7 @@ HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh)
       std::any_of(scene.regions.begin(), scene.regions.end(), [](const auto& r) { return r.second.pressure; });
   for (std::size_t i = 0; i < scene.bulk.gravity.size(); ++i) darcy.weight[i] = flow.density * scene.bulk.gravity[i];
   if (!is_zero(flow.source)) darcy.source = {flow.source};
+  if (Flow::has_initial_state(scene)) darcy.initial = flow.initial_pressure;
   return darcy;
 }
 
@@ -147,6 +148,13 @@ bool has_unknown_pressure(const Scene& scene) { return scene.flow || (scene.host
 bool Flow::needs_facets(const Scene& scene) { return has_unknown_pressure(scene); }
 
 bool Flow::has_rates(const Scene& scene) { return has_fluid(scene); }
+
+bool Flow::has_initial_state(const Scene& scene) {
+  if (!is_in(scene) || Mechanics::is_in(scene)) return true;
+  const Real of_fluid = scene.flow->compressibility;
+  return of_fluid > 0 || std::any_of(scene.materials.begin(), scene.materials.end(),
+                                     [&](const auto& one) { return one.second.may_store(of_fluid); });
+}
 
 base::Expression initial_pressure(const Scene& scene) {
   return scene.flow ? scene.flow->initial_pressure

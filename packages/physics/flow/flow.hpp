@@ -109,6 +109,7 @@ struct Flow : Physics<Flow> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene);
   static bool has_rates(const Scene& scene);
+  static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Flow"}; }
   static std::string no_error_estimate(const Scene& scene);
   static void compare(Comparison& comparison);

@@ -310,6 +310,8 @@ std::vector<Prescribed> Heat::BoundaryCondition::prescribed() const {
 
 bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 
+bool Heat::has_initial_state(const Scene& scene) { return !is_in(scene) || scene.heat->initial_temperature; }
+
 void Heat::compare(Comparison& c) {
   compare_without_heat(c);
   if (!c.scene().heat) return;
@@ -357,9 +359,9 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
       .mobility = std::move(conductivity),
       .scheme = chosen.scheme,
       .reason = chosen.reason,
-      .coupled_by = {"displacement", "pressure"},
-      .initial = heat.initial_temperature};
+      .coupled_by = {"displacement", "pressure"}};
   if (!is_zero(heat.source)) conduction.source = {heat.source};
+  conduction.initial = heat.initial_temperature;
   conduction.conditions = flux_conditions(
       scene, mesh,
       {&BoundaryCondition::heat_flux, &BoundaryCondition::temperature, &BoundaryCondition::heat_transfer_coefficient});

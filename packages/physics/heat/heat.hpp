@@ -71,6 +71,7 @@ struct Heat : Physics<Heat> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene) { return is_in(scene); }
   static bool has_rates(const Scene& scene) { return is_in(scene); }
+  static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static std::string no_error_estimate(const Scene& scene);
   static std::vector<Carried> carried(const Scene& scene);

@@ -234,7 +234,7 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
 std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {
   if (!is_in(setting.scene)) return {};
   const auto& [scene, mesh, start] = setting;
-  std::vector<std::string> all = {friction_doubt(scene), weakening_doubt(scene, mesh), bond_doubt(scene, mesh)};
+  std::vector<std::string> all = {friction_doubt(scene, mesh), weakening_doubt(scene, mesh), bond_doubt(scene, mesh)};
   if (oscillates) all.push_back(dilation_doubt(setting.scene, setting.mesh));
   all.erase(std::remove(all.begin(), all.end(), ""), all.end());
   return all;

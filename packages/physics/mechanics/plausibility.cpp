@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 namespace sprekk::physics {
 
@@ -22,24 +24,33 @@ namespace {
 
 constexpr Real huge = std::numeric_limits<Real>::max();
 
-/// A value and where it is.
+/// The largest of values and where it is; of equal ones the place with the least x, then y, then z, on any ranks.
 struct Extreme {
   Real value = -huge;
   mesh::Vector x{};
+
+  void offer(Real other, const mesh::Vector& at) {
+    if (other > value || (other == value && at < x)) *this = {other, at};
+  }
 };
 
-/// The largest over all ranks, element by element, of the lowest rank that has it.
+/// The largest over all ranks, element by element.
 void take_largest(const Comm& comm, std::vector<Extreme>& all) {
-  std::vector<Real> value, x;
-  std::vector<int> rank;
+  std::vector<Real> value;
   for (const auto& one : all) value.push_back(one.value);
   const auto most = base::max_over_ranks(comm, value);
-  for (std::size_t k = 0; k < all.size(); ++k) rank.push_back(value[k] == most[k] ? comm.getRank() : comm.getSize());
-  rank = base::min_over_ranks(comm, rank);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    for (const Real component : all[k].x) x.push_back(rank[k] == comm.getRank() ? component : 0);
-  x = base::sum_over_ranks(comm, x);
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = {most[k], {x[3 * k], x[3 * k + 1], x[3 * k + 2]}};
+  std::vector<bool> here;
+  for (std::size_t k = 0; k < all.size(); ++k) here.push_back(value[k] == most[k]);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Real> x;
+    for (std::size_t k = 0; k < all.size(); ++k) x.push_back(here[k] ? all[k].x[i] : huge);
+    const auto least = base::min_over_ranks(comm, x);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      here[k] = here[k] && x[k] == least[k];
+      all[k].x[i] = least[k];
+    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].value = most[k];
 }
 
 /// Calls look(), which errors of expressions end: a step that gets there tells them. Not collective.
@@ -69,22 +80,32 @@ void for_each_face_of(const mesh::Mesh& mesh, const BoundaryCondition& condition
       use(mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face)), mesh.cell_piece[face.cell]);
 }
 
-/// The largest displacement in direction i that conditions give at time t, and the negative of the smallest, [2 piece]
-/// and [2 piece + 1] of the pieces of rock between fractures: these may slide past each other.
-std::vector<Extreme> displacements(const Setting& setting, int i, Real t) {
-  std::vector<Extreme> all(2 * setting.mesh.n_pieces);
+/// Displacements of pieces of rock between fractures, which may slide past each other: at [2 piece] the largest, at
+/// [2 piece + 1] the negative of the smallest.
+using PieceExtremes = std::vector<Extreme>;
+
+/// Takes up what conditions give in direction i at time t, those that are constant in time or the others. Not
+/// collective.
+void add_displacements(const Setting& setting, int i, Real t, bool constant, PieceExtremes& all) {
   looking([&] {
     for (const auto& [name, condition] : setting.scene.boundary_conditions) {
-      if (condition.displacement.empty() || condition.displacement[i].text() == "free") continue;
+      if (condition.displacement.empty() || condition.displacement[i].text() == "free" ||
+          condition.displacement[i].constant_in_time() != constant)
+        continue;
       for_each_face_of(setting.mesh, condition, [&](const mesh::Vector& x, int piece) {
         const Real u = condition.displacement[i](x, t);
-        for (const int side : {0, 1})
-          if (auto& extreme = all[2 * piece + side]; (side ? -u : u) > extreme.value) extreme = {side ? -u : u, x};
+        for (const int side : {0, 1}) all[2 * piece + side].offer(side ? -u : u, x);
       });
     }
   });
-  take_largest(*setting.mesh.comm, all);
-  return all;
+}
+
+/// Whether conditions give a displacement in direction i that changes with time.
+bool moves(const Scene& scene, int i) {
+  return std::any_of(scene.boundary_conditions.begin(), scene.boundary_conditions.end(), [&](const auto& one) {
+    const auto& u = one.second.displacement;
+    return !u.empty() && u[i].text() != "free" && !u[i].constant_in_time();
+  });
 }
 
 /// Displacements on a piece of rock that differ by more than 5 % of the distance between them.
@@ -93,9 +114,13 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
   struct {
     Real strain = 0, t = 0, difference = 0, distance = 0;
   } worst;
-  for (const Real t : times)
-    for (int i = 0; i < setting.mesh.dim(); ++i) {
-      const auto all = displacements(setting, i, t);
+  for (int i = 0; i < setting.mesh.dim(); ++i) {
+    PieceExtremes fixed(2 * setting.mesh.n_pieces);
+    add_displacements(setting, i, times.front(), true, fixed);
+    for (const Real t : moves(setting.scene, i) ? times : std::vector{times.front()}) {
+      auto all = fixed;
+      add_displacements(setting, i, t, false, all);
+      take_largest(*setting.mesh.comm, all);
       for (std::size_t k = 0; k < all.size(); k += 2) {
         if (all[k].value == -huge) continue;
         const Real difference = all[k].value + all[k + 1].value, distance = norm(all[k].x - all[k + 1].x);
@@ -103,6 +128,7 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
           worst = {difference / distance, t, difference, distance};
       }
     }
+  }
   if (worst.strain <= most) return "";
   return implausible(setting.scene.origin + ": Sprekk > Boundary conditions",
                      fmt::format("displacements at t = {:.4g} s differ by {:.3g} m over {:.3g} m of rock, {:.3g} %",
@@ -133,7 +159,8 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
     for (const auto& [name, condition] : scene.boundary_conditions)
       for (const auto& component : condition.traction)
         for_each_face_of(mesh, condition, [&](const mesh::Vector& x, int) {
-          for (const Real t : times) compare(component(x, t));
+          for (std::size_t k = 0; k < (component.constant_in_time() ? 1 : times.size()); ++k)
+            compare(component(x, times[k]));
         });
     const auto initial = initial_stress(scene, mesh.region_names);
     for (LocalIndex cell = 0; cell < mesh.n_owned_cells && !initial.empty(); ++cell)
@@ -148,62 +175,88 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
                      E < 1e4 ? "write the unit behind the modulus, as in \"50 GPa\"" : "check both units");
 }
 
-/// Stiffnesses of joints that are GPa/m or MPa/m without their prefix, beside the rock's.
-std::vector<std::string> stiffness_doubts(const Setting& setting) {
-  const auto& [scene, mesh, start] = setting;
-  const Real E = least_modulus(scene), size = mesh::largest_extent(mesh);
-  std::vector<std::string> all;
-  for (const auto& [name, material] : scene.materials)
-    for (const char* entry : {"tangential stiffness", "normal stiffness"}) {
-      const auto& value = material.entry(entry);
-      if (material.type != "joint" || !value || !value->is_constant()) continue;
-      const Real K = (*value)({}, 0);
-      if (E < 1e6 || K < 0.1 || K > 1e4 || K * size > 1e-6 * E) continue;
-      all.push_back(implausible(fmt::format("{}: Sprekk > Materials > {} > \"{}\"", scene.origin, name, entry),
-                                fmt::format("is {:.4g} Pa/m beside rock of {:.4g} Pa", K, E),
-                                "the joint has next to no resistance", "write the unit, as in \"10 GPa/m\""));
-    }
+/// What is doubted of an entry of a joint.
+struct Doubt {
+  std::string entry, what, why, advice;
+};
+
+Real number(const Material& joint, const std::string& entry) {
+  const auto& value = joint.entry(entry);
+  return value && value->is_constant() ? (*value)({}, 0) : 0;
+}
+
+/// Stiffnesses that are GPa/m or MPa/m without their prefix, beside rock with this modulus, Pa, and size, m.
+std::vector<Doubt> stiffness_doubts(const Material& joint, Real E, Real size) {
+  std::vector<Doubt> all;
+  for (const char* entry : {"tangential stiffness", "normal stiffness"}) {
+    const Real K = number(joint, entry);
+    if (E < 1e6 || K < 0.1 || K > 1e4 || K * size > 1e-6 * E) continue;
+    all.push_back({entry, fmt::format("is {:.4g} Pa/m beside rock of {:.4g} Pa", K, E),
+                   "the joint has next to no resistance", "write the unit, as in \"10 GPa/m\""});
+  }
   return all;
 }
 
 /// Coefficients above 1.5, angles that are radians, dilation beyond friction, damage without lengths.
-std::vector<std::string> joint_doubts(const Scene& scene) {
+std::vector<Doubt> strength_doubts(const Material& joint) {
+  std::vector<Doubt> all;
+  if (const Real mu = number(joint, "friction coefficient"); mu > 1.5)
+    all.push_back({"friction coefficient", fmt::format("is {:.4g}", mu), "rock has 0.2 to 1.2",
+                   "for faces that must not slip make the joint stiff, or leave the fracture out; an angle is a "
+                   "\"friction angle\""});
+  for (const char* entry : {"friction angle", "residual friction angle", "basic friction angle", "dilation angle"})
+    if (const Real angle = number(joint, entry); angle > 0 && angle < 0.02 * (entry[0] == 'd' ? 1 : 50))
+      all.push_back({entry, fmt::format("is {:.4g} degrees", angle),
+                     "that is next to nothing, and an angle in radians would be",
+                     "write the unit, as in \"30 deg\" or \"0.52 rad\""});
+  const Real phi = number(joint, "friction angle"),
+             slope = phi > 0 ? std::tan(phi * M_PI / 180) : number(joint, "friction coefficient");
+  if (const Real dilation = number(joint, "dilation angle");
+      joint.friction == "Coulomb" && slope > 0 && std::tan(dilation * M_PI / 180) > slope)
+    all.push_back({"dilation angle", fmt::format("is {:.4g} degrees", dilation),
+                   fmt::format("that is above the friction angle, {:.4g} degrees: sliding would yield work",
+                               std::atan(slope) * 180 / M_PI),
+                   "friction contains dilation; give a smaller angle"});
+  const auto is_infinite = [&](const char* entry) {
+    const auto& value = joint.entry(entry);
+    return !value || (value->is_constant() && std::isinf((*value)({}, 0)));
+  };
+  if (joint.damage != "none" && is_infinite("damage length of friction") && is_infinite("damage length of dilation"))
+    all.push_back({"damage", fmt::format("is \"{}\"", joint.damage), "without a length it damages nothing",
+                   "give \"damage length of friction\" or \"damage length of dilation\""});
+  return all;
+}
+
+/// Of joints of the scene, and of the entries that single fractures have of their own: of each entry the first one.
+std::vector<std::string> joint_doubts(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const Real E = least_modulus(scene), size = mesh::largest_extent(mesh);
+  const auto doubts = [&](const Material& joint) {
+    auto all = stiffness_doubts(joint, E, size);
+    if (joint.source) return all;  // with a source it has been looked at
+    for (auto& doubt : strength_doubts(joint)) all.push_back(std::move(doubt));
+    return all;
+  };
   std::vector<std::string> all;
-  for (const auto& [name, joint] : scene.materials) {
-    if (joint.type != "joint" || joint.source) continue;  // with a source it has been looked at
-    const auto tell = [&](const std::string& entry, const std::string& what, const std::string& why,
-                          const std::string& advice) {
+  std::set<std::string> told;
+  for (const auto& [name, material] : scene.materials)
+    for (const auto& [entry, what, why, advice] : material.type == "joint" ? doubts(material) : std::vector<Doubt>()) {
       all.push_back(implausible(fmt::format("{}: Sprekk > Materials > {} > \"{}\"", scene.origin, name, entry), what,
                                 why, advice));
-    };
-    const auto number = [&](const std::string& entry) {
-      const auto& value = joint.entry(entry);
-      return value && value->is_constant() ? (*value)({}, 0) : 0;
-    };
-    if (const Real mu = number("friction coefficient"); mu > 1.5)
-      tell("friction coefficient", fmt::format("is {:.4g}", mu), "rock has 0.2 to 1.2",
-           "for faces that must not slip make the joint stiff, or leave the fracture out; an angle is a \"friction "
-           "angle\"");
-    for (const char* entry : {"friction angle", "residual friction angle", "basic friction angle", "dilation angle"})
-      if (const Real angle = number(entry); angle > 0 && angle < 0.02 * (entry[0] == 'd' ? 1 : 50))
-        tell(entry, fmt::format("is {:.4g} degrees", angle),
-             "that is next to nothing, and an angle in radians would be",
-             "write the unit, as in \"30 deg\" or \"0.52 rad\"");
-    const Real slope =
-        number("friction angle") > 0 ? std::tan(number("friction angle") * M_PI / 180) : number("friction coefficient");
-    if (const Real dilation = number("dilation angle");
-        joint.friction == "Coulomb" && slope > 0 && std::tan(dilation * M_PI / 180) > slope)
-      tell("dilation angle", fmt::format("is {:.4g} degrees", dilation),
-           fmt::format("that is above the friction angle, {:.4g} degrees: sliding would yield work",
-                       std::atan(slope) * 180 / M_PI),
-           "friction contains dilation; give a smaller angle");
-    const auto is_infinite = [&](const char* entry) {
-      const auto& value = joint.entry(entry);
-      return !value || (value->is_constant() && std::isinf((*value)({}, 0)));
-    };
-    if (joint.damage != "none" && is_infinite("damage length of friction") && is_infinite("damage length of dilation"))
-      tell("damage", fmt::format("is \"{}\"", joint.damage), "without a length it damages nothing",
-           "give \"damage length of friction\" or \"damage length of dilation\"");
+      told.insert(entry + what);
+    }
+  std::map<std::string, std::pair<Doubt, std::vector<int>>> own;  // by entry, with its single fractures
+  for (const auto& [single, joint] : scene.own_joints)
+    for (const auto& doubt : doubts(joint))
+      if (!told.count(doubt.entry + doubt.what))
+        own.try_emplace(doubt.entry, doubt, std::vector<int>()).first->second.second.push_back(single);
+  for (const auto& [entry, found] : own) {
+    const auto& [doubt, singles] = found;
+    const auto n = singles.size() - 1;
+    const auto others = n > 0 ? fmt::format(", with {} other{} like it", n, n > 1 ? "s" : "") : "";
+    all.push_back(implausible(
+        fmt::format("{}: fracture \"{}\" > \"{}\"", scene.origin, mesh.single_fractures[singles[0]].name, entry),
+        doubt.what + others, doubt.why, doubt.advice));
   }
   return all;
 }
@@ -232,7 +285,7 @@ std::string tension_doubt(const Setting& setting) {
       std::vector<Real> stress;
       for (const auto& component : initial.value[mesh.cell_region[cell]]) stress.push_back(component(x, 0));
       const Real principal = largest_principal(stress);
-      if (principal > highest[0].value) highest[0] = {principal, x};
+      highest[0].offer(principal, x);
       volumes[0] += principal > 0;
       volumes[1] += 1;
       for (int i = 0; i < 3; ++i) compression = std::max(compression, std::abs(stress[i]));
@@ -292,8 +345,7 @@ std::vector<std::string> Mechanics::plausibility(const Setting& setting, const s
   const auto some = some_of(times);
   std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some), tension_doubt(setting)};
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-  add(stiffness_doubts(setting));
-  add(joint_doubts(setting.scene));
+  add(joint_doubts(setting));
   if (!setting.mesh.fracture_names.empty()) all.push_back(strength_doubt(setting));
   std::erase(all, "");
   return all;

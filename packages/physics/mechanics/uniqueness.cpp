@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -27,6 +28,30 @@ std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   }
   if (shear == 0) return {};
   return laws::Elasticity{shear, uniaxial - 2 * shear};
+}
+
+/// A joint of fractures, and what messages call it.
+struct UsedJoint {
+  const Material& material;
+  std::string called;
+};
+
+/// That of a single fracture.
+UsedJoint used_joint(const Scene& scene, const mesh::Mesh& mesh, int single) {
+  const auto& [name, set, properties] = mesh.single_fractures[single];
+  const bool own = scene.own_joints.count(single) > 0;
+  return {joint_of(scene, mesh, single),
+          own ? fmt::format("the fracture \"{}\"", name)
+              : fmt::format("\"{}\"", scene.fractures.at(mesh.fracture_names[set]).material)};
+}
+
+/// All that there are, each once.
+std::vector<UsedJoint> used_joints(const Scene& scene, const mesh::Mesh& mesh) {
+  std::set<const Material*> known;
+  std::vector<UsedJoint> all;
+  for (int single = 0; single < static_cast<int>(mesh.single_fractures.size()); ++single)
+    if (known.insert(&joint_of(scene, mesh, single)).second) all.push_back(used_joint(scene, mesh, single));
+  return all;
 }
 
 /// The compressions, Pa, at which laws are asked how steep they are: those that strain the rock by 1e-5 to 1e-2, where
@@ -72,8 +97,8 @@ PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   return base::max_over_ranks(*mesh.comm, held);
 }
 
-/// [fracture]: whether rock resists its opening somewhere. It does not where the fracture cuts off a piece that touches
-/// no third one and may move along the normal: there loads alone give the normal traction. Collective.
+/// [single fracture]: whether rock resists its opening somewhere. It does not where the fracture cuts off a piece that
+/// touches no third one and may move along the normal: there loads alone give the normal traction. Collective.
 std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) {
   const auto held = held_pieces(scene, mesh);
   PerPiece first(mesh.n_pieces, mesh.n_pieces), last(mesh.n_pieces, -1);  // of a piece's neighbours
@@ -96,34 +121,34 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
       if (held[3 * piece + i] && std::abs(normal[i]) > 1e-6) return false;
     return first[piece] == last[piece];
   };
-  std::vector<int> resisted(mesh.fracture_names.size(), 0);
+  std::vector<int> resisted(mesh.single_fractures.size(), 0);
   for_each_face([&](const auto& face, int a, int b) {
     const auto& normal = face.frame[0];
-    if (a == b || !(may_move(a, normal) || may_move(b, normal))) resisted[face.fracture] = 1;
+    if (a == b || !(may_move(a, normal) || may_move(b, normal))) resisted[face.single] = 1;
   });
   return base::max_over_ranks(*mesh.comm, resisted);
 }
 
 }  // namespace
 
-std::string friction_doubt(const Scene& scene) {
+std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const auto [least, most] = compressions(scene);
-  std::string material;
+  std::string joint;
   physics::JointMaterial::Slope steepest{1, true, 0};
-  for (const auto& [name, fracture] : scene.fractures) {
-    const auto slope = scene.materials.at(fracture.material).friction_slope(least, most);
+  for (const auto& [material, called] : used_joints(scene, mesh)) {
+    const auto slope = material.friction_slope(least, most);
     if (!slope || slope->largest <= steepest.largest) continue;
     steepest = *slope;
-    material = fracture.material;
+    joint = called;
   }
-  if (material.empty()) return "";
+  if (joint.empty()) return "";
   const std::string what =
       steepest.constant
-          ? fmt::format("the friction coefficient of \"{}\" is {:.4g}", material, steepest.largest)
+          ? fmt::format("the friction coefficient of {} is {:.4g}", joint, steepest.largest)
           : fmt::format(
-                "the friction bound of \"{}\" rises up to {:.4g} times as fast as the compression, and faster "
+                "the friction bound of {} rises up to {:.4g} times as fast as the compression, and faster "
                 "than it below {:.2g} Pa",
-                material, steepest.largest, steepest.up_to);
+                joint, steepest.largest, steepest.up_to);
   return what + ": above about 1 equilibrium need not exist, nor be unique";
 }
 
@@ -135,8 +160,7 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real compression = std::sqrt(least * most), zero = 0;  // at which laws are asked
   std::string weakest;
   Real lowest = most;  // compression from which on slip runs away
-  for (const auto& [name, fracture] : scene.fractures) {
-    const auto& material = scene.materials.at(fracture.material);
+  for (const auto& [material, called] : used_joints(scene, mesh)) {
     if (!material.is_uniform()) continue;
     auto law = material.joint({}).law;
     law.bond = laws::Bond();  // whose softening does not grow with the compression
@@ -149,12 +173,12 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
                                                  .history = {&zero, 0}});
       if (!(fall * lowest > unloads * compression)) continue;
       lowest = unloads * compression / fall;
-      weakest = fracture.material;
+      weakest = called;
     }
   }
   if (weakest.empty()) return "";
   return fmt::format(
-      "the bound of \"{}\" falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as "
+      "the bound of {} falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as "
       "the "
       "domain, {:.4g} m, unloads; there slip may run away, in short steps as well",
       weakest, lowest / 1e6, size);
@@ -164,8 +188,7 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real size = mesh::largest_extent(mesh), zero = 0, little = 1e-9;
   const auto rock = bounding_rock(scene);
   if (!rock) return "";
-  for (const auto& [name, fracture] : scene.fractures) {
-    const auto& material = scene.materials.at(fracture.material);
+  for (const auto& [material, called] : used_joints(scene, mesh)) {
     if (!material.is_uniform()) continue;
     const auto law = material.joint({}).law;
     const laws::Contact<Real> whole{.history = {&zero, 0}};
@@ -178,9 +201,9 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     for (int k = 0; k < 2; ++k)
       if (softens[k] > unloads[k])
         return fmt::format(
-            "the bond of \"{}\" softens by {:.2g} Pa/m with {}, and rock as large as the domain, {:.4g} m, unloads by "
+            "the bond of {} softens by {:.2g} Pa/m with {}, and rock as large as the domain, {:.4g} m, unloads by "
             "{:.2g} Pa/m: there it may break at once, in short steps as well; more \"{}fracture energy\" avoids this",
-            fracture.material, softens[k], k == 0 ? "opening" : "slip", size, unloads[k], k == 0 ? "" : "shear ");
+            called, softens[k], k == 0 ? "opening" : "slip", size, unloads[k], k == 0 ? "" : "shear ");
   }
   return "";
 }
@@ -190,10 +213,10 @@ std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = bounding_rock(scene);
   if (!rock || mesh.fracture_names.empty()) return "";
   const auto resisted = resisted_fractures(scene, mesh);
+  std::set<const Material*> known;
   for (std::size_t k = 0; k < resisted.size(); ++k) {
-    const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
-    const auto& material = scene.materials.at(fracture.material);
-    if (!resisted[k] || !material.is_uniform()) continue;
+    const auto [material, called] = used_joint(scene, mesh, static_cast<int>(k));
+    if (!resisted[k] || !material.is_uniform() || !known.insert(&material).second) continue;
     const auto law = material.joint({}).law;
     const auto [mu, dilation] = steepest(law, compressions(scene));
     const Real shear = mu * (size / rock->G + law.elastic.initial_compliance()),
@@ -201,10 +224,10 @@ std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     if (!(dilation * shear > normal)) continue;
     const auto degrees = [](Real tangent) { return std::atan(tangent) * 180 / M_PI; };
     return fmt::format(
-        "on reversal of slip on \"{}\" the solution may not be unique: its dilation angle is {:.4g} degrees, and above "
+        "on reversal of slip on {} the solution may not be unique: its dilation angle is {:.4g} degrees, and above "
         "{:.4g} the friction bound falls faster than the shear traction (rock of size {:.4g} m); less dilation or "
         "friction, or a larger tangential stiffness, avoids this",
-        fracture.material, degrees(dilation), degrees(normal / shear), size);
+        called, degrees(dilation), degrees(normal / shear), size);
   }
   return "";
 }

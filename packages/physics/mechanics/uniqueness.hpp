@@ -1,4 +1,5 @@
-// Joints whose law may have no state, or more than one.
+// Joints whose law may have no state, or more than one: of sets of fractures, and of single fractures with entries of
+// their own.
 #pragma once
 
 #include "physics/scene.hpp"
@@ -10,7 +11,7 @@ namespace sprekk::physics {
 /// Names the joint whose friction bound rises most with the compression, by more than 1, and how much; empty without
 /// such a joint. Laws are asked at compressions that rock is under, G/1e5 to G/100.
 /// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
-std::string friction_doubt(const Scene& scene);
+std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Names the joint whose bound falls most with slip, relative to the compression N, and the N from which on it falls
 /// faster than a block of the domain's extent L unloads, -db/ds > 1/(L/G + 1/K_t): there slip runs away. Bonds are left

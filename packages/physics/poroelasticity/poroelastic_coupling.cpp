@@ -3,7 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/hybrid_rock.hpp"
+#include "physics/hybrid_diffusion.hpp"
 #include "physics/poroelasticity/coupling_volumes.hpp"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ class PoroelasticCoupling final : public assembly::Module {
   }
 
   void initial(const assembly::Rows& x) const override {
-    set_hybrid<shape>(*mesh_, parameters_.initial, x[pressures_[0]], x[pressures_[1]]);
+    put_initial(*mesh_, parameters_.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
   /// What was in the rows of pressures, times dt.
