@@ -60,6 +60,13 @@ class Plausibility(ProgramTest):
         self.assertIn("over knots", err)
         self.assertEqual(self.results()["status"], "failed")
 
+    def test_degrees_celsius(self):
+        scene = self.scene("heat/cooling_2d.xml")
+        self.assertEqual(self.warnings(scene), "")
+        err = self.warnings(scene, "Heat.initial temperature=80", "Boundary conditions.surface.temperature=20")
+        for text in ('Heat > "initial temperature": is 80 K', 'surface > "temperature": is 20 K', "add 273.15"):
+            self.assertIn(text, err)
+
     def test_coefficient(self):
         err = self.warnings(self.scene("verification/cyclic_2d.xml"), "Materials.joint.friction coefficient=30")
         for text in ('Materials > joint > "friction coefficient": is 30', "rock has 0.2 to 1.2", '"friction angle"'):

@@ -386,4 +386,24 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
   return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
 }
 
+/// Where rock and fluids have a meaning, temperatures in K are above that.
+std::vector<std::string> Heat::plausibility(const Setting& setting, const std::vector<Real>&) {
+  constexpr Real coldest = 150;
+  const auto& scene = setting.scene;
+  std::vector<std::string> all;
+  const auto see = [&](const std::string& place, const base::Expression& T) {
+    if (T.is_constant() && T({}, 0) > 0 && T({}, 0) < coldest)
+      all.push_back(implausible(fmt::format("{}: Sprekk > {}", scene.origin, place), fmt::format("is {} K", T.text()),
+                                "rock is hardly that cold",
+                                "temperatures are in K: add 273.15 to those in degrees Celsius"));
+  };
+  if (!is_in(scene)) return all;
+  if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);
+  for (const auto& [name, well] : scene.heat->wells)
+    see("Heat > Wells > " + name + " > \"temperature\"", well.temperature);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.temperature) see("Boundary conditions > " + name + " > \"temperature\"", *condition.temperature);
+  return all;
+}
+
 }  // namespace sprekk::physics

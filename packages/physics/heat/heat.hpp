@@ -78,6 +78,7 @@ struct Heat : Physics<Heat> {
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
+  static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
 };
 
 }  // namespace sprekk::physics
