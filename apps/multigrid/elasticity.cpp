@@ -91,5 +91,5 @@ int main(int argc, char** argv) {
   const Real error = x.normInf() / exact({n, 0, 0}, 0);
   if (comm->getRank() == 0)
     std::printf("%d unknowns: %d iterations, relative error %.1e\n", 3 * n * n * n, iterations, error);
-  return iterations <= 20 && error < 1e-8 ? 0 : 1;
+  return iterations <= 10 && error < 1e-8 ? 0 : 1;  // it takes 9, and 11 without the rigid motions
 }

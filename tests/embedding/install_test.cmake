@@ -7,13 +7,12 @@ run(${CMAKE_COMMAND} --install ${build} --prefix ${scratch}/prefix)
 run(${scratch}/prefix/bin/sprekk check ${source}/xml/seed/push_2d.xml)
 set(hosts ${source}/apps/hosts)
 file(COPY ${source}/tests/embedding/outside/CMakeLists.txt ${source}/tests/embedding/outside/main.cpp
-  ${hosts}/time_loop.cpp ${hosts}/own_unknown.cpp ${hosts}/grout.hpp ${hosts}/two_models.cpp ${hosts}/coupled.cpp
-  ${hosts}/coupled.hpp ${hosts}/own_flow.hpp ${hosts}/reservoir.hpp DESTINATION ${scratch}/host)
+  ${hosts}/own_unknown.cpp ${hosts}/grout.hpp ${hosts}/coupled.cpp ${hosts}/coupled.hpp ${hosts}/own_flow.hpp
+  ${hosts}/reservoir.hpp ${source}/apps/multigrid/elasticity.cpp DESTINATION ${scratch}/host)
 run(${CMAKE_COMMAND} -S ${scratch}/host -B ${scratch}/build -G ${generator} -D CMAKE_PREFIX_PATH=${scratch}/prefix
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher})
 run(${CMAKE_COMMAND} --build ${scratch}/build)
 run(${scratch}/build/my_host ${source}/xml/seed/push_2d.xml)
-run(${scratch}/build/time_loop)
 run(${scratch}/build/own_unknown ${hosts}/column.xml)
-run(${scratch}/build/two_models)
 run(${scratch}/build/coupled)
+run(${scratch}/build/elasticity)
