@@ -285,13 +285,13 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///                                                            R = lambda               open
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Of laws that remember the b at p = p_old counts, too. Faces stick only if |z| is not above it, as it will be when
-/// they do: else those that bear more the more they slip would stick for what they had slipped, and then no more. And
-/// slip against z has no larger b: else joints that slip weakens would have states that slide backwards. Without a bond
-/// T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and stick; so do those
-/// that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b: else rounding would
-/// say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p - p_old is zero to
-/// rounding its direction is noise; its size then grows along z, as it does when sliding begins.
+/// Of laws that remember the b at p = p_old counts, too. In 2D faces stick only if |z| is not above it, as it is once
+/// they do: else those that slip hardens would stick for their slip, and then no more (in 3D z turns too much where it
+/// is small). And slip against z has no larger b: else joints that slip weakens had states that slide backwards.
+/// Without a bond T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and
+/// stick; so do those that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b:
+/// else rounding would say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p -
+/// p_old is zero to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
 ///
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
@@ -352,7 +352,7 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
       for (int i = 0; i < dim - 1; ++i) rest.plastic_jump[i] = p_old[i];
       rest.plastic_slip = norm(rest.plastic_jump);
       const T least = bound(rest);
-      bears_at_rest = !(size > least);
+      bears_at_rest = dim > 2 || !(size > least);
       if (at.slip_of_step < 0 && least < b) b = least;
     }
     return false;

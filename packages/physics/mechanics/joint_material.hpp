@@ -21,8 +21,7 @@ struct JointMaterial {
   using Point = std::array<Real, 3>;
 
   /// Kinds; at first the first ones of their lists.
-  std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver,
-      hydraulic_aperture;
+  std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver, hydraulic_aperture;
 
   std::optional<Value> tangential_stiffness, friction_coefficient, friction_angle, dilation_angle, maximum_closure,
       normal_stiffness;

@@ -141,7 +141,9 @@ TEST(KindsOfJoints, HydraulicAperturesHaveTheirDerivatives) {
     if constexpr (std::is_same_v<decltype(law), BartonAperture>) law.complete();
     for (const Real a : {-1e-3, -1e-9, 0.0, 1e-9, 1e-5, 1e-4, 1e-3, 0.1}) {
       const Real h = 1e-6 * std::abs(a) + 1e-12;
-      if (a > 0) EXPECT_LE(law.hydraulic(a), a);
+      if (a > 0) {
+        EXPECT_LE(law.hydraulic(a), a);
+      }
       EXPECT_NEAR(law.slope(a), (law.hydraulic(a + h) - law.hydraulic(a - h)) / (2 * h), 1e-5) << a;
     }
   });

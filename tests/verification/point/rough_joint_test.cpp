@@ -37,8 +37,9 @@ TEST(RoughJoint, SlabsSlideAtTheirAngle) {
     EXPECT_EQ(curve.failure.empty(), angle == 90);
     const std::string told = "the last state is that at t = ";
     const auto at = curve.failure.find(told);
-    if (angle < 90) ASSERT_NE(at, std::string::npos);
-    if (angle < 90) EXPECT_NEAR(std::stod(curve.failure.substr(at + told.size())), angle, 1e-7);
+    if (angle == 90) continue;
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NEAR(std::stod(curve.failure.substr(at + told.size())), angle, 1e-7);
   }
 }
 
