@@ -328,7 +328,8 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
           s += w * size * size;
         },
         part);
-    sum += powers ? dt_ * part : part;  // the energy of a power
+    const Real unit = carried_[b] ? blocks_[b].kinematic_scale : 1;  // so that these are powers, too
+    sum += powers ? dt_ * part / unit : part;                        // the energy of a power
   }
   return base::sum_over_ranks(*comm(), sum);
 }

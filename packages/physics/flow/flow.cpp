@@ -171,7 +171,7 @@ std::vector<Real> start_apertures(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   std::vector<Real> apertures;
   if (scene.flow) {
-    for (const auto& face : hydraulics(setting)) apertures.push_back(face.along.hydraulic_aperture());
+    for (const auto& face : hydraulics(setting)) apertures.push_back(face.along.mechanical_aperture());
     return apertures;
   }
   const auto openings = openings_of(setting);

@@ -126,7 +126,7 @@ bool has_unknown_pressure(const Scene& scene);
 /// Of the fluid in rock and fractures; 0 without.
 base::Expression initial_pressure(const Scene& scene);
 
-/// Apertures of local fracture faces at the start: hydraulic ones with Flow, else those of (15). Collective.
+/// Mechanical apertures of local fracture faces at the start, those of (15). Collective.
 std::vector<Real> start_apertures(const Setting& setting);
 
 SchemeEntry scheme_entry(const Scene& scene);

@@ -125,7 +125,12 @@ class Wells final : public assembly::Module {
       const Real value = std::abs(control(one)(one.points[0], t));
       largest = std::max(largest, one.pressure ? value : value / sums_[w]);
     }
-    return {{"pressure", largest}};
+    assembly::Scales all = {{"pressure", largest}};
+    for (const auto& carried : parameters_.carried)
+      for (const auto& one : parameters_.wells)
+        if (const auto value = carried.in_wells.find(one.name); value != carried.in_wells.end())
+          all[carried.field] = std::max(all[carried.field], std::abs(value->second(one.points[0], t)));
+    return all;
   }
 
   void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
@@ -138,9 +143,10 @@ class Wells final : public assembly::Module {
       totals.push_back({{"wells", one.name, "in rock"}, 0, unit});
       for (const auto& fracture : mesh_->fracture_names)
         totals.push_back({{"wells", one.name, "in " + fracture}, 0, unit});
-      for (const auto& carried : parameters_.carried) {
-        totals.push_back({{"wells", one.name, carried.field}, 0, ""});
-        totals.push_back({{"wells", one.name, carried.total}, 0, carried.unit});
+      for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {
+        const auto& carried = parameters_.carried[j];
+        totals.push_back({{"wells", one.name, carried.field}, 0, carried_units_[j]});
+        totals.push_back({{"wells", one.name, carried.total}, 0, carried.unit + (mesh_->dim() == 2 ? "/m" : "")});
       }
     }
     std::array<Kokkos::View<Real*>::HostMirror, 2> p;
@@ -175,7 +181,8 @@ class Wells final : public assembly::Module {
 
   /// Two for each that is carried: into rock, and into fractures.
   void bind_carried(const assembly::Context& context) {
-    for (const auto& carried : parameters_.carried)
+    for (const auto& carried : parameters_.carried) {
+      carried_units_.push_back(context.layout(context.field(carried.field)).field().unit);
       for (const bool in_fractures : {false, true}) {
         const bool widens = widens_ && in_fractures;
         auto& brought = brought_.emplace_back();
@@ -186,6 +193,7 @@ class Wells final : public assembly::Module {
         brought.bind(context, blocks_[in_fractures], carried_.back(), parameters_.fluid, carried.capacity,
                      widens ? parameters_.faces : std::vector<laws::Conduit>());
       }
+    }
   }
 
   void set_carried(Real t) {
@@ -250,10 +258,11 @@ class Wells final : public assembly::Module {
   std::vector<Real> sums_;                   // [well] sum of W over all ranks then
   std::array<int, 2> blocks_{};              // pressure, face pressure
   int widening_ = -1;
-  std::array<Exchange, 2> exchange_;    // of wells with a pressure
-  std::array<assembly::Load, 2> load_;  // [owned row] of wells with a rate, m^3/s
-  std::vector<Brought> brought_;        // [2 carried + in fractures]
-  std::vector<int> carried_;            // blocks of their rows
+  std::array<Exchange, 2> exchange_;        // of wells with a pressure
+  std::array<assembly::Load, 2> load_;      // [owned row] of wells with a rate, m^3/s
+  std::vector<Brought> brought_;            // [2 carried + in fractures]
+  std::vector<int> carried_;                // blocks of their rows
+  std::vector<std::string> carried_units_;  // [carried] of u
 };
 
 }  // namespace

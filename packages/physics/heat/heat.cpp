@@ -73,16 +73,33 @@ void compare_level(Comparison& c) {
          "rock a \"volumetric heat capacity\"");
 }
 
+/// Whether what fills fractures stores heat.
+bool stores_in_fractures(Comparison& c) {
+  const auto& scene = c.scene();
+  if (!c.names().fractures || c.names().fractures->empty()) return false;
+  const bool fluid_does = scene.flow && scene.heat->fluid_capacity.value_or(0) > 0;
+  return std::any_of(scene.fractures.begin(), scene.fractures.end(), [&](const auto& named) {
+    const auto* joint = c.joint_of(named.second);
+    if (!joint) return false;
+    return joint->filling_heat_capacity ? !is_zero(*joint->filling_heat_capacity) : fluid_does;
+  });
+}
+
 /// The start counts where something changes with the temperature.
 void compare_start(Comparison& c) {
-  if (c.scene().heat->initial_temperature || !c.is_sound("Heat")) return;
-  const std::string place = "Heat > \"initial temperature\"";
+  const auto& scene = c.scene();
+  if (scene.heat->initial_temperature || !c.is_sound("Heat")) return;
+  const auto require = [&](const std::string& where) {
+    c.fail("Heat > \"initial temperature\"", "missing; it is required where " + where);
+  };
   c.for_each_rock([&](const Material& rock) {
     if (!is_zero(rock.heat_capacity))
-      c.fail(place, "missing; it is required where rock has a \"volumetric heat capacity\"");
+      require("rock has a \"volumetric heat capacity\"");
     else if (!is_zero(rock.thermal_expansion))
-      c.fail(place, "missing; it is required where rock has a \"thermal expansion\"");
+      require("rock has a \"thermal expansion\"");
   });
+  if (stores_in_fractures(c)) require("what fills fractures has a heat capacity");
+  if (scene.flow && scene.heat->fluid_expansion > 0) require("a fluid has a \"fluid thermal expansion\"");
 }
 
 void compare_fluid(Comparison& c) {
@@ -91,6 +108,10 @@ void compare_fluid(Comparison& c) {
   if (!c.is_sound("Heat") || !c.is_sound("Flow")) return;
   if (c.scene().flow && !heat.fluid_capacity)
     c.fail("Heat > \"fluid heat capacity\"", "missing; it is required with \"Flow\"");
+  if (!c.scene().flow && heat.fluid_capacity)
+    c.fail("Heat > \"fluid heat capacity\"", "needs the section \"Flow\"; a joint may have a capacity of its own");
+  if (!c.scene().flow && heat.fluid_expansion > 0)
+    c.fail("Heat > \"fluid thermal expansion\"", "needs the section \"Flow\"");
   Names wells;
   if (c.scene().flow)
     for (const auto& [name, well] : c.scene().flow->wells) wells.push_back(name);
@@ -163,8 +184,9 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
         const auto& own = joint.filling_heat_capacity;
         return {.aperture = std::max(least, apertures[f]),
                 .conductivity = value_at(conductivity_name, joint.filling_conductivity, base::positive(), x),
-                .capacity =
-                    own ? value_at(capacity_name, *own, base::at_least(0), x) : scene.heat->fluid_capacity.value_or(0)};
+                .capacity = own          ? value_at(capacity_name, *own, base::at_least(0), x)
+                            : scene.flow ? scene.heat->fluid_capacity.value_or(0)
+                                         : 0};
       }));
     }
   });
@@ -186,6 +208,25 @@ std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh:
   return all;
 }
 
+/// The sources and fluxes that a scene gives, with what they make of the temperature over the size of the domain, if
+/// they last. Collective.
+std::vector<GivenTemperature> given_rates(const Scene& scene, const mesh::Mesh& mesh,
+                                          const Properties<laws::Mobility>& conductivity) {
+  Real least = std::numeric_limits<Real>::infinity();
+  for (const auto& each : conductivity.values)
+    for (int i = 0; i < mesh.dim(); ++i) least = std::min(least, each.value[i][i]);
+  const Real size = mesh::largest_extent(mesh), per_flux = size / -base::max_over_ranks(*mesh.comm, -least);
+  std::vector<GivenTemperature> all;
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.heat_flux)
+      all.push_back({.value = *condition.heat_flux,
+                     .boundary = index_of(mesh.boundary_names, condition.boundary),
+                     .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1,
+                     .per_rate = per_flux});
+  if (!is_zero(scene.heat->source)) all.push_back({.value = scene.heat->source, .per_rate = size * per_flux});
+  return all;
+}
+
 void add_fractures(const Setting& setting, const std::vector<FractureHeatParameters::Face>& faces, FluxScheme scheme,
                    Modules& modules) {
   const auto& [scene, mesh, start] = setting;
@@ -202,7 +243,7 @@ void add_fractures(const Setting& setting, const std::vector<FractureHeatParamet
 }
 
 /// What temperature does to stresses and to the fluid.
-void add_expansion(const Setting& setting, Real typical_change, Modules& modules) {
+void add_expansion(const Setting& setting, std::vector<GivenTemperature> given, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
   const auto initial = scene.heat->initial_temperature.value_or(0);
   Properties<Real> of_rock, of_pores;
@@ -214,21 +255,9 @@ void add_expansion(const Setting& setting, Real typical_change, Modules& modules
     modules.push_back(make_thermal_stress(mesh, {.expansion = std::move(of_rock),
                                                  .elasticity = elasticity(scene, mesh),
                                                  .initial = initial,
-                                                 .given = given_temperatures(scene, mesh),
-                                                 .typical_change = typical_change}));
+                                                 .given = std::move(given)}));
   if (is_any(mesh, of_pores))
     modules.push_back(make_pore_expansion({.expansion = std::move(of_pores), .initial = initial}));
-}
-
-/// What sources and fluxes make of the temperature over the size of the domain, if they last, K.
-Real change_by_flux(const Scene& scene, const mesh::Mesh& mesh, const Properties<laws::Mobility>& conductivity) {
-  Real flux = 0, least = std::numeric_limits<Real>::infinity();
-  const Real size = mesh::largest_extent(mesh);
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (condition.heat_flux) flux = std::max(flux, std::abs((*condition.heat_flux)({}, 0)));
-  flux = std::max(flux, size * std::abs(scene.heat->source({}, 0)));
-  for (const auto& each : conductivity.values) least = std::min(least, each.value[0][0]);
-  return flux == 0 || std::isinf(least) ? 0 : size * flux / least;
 }
 
 }  // namespace
@@ -347,7 +376,8 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
     capacity.number = values.number;
     for (const Real growth : values.values) capacity.values.push_back({.room = 0, .growth = growth});
   });
-  const Real change = change_by_flux(scene, mesh, conductivity);
+  auto given = given_temperatures(scene, mesh);
+  for (auto& rate : given_rates(scene, mesh, conductivity)) given.push_back(std::move(rate));
   const auto chosen = flux_scheme(scheme_entry(heat), mesh, conductivity);
   HybridDiffusionParameters conduction{
       .name = "heat conduction",
@@ -376,7 +406,7 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
                                   .capacity = std::move(capacity),
                                   .initial = heat.initial_temperature.value_or(0)}));
   if (!mesh.fracture_names.empty()) add_fractures(setting, faces, chosen.scheme, modules);
-  add_expansion(setting, change, modules);
+  add_expansion(setting, std::move(given), modules);
 }
 
 std::vector<std::string> Heat::warnings(const Setting& setting) {
@@ -386,13 +416,13 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
   return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
 }
 
-/// Where rock and fluids have a meaning, temperatures in K are above that.
+/// Rock and water are warmer than that; 0 may stand for a difference.
 std::vector<std::string> Heat::plausibility(const Setting& setting, const std::vector<Real>&) {
   constexpr Real coldest = 150;
   const auto& scene = setting.scene;
   std::vector<std::string> all;
   const auto see = [&](const std::string& place, const base::Expression& T) {
-    if (T.is_constant() && T({}, 0) > 0 && T({}, 0) < coldest)
+    if (T.is_constant() && T({}, 0) != 0 && T({}, 0) < coldest)
       all.push_back(implausible(fmt::format("{}: Sprekk > {}", scene.origin, place), fmt::format("is {} K", T.text()),
                                 "rock is hardly that cold",
                                 "temperatures are in K: add 273.15 to those in degrees Celsius"));
@@ -401,6 +431,8 @@ std::vector<std::string> Heat::plausibility(const Setting& setting, const std::v
   if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);
   for (const auto& [name, well] : scene.heat->wells)
     see("Heat > Wells > " + name + " > \"temperature\"", well.temperature);
+  for (const auto& [name, region] : scene.regions)
+    if (region.temperature) see("Regions > " + name + " > \"temperature\"", *region.temperature);
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (condition.temperature) see("Boundary conditions > " + name + " > \"temperature\"", *condition.temperature);
   return all;

@@ -83,7 +83,8 @@ class ThermalStress final : public assembly::Module {
       tip_cells_.bind(context, Loop::tip_cells, "tip displacement", tip_cell_volumes<shape>(*mesh_, stiffness),
                       of_cell);
     }
-    find_spread(reference);
+    reference_ = std::move(reference);
+    find_sizes();
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -95,22 +96,24 @@ class ThermalStress final : public assembly::Module {
 
   /// What the largest change of temperature makes of a stress.
   assembly::Scales loads(Real t) const override {
-    Real change = parameters_.typical_change;
-    const auto see = [&](const base::Expression& value, LocalIndex cell, const mesh::Vector& x) {
-      change = std::max(change, std::abs(value(x, t) - initial(cell)));
+    Real change = spread_;
+    const auto see = [&](const GivenTemperature& given, LocalIndex cell, const mesh::Vector& x) {
+      const Real value = given.value(x, t);
+      const Real here = given.per_rate > 0 ? given.per_rate * value : value - reference_[cell];
+      if (std::isfinite(here)) change = std::max(change, std::abs(here));
     };
     for (const auto& given : parameters_.given) {
       const auto is_in = [&](LocalIndex cell) { return given.region < 0 || mesh_->cell_region[cell] == given.region; };
       if (given.boundary >= 0) {
         for (const auto& face : mesh_->boundary_faces)
           if (face.boundary == given.boundary && is_in(face.cell))
-            see(given.value, face.cell, mesh::face_centre(mesh::face_corners(*mesh_, face.cell, face.local_face)));
+            see(given, face.cell, mesh::face_centre(mesh::face_corners(*mesh_, face.cell, face.local_face)));
       } else {
         for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
-          if (is_in(c)) see(given.value, c, mesh::cell_centre(*mesh_, c));
+          if (is_in(c)) see(given, c, mesh::cell_centre(*mesh_, c));
       }
     }
-    return {{"stress", largest_ * std::max(change, spread_)}};
+    return {{"stress", largest_ * change}};
   }
 
  private:
@@ -145,17 +148,18 @@ class ThermalStress final : public assembly::Module {
     if (parameters_.initial.is_constant()) return parameters_.initial({}, 0);
     return assembly::cell_mean<shape>(*mesh_, cell, [&](const auto& x) { return parameters_.initial(x, 0); })[1];
   }
-  void find_spread(const std::vector<Real>& reference) {
-    std::vector<Real> ends = {-std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
-    for (const Real T : reference) ends = {std::max(ends[0], T), std::max(ends[1], -T)};
+  void find_sizes() {
+    std::vector<Real> ends = {-std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity(), largest_};
+    for (const Real T : reference_) ends = {std::max(ends[0], T), std::max(ends[1], -T), ends[2]};
     ends = base::max_over_ranks(*mesh_->comm, ends);
     spread_ = ends[0] + ends[1];
+    largest_ = ends[2];
   }
 
   std::vector<Real> stresses(const assembly::State& state) const {
     const auto T = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[temperature_]);
     std::vector<Real> values;
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) values.push_back(-stiffness(c) * (T(c) - initial(c)));
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) values.push_back(-stiffness(c) * (T(c) - reference_[c]));
     return values;
   }
 
@@ -163,8 +167,9 @@ class ThermalStress final : public assembly::Module {
   bool fractures_, tips_;  // the mesh has some; enriched ones
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1;
-  Real largest_ = 0;  // 3 K alpha_T on this rank
-  Real spread_ = 0;   // of the temperature at the start
+  std::vector<Real> reference_;  // [local cell] T_0, K
+  Real largest_ = 0;             // 3 K alpha_T, Pa/K
+  Real spread_ = 0;              // of T_0, K
   Part<Slot<n, dim>> cells_, tip_cells_;
   Part<Slot<1, dim>> bubbles_;
 };

@@ -11,10 +11,11 @@
 
 namespace sprekk::physics {
 
-/// A temperature that is given, of which stresses are expected.
+/// A temperature that is given, or a rate, of which stresses are expected.
 struct GivenTemperature {
   base::Expression value;
   int boundary = -1, region = -1;  ///< where; -1: anywhere
+  Real per_rate = 0;               ///< of a flux or a source: the change of temperature for each unit of it; 0: none
 };
 
 struct ThermalStressParameters {
@@ -22,7 +23,6 @@ struct ThermalStressParameters {
   Properties<laws::Elasticity> elasticity;   ///< drained
   base::Expression initial = 0;              ///< T_0, where nothing is added to the stress, K
   std::vector<GivenTemperature> given = {};  ///< what the typical stress follows from
-  Real typical_change = 0;                   ///< of the temperature, where none is given, K
 };
 
 /// Adds to the rows of all displacements -(T_K - T_0) dV_K/du, V_K = integral of 3 K alpha_T div u over a cell: the
