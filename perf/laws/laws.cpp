@@ -1,61 +1,79 @@
-// laws SCENE [PATH=VALUE...]: what a step costs at the beginning of a run and after its end, in seconds of the
-// processor, and the Newton iterations of these steps, as JSON. The step is 1; the scene's end says how many there are
-// before the late ones. Early and late steps take turns, so that both see the same machine.
-#include "model/model.hpp"
-#include "perf/program.hpp"
+// laws SCENE [PATH=VALUE...]: what a step of a point in 3D costs at the beginning of its path and at the end, in
+// seconds of the processor, and how often it evaluates the law, as JSON. A time step is a 64th of a turn of the path.
+// Early and late turns alternate, so that both see the same machine.
+#include "model/point_driver.hpp"
 
-#include <algorithm>
+#include <Tpetra_Core.hpp>
+#include <nlohmann/json.hpp>
+
 #include <ctime>
+#include <iostream>
 
 namespace {
 
 using namespace sprekk;
-using perf::json;
+using nlohmann::json;
 
-constexpr int unmeasured = 5, early_steps = 10, rounds = 20;
+constexpr int unmeasured = 10, turn = 64, rounds = 400;
 
-/// What the steps after `begin` cost; appends to both.
-void measure_steps(model::Model& model, int begin, std::vector<Real>& seconds, std::vector<Real>& iterations) {
-  for (int k = 1; k <= early_steps; ++k) {
-    const auto before = std::clock();
-    const auto report = model.step_to(begin + k);
-    seconds.push_back(static_cast<Real>(std::clock() - before) / CLOCKS_PER_SEC);
-    iterations.push_back(report.newton_iterations);
-    SPREKK_CHECK(report.converged, "step {}: {}", begin + k, report.reason);
+/// Of the steps of a turn, one value a turn.
+struct Cost {
+  std::vector<Real> seconds, evaluations;
+
+  json medians() const { return {{"seconds", median(seconds)}, {"evaluations", median(evaluations)}}; }
+  static Real median(std::vector<Real> values) {
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
   }
-}
+};
 
-Real median(std::vector<Real> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-Real mean(const std::vector<Real>& values) {
-  Real sum = 0;
-  for (const Real value : values) sum += value;
-  return sum / static_cast<Real>(values.size());
-}
-
-json measure(const model::Scene& scene, RCP<const Comm> comm) {
-  std::vector<Real> seconds[2], iterations[2];  // of early and late steps
-  model::Model late(scene, comm);
-  int step = static_cast<int>(scene.time.end);
-  for (int k = 1; k <= step; ++k) {
-    const auto report = late.step_to(k);
-    SPREKK_CHECK(report.converged, "step {}: {}", k, report.reason);
+/// A point on its way, step by step.
+class Way {
+ public:
+  Way(const model::PointScene& scene, const model::PointPath& path)
+      : driver_(path, scene.materials.at(path.material)), step_(scene.time.end / scene.time.steps) {}
+  void go(int steps) {
+    for (int k = 0; k < steps; ++k, ++done_) driver_.advance(done_ * step_, (done_ + 1) * step_);
   }
+  void go_a_turn(Cost& cost) {
+    const auto evaluations = driver_.evaluations();
+    const auto begin = std::clock();
+    go(turn);
+    cost.seconds.push_back(static_cast<Real>(std::clock() - begin) / CLOCKS_PER_SEC / turn);
+    cost.evaluations.push_back(static_cast<Real>(driver_.evaluations() - evaluations) / turn);
+  }
+
+ private:
+  model::PointDriver<3> driver_;
+  Real step_;
+  long done_ = 0;
+};
+
+json measure(const model::PointScene& scene) {
+  const auto& path = *scene.paths().at(0).second;
+  Cost of_early, of_late;
+  Way late(scene, path);
+  late.go(scene.time.steps);
   for (int round = 0; round < rounds; ++round) {
-    model::Model early(scene, comm);
-    for (int k = 1; k <= unmeasured; ++k) early.step_to(k);
-    measure_steps(early, unmeasured, seconds[0], iterations[0]);
-    measure_steps(late, step, seconds[1], iterations[1]);
-    step += early_steps;
+    Way early(scene, path);
+    early.go(unmeasured);
+    early.go_a_turn(of_early);
+    late.go_a_turn(of_late);
   }
-  json result;
-  for (const int k : {0, 1})
-    result[k == 0 ? "early" : "late"] = {{"seconds", median(seconds[k])}, {"newton_iterations", mean(iterations[k])}};
-  return result;
+  return {{"early", of_early.medians()}, {"late", of_late.medians()}};
 }
 
 }  // namespace
 
-int main(int argc, char** argv) { return perf::run("laws", argc, argv, measure); }
+int main(int argc, char** argv) {
+  Tpetra::ScopeGuard guard(&argc, &argv);
+  try {
+    SPREKK_CHECK(argc > 1, "usage: laws SCENE [PATH=VALUE...]");
+    const auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), argv[1], {argv + 2, argv + argc});
+    std::cout << measure(scene).dump(2) << '\n';
+  } catch (const Error& error) {
+    std::cerr << "laws: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
