@@ -253,10 +253,33 @@ Real System::rounding(const BlockVector& x, const std::string& scale) const {
 /// rock. A traction row has jumps times the constant of the face law in it: where soft rock carries stiff rock far,
 /// their rounding is more than the deformation of the stiff one. But what flies off to displacements whose rounding
 /// hides the loads has not converged.
+namespace {
+
+/// What rounding of other balances' unknowns leaves of the rows of block b: sum over these c of |J_bc| times their
+/// `rounding(c)`. Collective.
+template <class Rounding>
+View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n, const Rounding& rounding) {
+  View<Real*> sum("rounding", n);
+  for (int c = 0; c < J.n_blocks(); ++c) {
+    if (c == b || J(b, c).is_null()) continue;
+    const Real each = rounding(c);
+    const auto block = J(b, c)->getLocalMatrixDevice();
+    Kokkos::parallel_for(
+        "rounding", Kokkos::RangePolicy<Execution>(0, n), KOKKOS_LAMBDA(int i) {
+          for (auto k = block.graph.row_map(i); k < block.graph.row_map(i + 1); ++k)
+            sum(i) += each * (block.values(k) < 0 ? -block.values(k) : block.values(k));
+        });
+  }
+  return sum;
+}
+
+}  // namespace
+
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   constexpr Real most_noise = 1e-5;  // of the loads
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
+  const auto of_field = [&](int c) { return unknowns_[c].balance ? rounding(x, unknowns_[c].scale) : 0; };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& unknown = unknowns_[b];
     const bool traction = static_cast<int>(b) == contact_blocks_.traction;
@@ -276,6 +299,8 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     Real stored = 0;  // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
+    const auto others =
+        carried_[b] ? rounding_by_others(matrix_, static_cast<int>(b), row.extent(0), of_field) : View<Real*>();
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
@@ -285,10 +310,10 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
                      weight = carried && now(i) > diagonal(i) ? now(i) : diagonal(i),
                      weak = balance ? weight * held_scale : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
-          const Real of_row = rounding_of_block * now(i) + stored, noise = mask(i) ? 0
-                                                                           : bounded && of_row > most_noise * scale
-                                                                               ? most_noise * scale
-                                                                               : of_row;
+          const Real of_row = rounding_of_block * now(i) + stored + (others.extent(0) > 0 ? others(i) : 0),
+                     noise = mask(i)                                  ? 0
+                             : bounded && of_row > most_noise * scale ? most_noise * scale
+                                                                      : of_row;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
           if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
         },
@@ -308,6 +333,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
+  const auto of_field = [&](int c) { return unknowns_[c].balance ? rounding(x, unknowns_[c].scale) : 0; };
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
@@ -316,12 +342,15 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const auto weight = const_view(weighted ? *weights_[b] : *diagonals_[b]);
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const bool balance = unknowns_[b].balance, powers = balance && coupled_;
+    const auto others =
+        carried_[b] ? rounding_by_others(matrix_, static_cast<int>(b), row.extent(0), of_field) : View<Real*>();
     const Real rounding_of_block = balance ? rounding(x, unknowns_[b].scale) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(
         "merit", Kokkos::RangePolicy<Execution>(0, row.extent(0)),
         KOKKOS_LAMBDA(int i, Real& s) {
-          const Real size = (row(i) < 0 ? -row(i) : row(i)) - rounding_of_block * now(i);
+          const Real size =
+              (row(i) < 0 ? -row(i) : row(i)) - rounding_of_block * now(i) - (others.extent(0) > 0 ? others(i) : 0);
           if (mask(i) || size <= 0) return;
           const Real of_diagonal = diagonal(i) < 0 ? -diagonal(i) : diagonal(i);
           const Real w = powers ? 1 / diagonal(i) : weighted ? weight(i) : of_diagonal > 0 ? 1 / of_diagonal : 0;
