@@ -367,10 +367,27 @@ class Scenes(BadInput):
         refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
         refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
         self.refuse_set(['moved > "temperature": needs the section "Heat"'], "Boundary conditions.moved.temperature=1")
-        self.refuse_set(["Heat: goes without fractures so far"], "Heat.source=1")
+        self.refuse_set(['Heat > "fluid heat capacity": needs the section "Flow"', 'Heat > "fluid thermal expansion": needs the section "Flow"'],
+                        "Heat.fluid heat capacity=4e6", "Heat.fluid thermal expansion=5e-4")
         self.refuse_set(['Heat > "initial temperature": missing; it is required'], "Heat.source=1",
                         "Materials.rock.volumetric heat capacity=1")
         self.refuse_set(['Bulk > "rigid": leaves nothing to solve for'], "Bulk.rigid=true")
+
+    def test_heat_with_a_fluid(self):
+        def refuse(expected, *sets, scene="thm/doublet_2d.xml"):
+            self.refuse(expected, "check", self.scene(scene), *(word for entry in sets for word in ("--set", entry)))
+        north = "Boundary conditions.north."
+        refuse(['Heat > "fluid heat capacity": missing; it is required with "Flow"'], "Heat.initial temperature=350",
+               "Materials.granite.thermal conductivity={2.8}", scene="poro/injection_2d.xml")
+        refuse(['Heat > "initial temperature": missing; it is required where what fills fractures has a heat capacity'],
+               "Heat.fluid heat capacity=4e6", "Materials.granite.thermal conductivity={2.8}", north + "temperature=300", scene="poro/injection_2d.xml")
+        refuse(['Heat > Wells > inyector: is "inyector", must be one of "injector", "producer"'], "Heat.Wells.inyector.temperature=300")
+        refuse(['"fluid heat capacity": is -1, must be at least 0'], "Heat.fluid heat capacity=-1")
+        refuse(['Materials > rough joint > "thermal conductivity": is 0, must be positive'], "Materials.rough joint.thermal conductivity=0")
+        refuse(['"thermal expansion": is "t"; it may depend on x, y, z, not on t'], "Materials.granite.thermal expansion=t")
+        refuse(['Boundary conditions > end: gives a "heat flux", which is one of rock, not of a "fracture"'], "Boundary conditions.end.boundary=north",
+               "Boundary conditions.end.fracture=west", "Boundary conditions.end.heat flux=1")
+        refuse(['gives a heat flux where "north" gives the temperature'], "Boundary conditions.more.boundary=north", "Boundary conditions.more.heat flux=1")
 
     def test_flow(self):
         def refuse(expected, *sets):
