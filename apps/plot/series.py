@@ -28,6 +28,7 @@ def panels(steps, start=0.0):
         ("max_slip", "largest slip", "m"),
         ("mean_opening", "mean opening", "m"),
         ("mean_fracture_pressure", "mean pressure in fractures", "Pa"),
+        ("mean_fracture_temperature", "mean temperature of fractures", "K"),
     ):
         names = [name for name in fractures if all(key in step["fractures"].get(name, {}) for step in steps)]
         if names:
@@ -35,19 +36,20 @@ def panels(steps, start=0.0):
                 name: np.array([step["fractures"][name][key] for step in steps]) for name in sorted(names, key=natural)
             }
     wells = [name for name in steps[-1].get("wells", {}) if all(name in step.get("wells", {}) for step in steps)]
+    def of_wells(key):
+        return {
+            name: np.array(
+                [np.nan if step["wells"][name].get(key) is None else step["wells"][name][key] for step in steps],
+                dtype=float,
+            )
+            for name in wells
+        }
+
     if wells:
-        pressure, rate = (
-            {
-                name: np.array(
-                    [np.nan if step["wells"][name].get(key) is None else step["wells"][name][key] for step in steps],
-                    dtype=float,
-                )
-                for name in wells
-            }
-            for key in ("pressure", "rate")
-        )
-        yield "pressure in wells", "Pa", pressure
-        yield "injected volume", "m³", {name: injected(times, values, start) for name, values in rate.items()}
+        yield "pressure in wells", "Pa", of_wells("pressure")
+        yield "injected volume", "m³", {n: injected(times, v, start) for n, v in of_wells("rate").items()}
+        if any("temperature" in well for well in steps[-1]["wells"].values()):
+            yield "temperature in wells", "K", of_wells("temperature")
 
 
 def draw(ax, times, label, base, curves):

@@ -99,17 +99,22 @@ def forces(steps, scene):
 
 
 def fluid(steps):
-    for key, what, unit in (("inflows", "fluid", "m³/s"), ("heat_inflows", "heat", "W")):
-        last = steps[-1]
-        if key not in last and not (what == "fluid" and "wells" in last):
+    last = steps[-1]
+    wells = last.get("wells", {}).values()
+    for key, what, unit, of_wells in (("inflows", "fluid", "m³/s", "rate"), ("heat_inflows", "heat", "W", "heat")):
+        through_wells = [well[of_wells] for well in wells if of_wells in well]
+        if key not in last and not through_wells:
             continue
         through = sum(np.sum(value) for value in last.get(key, {}).values())
-        wells = sum(well["rate"] for well in last.get("wells", {}).values()) if what == "fluid" else 0
+        by_wells = sum(through_wells)
+        carried = what == "heat" and ("inflows" in last or through_wells)  # boundaries' part of that is not known here
         yield Check(
             f"balance of {what}",
             "noted",
-            f"at the end {quantity(through)} {unit} come in through boundaries and "
-            f"{quantity(wells)} {unit} through wells; their sum, {quantity(through + wells)} {unit}, is stored",
+            f"at the end {quantity(through)} {unit} come in through boundaries"
+            + (" beyond what the fluid carries at their temperatures" if carried else "")
+            + f" and {quantity(by_wells)} {unit} through wells"
+            + ("" if carried else f"; their sum, {quantity(through + by_wells)} {unit}, is stored"),
         )
 
 

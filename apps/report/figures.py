@@ -1,6 +1,7 @@
 """Key figures: tables of what the last step holds, and of what the run cost."""
 from collections import namedtuple
 
+import numpy as np
 from numbers_in_words import number, quantity, unit_of
 
 Table = namedtuple("Table", "title columns rows note")
@@ -77,8 +78,13 @@ def of_boundaries(step):
 def of_wells(step):
     wells = step.get("wells", {})
     if wells:
-        rows = [(name, number(well.get("rate")), quantity(well.get("pressure"), "Pa")) for name, well in wells.items()]
-        yield Table("Wells", ["well", "rate (m³/s)", "pressure"], rows, "")
+        warm = any("temperature" in well for well in wells.values())
+        rows = [
+            (name, number(well.get("rate")), quantity(well.get("pressure"), "Pa"))
+            + ((f"{well.get('temperature', np.nan):.2f} K",) if warm else ())
+            for name, well in wells.items()
+        ]
+        yield Table("Wells", ["well", "rate (m³/s)", "pressure"] + ["temperature of the fluid"] * warm, rows, "")
 
 
 def of_costs(content):

@@ -63,8 +63,8 @@ class Plausibility(ProgramTest):
     def test_degrees_celsius(self):
         scene = self.scene("heat/cooling_2d.xml")
         self.assertEqual(self.warnings(scene), "")
-        err = self.warnings(scene, "Heat.initial temperature=80", "Boundary conditions.surface.temperature=20")
-        for text in ('Heat > "initial temperature": is 80 K', 'surface > "temperature": is 20 K', "add 273.15"):
+        err = self.warnings(scene, "Heat.initial temperature=180", "Boundary conditions.surface.temperature=20")
+        for text in ('Heat > "initial temperature": is 180 K', 'surface > "temperature": is 20 K', "add 273.15"):
             self.assertIn(text, err)
 
     def test_coefficient(self):

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace sprekk::physics {
 
@@ -89,8 +90,9 @@ bool stores_in_fractures(Comparison& c) {
 void compare_start(Comparison& c) {
   const auto& scene = c.scene();
   if (scene.heat->initial_temperature || !c.is_sound("Heat")) return;
+  bool said = false;
   const auto require = [&](const std::string& where) {
-    c.fail("Heat > \"initial temperature\"", "missing; it is required where " + where);
+    if (!std::exchange(said, true)) c.fail("Heat > \"initial temperature\"", "missing; it is required where " + where);
   };
   c.for_each_rock([&](const Material& rock) {
     if (!is_zero(rock.heat_capacity))
@@ -418,7 +420,7 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
 
 /// Rock and water are warmer than that; 0 may stand for a difference.
 std::vector<std::string> Heat::plausibility(const Setting& setting, const std::vector<Real>&) {
-  constexpr Real coldest = 150;
+  constexpr Real coldest = 230;
   const auto& scene = setting.scene;
   std::vector<std::string> all;
   const auto see = [&](const std::string& place, const base::Expression& T) {
