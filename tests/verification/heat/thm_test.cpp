@@ -512,5 +512,43 @@ TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
     }
 }
 
+/// xml/thm: a fault beside a wall that is cooled sticks for a year and slides afterwards; a producer draws water that
+/// becomes colder from year to year, between that which goes in and the rock; a gallery warms its rock.
+TEST(ThermoPoroelasticity, ScenesTellWhatTheySay) {
+  const auto largest = [](model::Model& model, const std::string& output) {
+    Real here = 0, all = 0;
+    for (const Real value : model.output(output).values) here = std::max(here, value);
+    Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_MAX, 1, &here, &all);
+    return all;
+  };
+  const auto fault = read_scene("thm/fault_2d.xml", {"Mesh.cells={16, 16}", "Time.steps=10"});
+  model::Model slides(fault, Tpetra::getDefaultComm());
+  for (const Real t : fault.time.times()) {
+    ASSERT_TRUE(slides.step_to(t).converged) << t;
+    if (t == fault.time.times().front()) EXPECT_LT(largest(slides, "slip"), 2e-3);
+  }
+  EXPECT_GT(largest(slides, "slip"), 6e-3);
+
+  const auto gallery = read_scene("thm/gallery_2d.xml", {"Mesh.cells={15, 15}", "Time.steps=5"});
+  model::Model warms(gallery, Tpetra::getDefaultComm());
+  for (const Real t : gallery.time.times()) ASSERT_TRUE(warms.step_to(t).converged) << t;
+  EXPECT_GT(largest(warms, "temperature"), 330);
+  EXPECT_LT(largest(warms, "temperature"), 420);
+
+  const auto doublet = read_scene("thm/doublet_2d.xml", {"Mesh.cells={20, 20}", "Time.steps=10"});
+  model::Model cools(doublet, Tpetra::getDefaultComm());
+  Real before = 420;
+  for (const Real t : doublet.time.times()) {
+    const auto report = cools.step_to(t);
+    ASSERT_TRUE(report.converged) << t << report.reason;
+    Real T = 0;
+    for (const auto& total : cools.system().totals(cools.state()))
+      if (total.names == std::vector<std::string>{"wells", "producer", "temperature"}) T += total.value;
+    EXPECT_LT(T, before) << t;
+    EXPECT_GT(T, 320) << t;
+    before = T;
+  }
+}
+
 }  // namespace
 }  // namespace sprekk::tests
