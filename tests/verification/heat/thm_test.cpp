@@ -89,8 +89,8 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
     for (const auto& [out, other] : {std::pair("east", "north"), {"north", "east"}}) {
       auto scene = closed_box(cell);
       scene.materials.at("rock").permeability = {Expression(1e-30)};
-      scene.materials.at("joint").filling_conductivity = Expression(1e-3);
-      warm(scene, 0, 1e-6, 0, 3);
+      scene.materials.at("joint").filling_conductivity = Expression(1e-5);
+      warm(scene, 0, 1e-8, 0, 3);
       inject(scene, "west", "a", 2);
       inject(scene, "south", "b", 1);
       inject(scene, out, out == std::string("east") ? "a" : "b", -1.2);
@@ -105,7 +105,7 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
         const bool in_a = std::abs(n[1]) > 0.5;
         return Vector3{x[in_a ? 0 : 1] > 0.5 ? 40.0 : in_a ? 20.0 : 80.0};
       };
-      EXPECT_LT(error(model, "fracture temperature", T), 1e-4) << cell << " " << out;  // conduction is not zero
+      EXPECT_LT(error(model, "fracture temperature", T), 1e-5) << cell << " " << out;  // conduction is 1e-8 of what flows
     }
 }
 
@@ -529,7 +529,7 @@ TEST(ThermoPoroelasticity, ScenesTellWhatTheySay) {
   }
   EXPECT_GT(largest(slides, "slip"), 6e-3);
 
-  const auto gallery = read_scene("thm/gallery_2d.xml", {"Mesh.cells={15, 15}", "Time.steps=5"});
+  const auto gallery = read_scene("thm/gallery_2d.xml", {"Time.steps=5"});
   model::Model warms(gallery, Tpetra::getDefaultComm());
   for (const Real t : gallery.time.times()) ASSERT_TRUE(warms.step_to(t).converged) << t;
   EXPECT_GT(largest(warms, "temperature"), 330);
