@@ -1,0 +1,210 @@
+// Heat in fractures, and carried by a fluid, against exact solutions.
+#include "warm_boxes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+/// A block of 10 m, k = 2.5 W/(m K), with a joint of 5 mm, 0.6 W/(m K), across the flow of heat under 10 K:
+/// q = 10/(L/k + a/k_f).
+TEST(HeatInFractures, AFilledJointIsAResistanceInSeries) {
+  constexpr Real q = 10 / (10 / 2.5 + 5e-3 / 0.6);
+  for (const std::string cell : all_cells) {
+    const bool flat = is_flat(cell);
+    auto scene = closed_box(cell, false);
+    for (auto& c : scene.mesh.upper_corner) c *= 10;
+    for (auto* corner : {&scene.mesh.fractures["a"].lower_corner, &scene.mesh.fractures["a"].upper_corner})
+      for (auto& c : *corner) c *= 10;
+    scene.flow.reset();
+    scene.bulk.rigid = true;
+    warm(scene, 0, 2.5, 0, 0);
+    auto& joint = scene.materials.at("joint");
+    joint.initial_aperture = Expression(5e-3);
+    joint.filling_conductivity = Expression(0.6);
+    hold_temperature(scene, "south", "10");
+    hold_temperature(scene, "north", "0");
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged) << cell;
+    EXPECT_LT(error(model, "heat flux", [&](const auto&, const auto&) { return Vector3{0, q, 0}; }), 1e-9) << cell;
+    EXPECT_LT(error(model, "fracture temperature", [&](const auto&, const auto&) { return Vector3{5}; }), 1e-9)
+        << cell << flat;
+  }
+}
+
+/// At the intersection of two fractures 2 parts at 20 K and 1 at 80 K come together, and leave as warm as they mix.
+TEST(HeatInFractures, MixesWhereTheyMeet) {
+  for (const std::string cell : all_cells)
+    for (const auto& [out, other] : {std::pair("east", "north"), {"north", "east"}}) {
+      auto scene = closed_box(cell);
+      scene.materials.at("rock").permeability = {Expression(1e-30)};
+      scene.materials.at("joint").filling_conductivity = Expression(1e-5);
+      warm(scene, 0, 1e-8, 0, 3);
+      inject(scene, "west", "a", 2);
+      inject(scene, "south", "b", 1);
+      inject(scene, out, out == std::string("east") ? "a" : "b", -1.2);
+      hold(scene, other, "0", other == std::string("east") ? "a" : "b");
+      hold_temperature(scene, "west", "20", "a");
+      hold_temperature(scene, "south", "80", "b");
+      hold_temperature(scene, "west", "20");
+      model::Model model(scene, Tpetra::getDefaultComm());
+      const auto report = model.step_to(1e9);
+      ASSERT_TRUE(report.converged) << cell << report.reason;
+      const auto T = [&](const Vector3& x, const Vector3& n) {
+        const bool in_a = std::abs(n[1]) > 0.5;
+        return Vector3{x[in_a ? 0 : 1] > 0.5 ? 40.0 : in_a ? 20.0 : 80.0};
+      };
+      EXPECT_LT(error(model, "fracture temperature", T), 1e-5)
+          << cell << " " << out;  // conduction is 1e-8 of what flows
+    }
+}
+
+/// Fluid at 1 K enters a fracture, v = 1e-2 m/s, in rock at 0 K that conducts across the fracture alone (Lauwerier
+/// 1955): T_f = erfc(A x/sqrt(t - x/v)), A = sqrt(k rho c)/(rho_f c_f b v). Of first order by upwind flow.
+TEST(HeatInFractures, AFractureWarmsTheRock) {
+  constexpr Real v = 1e-2, t = 1e6, k = 2.5, rc = 2.2e6, c = 4.2e6;
+  const auto exact = [&](Real x) {
+    return std::erfc(std::sqrt(k * rc) / (c * aperture * v) * x / std::sqrt(t - x / v));
+  };
+  EXPECT_NEAR(exact(10), 0.429488231027, 1e-10);
+  for (const std::string cell : {"quadrilateral", "hexahedron"}) {
+    std::vector<Real> errors;
+    for (const int n : {6, 12}) {
+      auto scene = closed_box(cell, false);
+      const bool flat = is_flat(cell);
+      scene.mesh.cells = flat ? std::vector<int>{2 * n, 4 * n} : std::vector<int>{2 * n, 4 * n, 1};
+      scene.mesh.lower_corner = flat ? std::vector<Real>{0, -8} : std::vector<Real>{0, -8, 0};
+      scene.mesh.upper_corner = flat ? std::vector<Real>{20, 8} : std::vector<Real>{20, 8, 1};
+      scene.mesh.fractures["a"] = {flat ? std::vector<Real>{0, 0} : std::vector<Real>{0, 0, 0},
+                                   flat ? std::vector<Real>{20, 0} : std::vector<Real>{20, 0, 1}};
+      auto& rock = scene.materials.at("rock");
+      rock.permeability = {Expression(1e-30)};
+      warm(scene, 0, 1, rc, c);
+      rock.thermal_conductivity = {Expression(1e-9), Expression(k)};
+      if (!flat) rock.thermal_conductivity.push_back(Expression(k));
+      scene.materials.at("joint").filling_conductivity = Expression(100);
+      inject(scene, "west", "a", aperture * v);
+      hold(scene, "east", "0", "a");
+      hold_temperature(scene, "west", "1", "a");
+      model::Model model(scene, Tpetra::getDefaultComm());
+      for (int step = 1; step <= 2 * n; ++step) ASSERT_TRUE(model.step_to(step * t / (2 * n)).converged) << cell;
+      Real worst = 0;
+      for (const Real x : {20.0 * 5 / 24, 20.0 * 11 / 24, 20.0 * 17 / 24})
+        worst = std::max(worst, std::abs(value_at(model, "fracture temperature", {x, 0, flat ? 0 : 0.5}) - exact(x)));
+      errors.push_back(worst);
+    }
+    EXPECT_LT(errors[1], 0.05) << cell;
+    EXPECT_GT(std::log2(errors[0] / errors[1]), 0.7) << cell << ": " << errors[0] << ", " << errors[1];
+  }
+}
+
+/// Steady flow with conduction, T(0) = 0, T(1) = 1: T = (exp(Pe x) - 1)/(exp(Pe) - 1). Of first order at Pe = 10, and
+/// between 0 and 1 and rising at Pe = 1000, where the flows of heat are those of two points.
+TEST(HeatInRock, IsCarriedWithTheFluid) {
+  for (const std::string cell : {"quadrilateral", "hexahedron", "triangle"}) {
+    std::vector<Real> errors;
+    for (const auto& [n, Pe] : {std::pair(20, 10.0), {40, 10.0}, {50, 1000.0}}) {
+      auto scene = closed_box(cell, false, 1);
+      const bool flat = is_flat(cell);
+      scene.mesh.fractures.clear();
+      scene.fractures.clear();
+      scene.mesh.cells[0] = n;
+      scene.mesh.upper_corner = flat ? std::vector<Real>{1, 0.05} : std::vector<Real>{1, 0.05, 0.05};
+      warm(scene, 0, 1, 0, 2);
+      auto& west = scene.boundary_conditions["inflow"];
+      west.boundary = "west";
+      west.flux = Expression(-Pe / 2);
+      hold(scene, "east", "0");
+      hold_temperature(scene, "west", "0");
+      hold_temperature(scene, "east", "1");
+      model::Model model(scene, Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged) << cell;
+      const auto exact = [Pe = Pe](const Vector3& x, const auto&) {
+        return Vector3{std::exp(Pe * (x[0] - 1)) * (1 - std::exp(-Pe * x[0])) / (1 - std::exp(-Pe))};
+      };
+      if (Pe < 100) errors.push_back(error(model, "temperature", exact));
+      if (Pe < 100 || cell == std::string("triangle")) continue;
+      for (const Real T : model.output("temperature").values) {
+        EXPECT_GE(T, -1e-12) << cell;
+        EXPECT_LE(T, 1 + 1e-12) << cell;
+      }
+    }
+    EXPECT_GT(std::log2(errors[0] / errors[1]), 0.8) << cell << ": " << errors[0] << ", " << errors[1];
+    EXPECT_LT(errors[1], 0.1) << cell;
+  }
+}
+
+/// The scene of injection into a network whose fractures slide and open, with heat: all as warm as the water is, stays
+/// so, to rounding.
+TEST(HeatInFractures, NothingChangesWhereAllIsEquallyWarm) {
+  auto scene = read_scene("poro/injection_2d.xml", {"Mesh.cells={20, 20}"});
+  warm(scene, 350, 2.5, 2.2e6, 4.2e6);
+  scene.heat->wells["injector"].temperature = Expression(350);
+  for (const std::string side : {"west", "east"}) hold_temperature(scene, side, "350");
+  model::Model model(scene, Tpetra::getDefaultComm());
+  for (const Real t : {1800.0, 3600.0, 7200.0, 36000.0}) ASSERT_TRUE(model.step_to(t).converged) << t;
+  const auto same = [](const auto&, const auto&) { return Vector3{350}; };
+  EXPECT_LT(error(model, "temperature", same), 1e-9);
+  EXPECT_LT(error(model, "fracture temperature", same), 1e-9);
+}
+
+/// A joint between rocks that a fluid does not enter is pulled apart, tenfold and back to half: warmer fluid streams in
+/// from both ends, and out again. What comes in as heat is what rock and fluid gain, step by step.
+TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
+  constexpr Real c = 4.2e6, rc = 2.2e6;
+  for (const std::string cell : {"quadrilateral", "tetrahedron"}) {
+    const bool flat = is_flat(cell);
+    auto scene = closed_box(cell, false, 4);
+    scene.flow->rigid_rock = false;
+    auto& rock = scene.materials.at("rock");
+    rock.E = Expression(1e9);
+    rock.nu = Expression(0.2);
+    rock.biot = 0;
+    rock.compressibility.reset();
+    rock.porosity = 0;
+    rock.permeability = {Expression(1e-18)};
+    auto& joint = scene.materials.at("joint");
+    joint.friction_coefficient = Expression(0.6);
+    joint.tangential_stiffness = Expression(1e9);
+    warm(scene, 10, 2.5, rc, c);
+    const int dim = flat ? 2 : 3;
+    auto &floor = scene.boundary_conditions["floor"], &lid = scene.boundary_conditions["lid"];
+    floor.boundary = "south";
+    floor.displacement.assign(dim, Expression(0));
+    lid.boundary = "north";
+    lid.displacement = floor.displacement;
+    lid.displacement[1] = Expression("t < 4 ? 9e-3*t/4 : 9e-3*(1 - (t - 4)/5)");
+    for (const std::string side : {"west", "east"}) {
+      hold(scene, side, "0");
+      scene.boundary_conditions[side].temperature = Expression("50 + t");
+    }
+    model::Model model(scene, Tpetra::getDefaultComm());
+    const auto content = [&] {
+      const auto& mesh = model.mesh();
+      const auto T = model.output("temperature").values, T_f = model.output("fracture temperature").values,
+                 a = model.output("aperture").values;
+      Real here = 0, all = 0;
+      for (LocalIndex k = 0; k < mesh.n_owned_cells; ++k) here += rc * T[k] / static_cast<Real>(mesh.n_global_cells);
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+        here += c * a[f] * T_f[f] * mesh.fracture_faces[f].area;
+      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+      return all;
+    };
+    ASSERT_TRUE(model.step_to(0.5).converged) << cell;
+    Real before = content(), most = 0;
+    for (int step = 2; step <= 14; ++step) {
+      ASSERT_TRUE(model.step_to(0.5 * step).converged) << cell;
+      Real inflow = 0;
+      for (const auto& reaction : model.system().reactions(model.state())) {
+        if (reaction.field == "face temperature") inflow += 0.5 * reaction.force.at(0);
+        if (reaction.field == "face pressure") inflow += 0.5 * c * (50 + 0.5 * step) * reaction.force.at(0);
+      }
+      const Real after = content();
+      most = std::max(most, std::abs(inflow));
+      EXPECT_NEAR(after - before, inflow, 1e-11 * after) << cell << " " << step;
+      before = after;
+    }
+    EXPECT_GT(most, 1e4) << cell;
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
