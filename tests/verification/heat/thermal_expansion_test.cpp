@@ -99,8 +99,9 @@ TEST(ThermalStress, OfAHalfSpaceThatCools) {
     }
     const auto u = model.output("displacement").values;
     for (LocalIndex node = 0; node < model.mesh().n_nodes(); ++node)
-      if (model.mesh().coordinates[node * dim] < 1e-9)
+      if (model.mesh().coordinates[node * dim] < 1e-9) {
         EXPECT_NEAR(u[node * dim], stretch * width / std::sqrt(M_PI), 5e-3 * stretch * width);
+      }
   }
 }
 
@@ -204,7 +205,9 @@ TEST(ThermalExpansion, OfAColumnThatConsolidates) {
       const int dim = flat ? 2 : 3;
       for (LocalIndex n = 0; n < model.mesh().n_nodes(); ++n) lowest = std::min(lowest, u[n * dim + up]);
       Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_MIN, 1, &lowest, &all);
-      if (want.settlement > 0) EXPECT_NEAR(-all, want.settlement, 5e-3 * want.settlement) << cell << " " << want.t;
+      if (want.settlement > 0) {
+        EXPECT_NEAR(-all, want.settlement, 5e-3 * want.settlement) << cell << " " << want.t;
+      }
     }
   }
 }
@@ -274,7 +277,9 @@ TEST(ThermoPoroelasticity, ScenesTellWhatTheySay) {
   model::Model slides(fault, Tpetra::getDefaultComm());
   for (const Real t : fault.time.times()) {
     ASSERT_TRUE(slides.step_to(t).converged) << t;
-    if (t == fault.time.times().front()) EXPECT_LT(largest(slides, "slip"), 2e-3);
+    if (t == fault.time.times().front()) {
+      EXPECT_LT(largest(slides, "slip"), 2e-3);
+    }
   }
   EXPECT_GT(largest(slides, "slip"), 6e-3);
 
