@@ -29,7 +29,8 @@ TEST(JointsInSeries, EqualOnesShareTheSlip) {
         const auto traction = out.vector("traction local", f);
         const Real tau = std::hypot(traction[1], traction[2]);
         EXPECT_NEAR(tau, -mu * traction[0], 1e-11);
-        EXPECT_NEAR(out.scalar("slip", f), (shear - tau / G - 3 * tau / K_t) / 3, 1e-10) << dim << " " << angle << " " << way;
+        EXPECT_NEAR(out.scalar("slip", f), (shear - tau / G - 3 * tau / K_t) / 3, 1e-10)
+            << dim << " " << angle << " " << way;
       }
     }
 }

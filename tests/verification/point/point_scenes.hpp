@@ -19,8 +19,7 @@ namespace sprekk::tests {
 using model::PointState;
 
 inline model::PointScene read(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name,
-                                 overrides);
+  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides);
 }
 
 /// The states of xml/point/NAME.
