@@ -38,8 +38,8 @@ std::size_t enough_for(const Nodes& nodes, const NodeGraph& graph) {
 /// Of the smoother on the finest level. Jumps that alternate along the long edges of fractures do no work on contact,
 /// which is as stiff as the short edges of flat cells: the diagonal is too large for them by the square of the aspect
 /// ratio, and aggregates do not represent them. On that level it costs least to smooth them.
-int degree_for(Real flatness) {
-  return static_cast<int>(std::lround(std::clamp<Real>(1.2 * flatness, Chebyshev::usual_degree, most_degree)));
+int degree_for(Real flatness, int degree) {
+  return std::max(degree, static_cast<int>(std::lround(std::min<Real>(1.2 * flatness, most_degree))));
 }
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
@@ -61,12 +61,12 @@ bool Multigrid::can_solve(int n_components, int n_modes) {
 }
 
 Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
-                     const RCP<const MultiVector>& modes)
-    : map_(matrix->row_map()), finest_(matrix), size_(n_components) {
+                     const RCP<const MultiVector>& modes, const Options& options)
+    : map_(matrix->row_map()), finest_(matrix), size_(n_components), options_(options) {
   add_level(node_matrix(*matrix, size_));
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
-  degree_ = modes.is_null() ? Chebyshev::usual_degree : degree_for(flatness(nodes, *map_->getComm()));
-  while (n_nodes(levels_.back().A) * levels_.back().A.height > coarse_size) {
+  degree_ = modes.is_null() ? options.degree : degree_for(flatness(nodes, *map_->getComm()), options.degree);
+  while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
     const auto& A = levels_.back().A;
     const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, A.graph) : 0);
     Nodes coarse;
@@ -112,7 +112,7 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
   for (auto& level : levels_) {
     if (!level.to_coarse) continue;
     const bool finest = &level == &levels_.front();
-    level.smoother->update(level.A, finest && symmetric ? degree_ : Chebyshev::usual_degree);
+    level.smoother->update(level.A, finest && symmetric ? degree_ : options_.degree);
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);

@@ -3,6 +3,7 @@
 
 #include "multigrid/chebyshev.hpp"
 #include "multigrid/direct_inverse.hpp"
+#include "multigrid/options.hpp"
 #include "multigrid/galerkin.hpp"
 
 namespace sprekk::multigrid {
@@ -12,15 +13,13 @@ namespace sprekk::multigrid {
 /// singular. All members are collective unless they return stored data.
 class Multigrid : public fields::Operator {
  public:
-  static constexpr int coarse_size =
-      DirectInverse::most_dense;  ///< no further level below so many unknowns: a direct solve
-
   /// Whether there is code for that many unknowns of a node and motions.
   static bool can_solve(int n_components, int n_modes);
 
   /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
   /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
-  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes);
+  Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes,
+            const Options& options = {});
   /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
   Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components, const RCP<const MultiVector>& modes,
             const RCP<const MultiVector>& places = Teuchos::null)
@@ -35,7 +34,7 @@ class Multigrid : public fields::Operator {
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override;
 
   /// Whether cells are so flat that the smoother of the finest level has a higher degree.
-  bool flat() const { return degree_ > Chebyshev::usual_degree; }
+  bool flat() const { return degree_ > options_.degree; }
   /// Entries of the matrices of all levels over those of the finest.
   double operator_complexity() const { return operator_complexity_; }
   double bytes() const;        ///< that this rank has stored
@@ -58,6 +57,7 @@ class Multigrid : public fields::Operator {
   RCP<const Map> map_;
   RCP<const Matrix> finest_;
   int size_;
+  Options options_;
   int degree_;  // of the smoother on the finest level, of a symmetric matrix
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks

@@ -125,6 +125,7 @@ class Cycle : public Operator {
     y.update(alpha, x, beta);
   }
 
+  /// x <- S b where that is exact, else 0.
   void start(const Vector& b, Vector& x) const {
     x.putScalar(0);
     if (exact_) smooth(b, x);
@@ -198,8 +199,21 @@ bool have_fine_level(const std::vector<Block>& blocks) {
   return !first.coordinates.is_null() && enriched && (blocks.size() > 1 || !first.interpolation.is_null());
 }
 
-FineLevel::FineLevel(const ParameterList& muelu, const std::vector<Block>& blocks)
-    : order_one_(make_multigrid(muelu, blocks.front())) {}
+FineLevel::FineLevel(const BlockOptions& options, const std::vector<Block>& blocks)
+    : Preconditioner("fine level", blocks.front().name), order_one_(make_multigrid(options, blocks.front())) {
+  for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
+}
+
+void FineLevel::describe(ParameterList& blocks) const {
+  order_one_->describe(blocks);
+  for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
+}
+
+std::vector<SolverCost> FineLevel::costs() const {
+  auto all = Preconditioner::costs();
+  all.push_back(order_one_->costs().front());
+  return all;
+}
 
 void FineLevel::set_up_order_one(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
@@ -214,14 +228,18 @@ void FineLevel::set_up_order_one(const LinearSystem& system) {
     fill_order_one(A, P, *product_->crs());
     matrix = product_;
   }
-  order_one_->setup(
-      {.block = first.block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful});
+  order_one_->setup(alone(
+      {.block = first.block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful}));
 }
 
-void FineLevel::setup(const LinearSystem& system, bool keeps) {
-  if (!keeps) set_up_order_one(system);
+void FineLevel::prepare(const LinearSystem& system, SolverCost&) {
+  set_up_order_one(system);
+  renew(system);
+}
+
+bool FineLevel::renew(const LinearSystem& system) {
   if (!smoothed_) {
-    const auto chosen = smoothed_unknowns(system, order_one_->flat());
+    const auto chosen = smoothed_unknowns(system, order_one_->is_flat());
     smoothed_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
     rows_ = std::make_shared<JoinedRows>(system.joined, system.blocks, smoothed_->rows());
   }
@@ -238,10 +256,14 @@ void FineLevel::setup(const LinearSystem& system, bool keeps) {
     smoother = gauss_seidel(smoothed_->matrix());
   }
   cycle_ = rcp(new Cycle(system, rows_, smoother, P.is_null(), order_one_->inverse()));
+  return true;
 }
 
-RCP<const Operator> FineLevel::inverse() const { return cycle_; }
+RCP<const Operator> FineLevel::made() const { return cycle_; }
 
-void FineLevel::start(const Vector& b, Vector& x) const { cycle_->start(b, x); }
+bool FineLevel::start(const Vector& b, Vector& x) const {
+  cycle_->start(b, x);
+  return true;
+}
 
 }  // namespace sprekk::solve

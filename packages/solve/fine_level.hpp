@@ -1,8 +1,8 @@
 // A level above multigrid: what displacements of order 2 and around crack tips have over those of order 1.
 #pragma once
 
-#include "solve/block_solver.hpp"
 #include "multigrid/direct_inverse.hpp"
+#include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
 
@@ -18,21 +18,24 @@ class Cycle;
 /// by a symmetric Gauss-Seidel sweep; of blocks that enrich on those near crack tips, by a DirectInverse (in flat cells
 /// with the next nodes, too). This one leaves no residual in its rows, so the next cycle would find none there: a
 /// Krylov method that starts from S b does without the first of the two, and finds the same.
-class FineLevel {
+class FineLevel : public Preconditioner {
  public:
-  FineLevel(const Teuchos::ParameterList& muelu, const std::vector<Block>& blocks);
-  /// Makes ready for these values; `keeps`: multigrid stays that of earlier ones. Throws where a library does.
-  /// Collective.
-  void setup(const LinearSystem& system, bool keeps = false);
-  RCP<const fields::Operator> inverse() const;
-  /// x <- where Krylov's method must start from: S b where that is exact, else 0.
-  void start(const Vector& b, Vector& x) const;
-  SolverCost order_one_cost() const { return order_one_->costs().front(); }
+  FineLevel(const BlockOptions& options, const std::vector<Block>& blocks);
+
+  bool start(const Vector& b, Vector& x) const override;
+  bool has_cycles() const override { return order_one_->has_cycles(); }
+  int coarse_size() const override { return order_one_->coarse_size(); }
+  std::vector<SolverCost> costs() const override;
+  void describe(Teuchos::ParameterList& blocks) const override;
 
  private:
+  void prepare(const LinearSystem& system, SolverCost& cost) override;
+  bool renew(const LinearSystem& system) override;
+  RCP<const fields::Operator> made() const override;
   void set_up_order_one(const LinearSystem& system);
 
-  RCP<BlockSolver> order_one_;
+  std::vector<std::string> enriching_;  // blocks
+  std::unique_ptr<Preconditioner> order_one_;
   RCP<const Matrix> product_;               // P^T A P
   std::shared_ptr<JoinedMatrix> smoothed_;  // the rows and columns of S
   std::shared_ptr<JoinedRows> rows_;        // the rows of S with all columns

@@ -1,25 +1,20 @@
 // Belos, preconditioned from the right by a solver for each block.
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
-#include <MueLu_MasterList.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
-#include "solve/block_solver.hpp"
-#include "solve/families.hpp"
-#include "solve/fine_level.hpp"
+#include "solve/preconditioner.hpp"
 #include "solve/reuse.hpp"
-#include "multigrid/multigrid.hpp"
 
 namespace sprekk::solve {
 namespace {
 
 using fields::MultiVector;
 using fields::Operator;
-using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
 ParameterList krylov_defaults() {
@@ -29,16 +24,6 @@ ParameterList krylov_defaults() {
   list.set("Implicit Residual Scaling", "Norm of RHS");
   list.set("Explicit Residual Scaling", "Norm of RHS");
   return list;
-}
-
-/// Throws an Error that names the entry if a list has one that the library does not know; `allowed` are its lists.
-void check_names(const ParameterList& given, const std::vector<ParameterList>& allowed) {
-  for (const auto& item : given) {
-    const std::string& name = item.first;
-    bool known = name.rfind("level ", 0) == 0 || name == "user data";  // MueLu's sections of one level
-    for (const auto& list : allowed) known = known || list.isParameter(name) || list.isSublist(name);
-    SPREKK_CHECK(known, "{} has no parameter \"{}\"; its manual lists those that it has", given.name(), name);
-  }
 }
 
 /// What the Krylov methods that are used here, or the one that is asked for, know.
@@ -56,12 +41,6 @@ std::vector<ParameterList> belos_parameters(const ParameterList& given) {
     }
   }
   return lists;
-}
-
-/// The last paragraph of an exception's text: what went wrong, without the place in the library.
-std::string gist(const std::string& text) {
-  const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1);
-  return gap == std::string::npos ? text : text.substr(gap + 2, end - gap - 2);
 }
 
 /// y = S A S x, S diagonal.
@@ -99,21 +78,24 @@ RCP<const Vector> root_of_diagonal(const Matrix& A, bool inverse) {
 class IterativeSolver : public LinearSolver {
  public:
   IterativeSolver(const LinearSolverOptions& options, const std::vector<Block>& blocks)
-      : muelu_(options.muelu), reproducible_(options.reproducible.value_or(false)), parameters_("iterative") {
-    check_names(ParameterList(options.muelu).setName("MueLu"), {*MueLu::MasterList::List()});
+      : options_(options.preconditioner),
+        blocks_(blocks),
+        reproducible_(options.reproducible.value_or(false)),
+        parameters_("iterative") {
     check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
-    const int coarse_size = describe_multigrid(blocks.front());
-    parameters_.sublist("Belos") = krylov_defaults();
-    parameters_.sublist("Belos").setParameters(options.belos);
+    preconditioner_ = make_preconditioner(options_, blocks_);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
     // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
-    if (n <= coarse_size) {
+    if (n <= preconditioner_->coarse_size()) {
       coarse_ = make_direct_solver(options.mumps, 1);
       parameters_.sublist("MUMPS") = coarse_->parameters();
-    } else {
-      make_solvers(blocks);
+      return;
     }
+    parameters_.sublist("Belos") = krylov_defaults();
+    parameters_.sublist("Belos").setParameters(options.belos);
+    preconditioner_->describe(parameters_.sublist("Blocks"));
+    parameters_.sublist("Sweep").set("type", options_.sweep.type);
   }
 
   bool reads_matrix() const override { return coarse_ != nullptr; }
@@ -121,12 +103,12 @@ class IterativeSolver : public LinearSolver {
   /// Multigrid of an earlier matrix stays, as long as solves with it are worth it.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
-    const bool keeps = reuse_.may_keep() && !families_ && system.symmetric == system_.symmetric &&
+    const bool keeps = reuse_.may_keep() && preconditioner_->can_be_kept() && system.symmetric == system_.symmetric &&
                        !system.diagonal.front().matrix.is_null() &&
                        n_changed(*system.diagonal.front().matrix) <= most_changed;
     system_ = system;
     system_.reproducible = reproducible_;
-    symmetric_ = system.symmetric && !families_;  // a sweep over families is not symmetric
+    symmetric_ = system.symmetric && preconditioner_->is_symmetric();
     comm_ = system.joined->map()->getComm();
     matrix_ = system.joined_operator();
     set_scale();
@@ -134,7 +116,7 @@ class IterativeSolver : public LinearSolver {
       reuse_.keep();
     else
       reuse_.make(is_careful());
-    make_preconditioner();
+    set_up_preconditioner();
     return failure_;
   }
 
@@ -155,18 +137,17 @@ class IterativeSolver : public LinearSolver {
   }
 
   const ParameterList& parameters() const override { return parameters_; }
-  RCP<const Operator> preconditioner() const override { return preconditioner_; }
+  RCP<const Operator> preconditioner() const override { return inverse_; }
 
   std::vector<SolverCost> costs() const override {
-    if (fine_level_) return {*fine_cost_, fine_level_->order_one_cost()};
-    if (families_) return families_->costs();
-    return solver_.is_null() ? std::vector<SolverCost>() : solver_->costs();
+    return coarse_ ? std::vector<SolverCost>() : preconditioner_->costs();
   }
 
  private:
   void set_scale() {
     const auto& first = system_.diagonal.front();
-    const bool scalar = !solver_.is_null() && first.block.n_components == 1 && first.block.near_null_space.n() == 0;
+    const bool scalar = blocks_.size() == 1 && first.block.n_components == 1 && first.block.near_null_space.n() == 0 &&
+                        first.block.interpolation.is_null();
     scale_ = scalar ? root_of_diagonal(*first.matrix, false) : Teuchos::null;
     if (!scalar) return;
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
@@ -193,7 +174,7 @@ class IterativeSolver : public LinearSolver {
         report = {};
       }
       reuse_.make(true);
-      make_preconditioner();
+      set_up_preconditioner();
       report.reason = failure_;
       const int before = report.iterations;
       const Real from = before > 0 ? report.residual : 1;
@@ -211,36 +192,7 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Whether multigrid's cycles are tried, or need not be: else only once a solve has taken many iterations.
-  bool is_careful() const { return reuse_.is_careful() || symmetric_ || families_ || !has_cycles_; }
-
-  /// Adds what multigrid is like to the parameters, and returns how many unknowns its last level has at most.
-  int describe_multigrid(const Block& block) {
-    if (takes_muelu(muelu_, block)) {
-      parameters_.sublist("MueLu") = multigrid_parameters(muelu_, block);
-      return parameters_.sublist("MueLu").get<int>("coarse: max size");
-    }
-    auto& list = parameters_.sublist("multigrid");
-    list.set("coarsest level", Multigrid::coarse_size, "unknowns at most");
-    list.set("degree of Chebyshev's polynomial", multigrid::Chebyshev::usual_degree);
-    return Multigrid::coarse_size;
-  }
-
-  void make_solvers(const std::vector<Block>& blocks) {
-    blocks_ = blocks;
-    has_cycles_ = !blocks.front().coordinates.is_null() && !takes_muelu(muelu_, blocks.front());
-    solver_.reset();
-    fine_level_.reset();
-    families_.reset();
-    if (have_fine_level(blocks)) {
-      fine_level_ = std::make_unique<FineLevel>(muelu_, blocks);
-      fine_cost_ = std::make_shared<SolverCost>();
-      fine_cost_->name = fmt::format("fine level of '{}'", blocks.front().name);
-    } else if (blocks.size() == 1) {
-      solver_ = make_block_solver(muelu_, blocks.front());
-    } else {
-      families_ = std::make_unique<Families>(muelu_, blocks);
-    }
-  }
+  bool is_careful() const { return reuse_.is_careful() || symmetric_ || !preconditioner_->has_cycles(); }
 
   static RCP<const Vector> diagonal_of(const Matrix& matrix) {
     const auto diagonal = rcp(new Vector(matrix.row_map()));
@@ -260,28 +212,20 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
-  void make_preconditioner() {
+  void set_up_preconditioner() {
     const bool keeps = reuse_.is_of_earlier_system();
     failure_.clear();
     system_.diagonal.front().careful = reuse_.state() != Reuse::State::unchecked;
     if (const auto& first = system_.diagonal.front().matrix; !keeps && !first.is_null())
       diagonal_ = diagonal_of(*first);
-    if (!solver_.is_null() && !keeps)
-      prepare(system_.diagonal.front().block.name, [&] { solver_->setup(system_.diagonal.front()); });
-    for (int f = 0; families_ && f < families_->n() && failure_.empty(); ++f)
-      prepare(families_->name(f), [&] { families_->setup(f, system_); });
-    if (fine_level_)
-      prepare(system_.diagonal.front().block.name,
-              [&] { timed(fine_cost_->setup_seconds, [&] { fine_level_->setup(system_, keeps); }); });
-    if (!failure_.empty()) {
-      make_solvers(blocks_);  // what the libraries left may differ among ranks
-      preconditioner_ = Teuchos::null;
+    try {
+      preconditioner_->setup(system_, keeps);
+      inverse_ = preconditioner_->inverse();
+    } catch (const Error& error) {
+      failure_ = error.what();
+      preconditioner_ = make_preconditioner(options_, blocks_);  // what the libraries left may differ among ranks
+      inverse_ = Teuchos::null;
       reuse_.lose();
-    } else if (fine_level_) {
-      ++fine_cost_->n_setups;
-      preconditioner_ = rcp(new CountedOperator(fine_level_->inverse(), fine_cost_));
-    } else if (!keeps) {
-      preconditioner_ = families_ ? families_->sweep(system_) : solver_->inverse();
     }
   }
 
@@ -294,21 +238,12 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  template <class Work>
-  void prepare(const std::string& block, const Work& work) {
-    try {
-      base::collectively(*comm_, work);
-    } catch (const Error& error) {
-      failure_ = fmt::format("preconditioner of block '{}': {}", block, gist(error.what()));
-    }
-  }
-
   /// Krylov's method updates its residual, which rounding drives away from the true one where the matrix is nearly
   /// singular. Then it solves for what is left, as long as that helps.
   void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
     const bool begins = report.iterations == 0;
-    if (fine_level_ && begins) fine_level_->start(b, x);
-    report.residual = fine_level_ || !begins ? residual_of(b, x) : 1;
+    const bool at_zero = begins && !preconditioner_->start(b, x);
+    report.residual = at_zero ? 1 : residual_of(b, x);
     bool ended = report.residual > tolerance;
     if (begins && ended) {
       ended = krylov(b, x, tolerance, most, report.iterations);
@@ -338,10 +273,10 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end. A sweep over
-  /// families is dear, and may have others in it.
+  /// groups is dear, and may have others in it.
   const char* usual_method() const {
     if (symmetric_) return "Pseudo Block CG";
-    return has_cycles_ && !families_ ? "Block GMRES" : "Flexible GMRES";
+    return preconditioner_->has_cycles() ? "Block GMRES" : "Flexible GMRES";
   }
 
   /// Starts from x. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are
@@ -350,8 +285,8 @@ class IterativeSolver : public LinearSolver {
     using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
     const auto problem =
         rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
-    const auto unscaled = [&]() -> RCP<const Operator> { return rcp(new ScaledOperator(preconditioner_, unscale_)); };
-    problem->setRightPrec(scale_.is_null() ? preconditioner_ : unscaled());
+    const auto unscaled = [&]() -> RCP<const Operator> { return rcp(new ScaledOperator(inverse_, unscale_)); };
+    problem->setRightPrec(scale_.is_null() ? inverse_ : unscaled());
     problem->setProblem();
     const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
     const std::string method = list->get("Solver Type", usual_method());
@@ -367,25 +302,21 @@ class IterativeSolver : public LinearSolver {
     return converged || solver->isLOADetected();
   }
 
-  ParameterList muelu_;
+  PreconditionerOptions options_;
+  std::vector<Block> blocks_;
   bool reproducible_;
   ParameterList parameters_;
-  std::unique_ptr<LinearSolver> coarse_;
-  std::vector<Block> blocks_;
-  RCP<BlockSolver> solver_;                // of the only block, or
-  std::unique_ptr<FineLevel> fine_level_;  // of all blocks, or
-  std::unique_ptr<Families> families_;     // of several
-  std::shared_ptr<SolverCost> fine_cost_;
+  std::unique_ptr<LinearSolver> coarse_;  // instead of all that follows; or null
+  std::unique_ptr<Preconditioner> preconditioner_;
   RCP<const Comm> comm_;
   RCP<const Operator> matrix_;
-  RCP<const Operator> preconditioner_;
+  RCP<const Operator> inverse_;        // about that of the matrix
   RCP<const Vector> scale_, unscale_;  // of rows and columns; null: none
   static constexpr Real most_noise = 0.1;
   static constexpr Real much = 0.1;        // that a diagonal may change,
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   LinearSystem system_;
   RCP<const Vector> diagonal_;  // when multigrid was made
-  bool has_cycles_ = false;     // of our own multigrid, which can be tried
   bool symmetric_ = false;
   Reuse reuse_;
   std::string failure_ = "the matrix was not set up";

@@ -5,6 +5,7 @@
 
 #include "base/check.hpp"
 #include "base/parameters.hpp"
+#include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
 
@@ -53,7 +54,8 @@ void LinearSolverOptions::describe(base::Section& section) {
       "first, and the last bits vary; absent: true if checkpoints are asked for");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
-  section.passthrough(muelu, "MueLu", "parameters of MueLu; with any, it takes the place of Sprekk's own multigrid");
+  section.hint({"MueLu"},
+               "It belongs to a block: Solver > Blocks > displacement > \"type\" MueLu, and \"MueLu\" beside it.");
   check_library_entries(section, mumps, belos);
 }
 
@@ -78,6 +80,7 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
                                          is_3d ? "3D" : "2D", n, limit)
                            : fmt::format("{}: asked for; {} unknowns", options.type, n);
   if (!direct) return {make_iterative_solver(options, blocks), reason};
+  make_preconditioner(options.preconditioner, blocks);  // for its errors: what is said of blocks must be right anyway
   const int n_ranks = blocks.front().map->getComm()->getSize();
   const bool on_one_rank = options.reproducible.value_or(false) && n_ranks > 1;
   if (on_one_rank) reason += "; reproducible: factored on rank 0";

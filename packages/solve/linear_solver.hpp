@@ -2,14 +2,14 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "solve/joined.hpp"
+#include "solve/linear_system.hpp"
+#include "solve/preconditioner_options.hpp"
 #include "solve/solver_cost.hpp"
 
 namespace sprekk::base {
@@ -17,11 +17,6 @@ class Section;
 }
 
 namespace sprekk::solve {
-
-using fields::Block;
-using fields::CrsMatrix;
-using fields::Matrix;
-using fields::Vector;
 
 /// What is wanted of a linear solver. The lists are handed to the libraries untouched, over the defaults.
 struct LinearSolverOptions {
@@ -31,7 +26,8 @@ struct LinearSolverOptions {
   long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
   long long direct_limit_3d = 3000;    ///< auto: the same in 3D
   std::optional<bool> reproducible;    ///< ranks do not share the factors of a matrix; absent: they may
-  Teuchos::ParameterList mumps, belos, muelu;
+  Teuchos::ParameterList mumps, belos;
+  PreconditionerOptions preconditioner;
 
   void describe(base::Section& section);
 };
@@ -50,32 +46,6 @@ struct LinearReport {
 int iterations(const std::vector<LinearReport>& solves);
 
 inline constexpr Real acceptable_linear_residual = 1e-8;
-
-/// Calls work(A) with a block's matrix without what crosses interfaces, by whose values multigrid aggregates. Meanwhile
-/// the block's matrix may have these values, too.
-using Bulk = std::function<void(const std::function<void(const RCP<const Matrix>& A)>& work)>;
-
-/// A block on the diagonal of a linear system.
-struct DiagonalBlock {
-  Block block;
-  RCP<const Matrix> matrix;  ///< of the block alone; null if it has none
-  Bulk bulk;                 ///< or empty
-  bool symmetric = true;
-  RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
-  bool careful = true;           ///< where it is not symmetric, a cycle of multigrid is looked at and mended if need be
-};
-
-/// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.
-struct LinearSystem {
-  std::shared_ptr<const Joined> joined;
-  Blocks blocks;  ///< [r * n + s], not scaled
-  bool symmetric = false;
-  std::vector<DiagonalBlock> diagonal;
-  RCP<const CrsMatrix> matrix;  ///< of all blocks, scaled; null unless the solver reads it
-  bool reproducible = false;    ///< whether a set-up must leave the same bits every time
-
-  RCP<const fields::Operator> joined_operator() const { return solve::joined_operator(joined, blocks); }
-};
 
 /// All members are collective on the matrix' communicator, and answer the same on every rank.
 class LinearSolver {

@@ -168,6 +168,9 @@ void NewtonOptions::describe(base::Section& section) {
   section.entry(max_iterations, "maximum iterations", "-", base::at_least(1), "Newton steps before a solve has failed");
   section.entry(print, "print", "-", "print every Newton step");
   section.section(linear_solver, "Linear solver", "solver of the linear systems");
+  section.named_sections(linear_solver.preconditioner.blocks, "Blocks",
+                         "how the block of this name is preconditioned, where the solver is iterative");
+  section.section(linear_solver.preconditioner.sweep, "Sweep", "over the groups of blocks, where there are several");
   section.passthrough(nox, "NOX", "parameters of NOX");
   check_methods(section, nox);
 }

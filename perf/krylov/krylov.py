@@ -22,7 +22,7 @@ STATES = {  # which sides move how far, and the joint
     "mixed": linear.table(xx=0.007, yy=-0.006, zz=-0.012, shear=0.012) + linear.joint(stiffness=1, dilation=2),
     "open": linear.table(xx=0.01, yy=0.012, zz=-0.01, shear=0.002) + linear.joint(stiffness=1),
 }
-OTHERS = {"MueLu": (f"{linear.SOLVER}.MueLu.verbosity=none",)}  # any entry of its section puts MueLu in the place of the own multigrid
+OTHERS = {"MueLu": ("Solver.Blocks.displacement.type=MueLu",)}
 COMPARED = {"iterations": lambda run: run.mean, "set_up": lambda run: run.seconds("set-up"), "solve": lambda run: run.seconds("solve"),
             "memory": lambda run: run.bytes[0]}
 COLUMNS = {"cells, state": "", "edge": "d", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d",

@@ -72,7 +72,8 @@ class Restart(ProgramTest):
         self.assertEqual(self.last(a), self.last(b))
 
     def test_same_bits_on_the_same_ranks(self):
-        multigrid = ["Solver.Linear solver.type=iterative", "Solver.Linear solver.MueLu.coarse: max size=200"]
+        multigrid = ["Solver.Linear solver.type=iterative", "Solver.Blocks.displacement.type=MueLu",
+                     "Solver.Blocks.displacement.MueLu.coarse: max size=200"]
         past_the_largest_load = "1, 2, 4", ", 4.5"
         for scene, ranks, (first, then), options in (
                 (CYCLIC, 1, past_the_largest_load, []), (CYCLIC, 2, ("1, 2, 3", ", 4, 5"), []),

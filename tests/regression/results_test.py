@@ -291,7 +291,7 @@ class Results(ProgramTest):
     def test_solver_entries_reach_the_libraries(self):
         iterative = ["Solver.Linear solver.type=iterative", "Time.schedule={1}", QUIET]
         usual = self.run_scene("seed/immersed_3d.xml", *iterative)
-        other = self.run_scene("seed/immersed_3d.xml", *iterative, "Solver.Linear solver.MueLu.multigrid algorithm=unsmoothed",
+        other = self.run_scene("seed/immersed_3d.xml", *iterative, "Solver.Blocks.displacement.type=MueLu", "Solver.Blocks.displacement.MueLu.multigrid algorithm=unsmoothed",
                                "Solver.Linear solver.Belos.Num Blocks=7")
         self.assertGreater(other["steps"][0]["linear_iterations"], usual["steps"][0]["linear_iterations"])
         for word in ("unsmoothed", "Num Blocks = 7"):

@@ -1,0 +1,11 @@
+// What can be chosen of multigrid.
+#pragma once
+
+namespace sprekk::multigrid {
+
+struct Options {
+  int degree = 4;         ///< of Chebyshev's polynomial, at least 1; in flat cells the finest level takes a higher one
+  int coarse_size = 300;  ///< no further level below so many unknowns: a direct solve
+};
+
+}  // namespace sprekk::multigrid

@@ -1,0 +1,37 @@
+// The inverse of a block and of another that is condensed into it.
+#pragma once
+
+#include "solve/preconditioner.hpp"
+
+namespace sprekk::solve {
+
+/// Of blocks F and K, K condensed into F and its own matrix about diagonal, K is eliminated:
+///   y_F = S^-1 (x_F - A_FK D^-1 x_K),   y_K = D^-1 (x_K - A_KF y_F),   S about A_FF - A_FK D^-1 A_KF by multigrid,
+/// D the diagonal of A_KK. To D and A_FF comes what BlockProblem::schur() says of other blocks. Multigrid of S makes
+/// two cycles: where fractures let through so much more than rock one is not exact enough, and iterations of the whole
+/// system cost more than a second cycle.
+class CondensedPair : public Preconditioner {
+ public:
+  CondensedPair(const BlockOptions& options, const std::vector<Block>& pair);
+
+  bool is_symmetric() const override { return false; }
+  bool can_be_kept() const override { return false; }
+  std::vector<SolverCost> costs() const override { return multigrid_->costs(); }
+  void describe(Teuchos::ParameterList& blocks) const override;
+
+ private:
+  void prepare(const LinearSystem& pair, SolverCost& cost) override;
+  RCP<const fields::Operator> made() const override { return inverse_; }
+  void fill_S(const LinearSystem& pair, const Vector& D_inverse);
+  void add_diagonal(const Vector& added);
+  void subtract_product(const CrsMatrix& FK, const CrsMatrix& KF);
+
+  Block first_;
+  std::string second_;
+  std::unique_ptr<Preconditioner> multigrid_;
+  RCP<CrsMatrix> S_;
+  RCP<const Matrix> rows_of_S_;
+  RCP<const fields::Operator> inverse_;
+};
+
+}  // namespace sprekk::solve

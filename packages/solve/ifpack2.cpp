@@ -1,0 +1,104 @@
+// Preconditioners of Ifpack2, for a block or several joined.
+#include <Ifpack2_Factory.hpp>
+
+#include "base/check.hpp"
+#include "solve/preconditioner.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Map;
+using fields::Operator;
+using Teuchos::ParameterList;
+using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
+using Ifpack2Preconditioner = Ifpack2::Preconditioner<Real, LocalIndex, GlobalIndex>;
+
+bool has_zero_on_diagonal(const CrsMatrix& matrix) {
+  Vector diagonal(matrix.getRowMap());
+  matrix.getLocalDiagCopy(diagonal);
+  const auto d = diagonal.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t i = 0; i < d.extent(0); ++i)
+    if (d(i, 0) == 0) return true;
+  return false;
+}
+
+/// Of Ifpack2, by its name and parameters.
+RCP<Ifpack2Preconditioner> create(const std::string& method, const ParameterList& parameters,
+                                  const RCP<const RowMatrix>& matrix) {
+  const auto made = Ifpack2::Factory::create<RowMatrix>(method, matrix);
+  ParameterList list(parameters);
+  made->setParameters(list);
+  return made;
+}
+
+/// Throws an Error that names the entry if Ifpack2 takes it for wrong, or does not read it: tried on the number 1.
+void check(const std::string& block, const std::string& method, const ParameterList& given,
+           const RCP<const Comm>& comm) {
+  const auto place = fmt::format("Sprekk > Solver > Blocks > {} > Ifpack2", block);
+  const auto map = rcp(new Map(1, 0, comm));
+  const auto one = rcp(new CrsMatrix(map, 1));
+  for (const GlobalIndex row : map->getNodeElementList()) one->insertGlobalValues(row, 1, std::array{1.0}.data(), &row);
+  one->fillComplete();
+  ParameterList list(given);
+  try {
+    const auto made = Ifpack2::Factory::create<RowMatrix>(method, one);
+    made->setParameters(list);
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("{}: {}", place, gist(error.what())));
+  }
+  for (const auto& item : list)
+    SPREKK_CHECK(item.second.isList() || item.second.isUsed(),
+                 "{} > \"{}\": {} does not read this parameter; see Ifpack2's manual for those that it has", place,
+                 item.first, method);
+}
+
+class Ifpack2Method : public Preconditioner {
+ public:
+  Ifpack2Method(const std::string& type, const std::string& block, const std::string& method,
+                const ParameterList& parameters)
+      : Preconditioner(type, block), type_(type), method_(method), parameters_(parameters) {}
+
+  bool is_symmetric() const override { return type_ == "Gauss-Seidel"; }  // of others it is not known
+  void describe(ParameterList& blocks) const override {
+    auto& list = blocks.sublist(block());
+    list.set("type", type_);
+    if (type_ == "Ifpack2") list.sublist("Ifpack2").set("type", method_).setParameters(parameters_);
+  }
+
+ private:
+  void prepare(const LinearSystem& system, SolverCost&) override {
+    matrix_.update(system);
+    SPREKK_CHECK(type_ != "Gauss-Seidel" || !has_zero_on_diagonal(*matrix_.matrix()),
+                 "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
+    if (made_.is_null()) {
+      made_ = create(method_, parameters_, matrix_.matrix());
+      made_->initialize();
+    }
+    made_->compute();
+  }
+  RCP<const Operator> made() const override { return made_; }
+
+  std::string type_, method_;
+  ParameterList parameters_;
+  WholeMatrix matrix_;
+  RCP<Ifpack2Preconditioner> made_;
+};
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_ifpack2(const ParameterList& given, const std::vector<Block>& blocks) {
+  ParameterList parameters(given);
+  const auto method = parameters.get<std::string>("type");
+  parameters.remove("type");
+  check(blocks.front().name, method, parameters, blocks.front().map->getComm());
+  return std::make_unique<Ifpack2Method>("Ifpack2", blocks.front().name, method, parameters);
+}
+
+std::unique_ptr<Preconditioner> make_gauss_seidel(const std::vector<Block>& blocks) {
+  ParameterList list;
+  list.set("relaxation: type", "Symmetric Gauss-Seidel");
+  list.set("relaxation: sweeps", 2);
+  return std::make_unique<Ifpack2Method>("Gauss-Seidel", blocks.front().name, "RELAXATION", list);
+}
+
+}  // namespace sprekk::solve

@@ -1,0 +1,182 @@
+// Smoothed aggregation of MueLu, for a block or several joined.
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_MasterList.hpp>
+
+#include "base/check.hpp"
+#include "solve/preconditioner.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Map;
+using fields::MultiVector;
+using fields::Operator;
+using Teuchos::ParameterList;
+
+constexpr int coarse_size_of_muelu = 1000;
+
+/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
+/// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
+/// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
+/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew: prolongators that are kept
+/// ("RP") were smoothed without contact and do not reach across it. The largest eigenvalue
+/// takes more than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at
+/// crack tips; with less than it, the smoother would not be positive.
+/// A block of rock that is a single node on a coarse level has no neighbour in the graph of the bulk there; it must not
+/// be taken for a node without unknowns, which only the finest level has.
+ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places) {
+  ParameterList list("MueLu");
+  list.set("verbosity", "none");
+  list.set("number of equations", n_components);
+  list.set("multigrid algorithm", "sa");
+  list.set("coarse: max size", coarse_size_of_muelu);
+  list.set("reuse: type", "tP");
+  list.set("aggregation: drop tol", 1e-12);
+  list.set("sa: use filtered matrix", true);
+  list.set("aggregation: preserve Dirichlet points", true);
+  list.sublist("level 1").set("aggregation: preserve Dirichlet points", false);  // made from the finest
+  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
+  list.set("smoother: type", "CHEBYSHEV");
+  list.sublist("smoother: params")
+      .set("chebyshev: degree", 4)
+      .set("chebyshev: ratio eigenvalue", 15.0)
+      .set("chebyshev: eigenvalue max iterations", 20);
+  if (n_ranks > 1 && !has_places) list.set("coarse: type", "RELAXATION");  // on the ranks that have it
+  if (n_ranks > 1 && has_places) {
+    list.set("repartition: enable", true);
+    list.set("repartition: partitioner", "zoltan2");
+    list.set("repartition: start level", 1);
+    list.set("repartition: min rows per proc", 3 * coarse_size_of_muelu);
+    list.set("repartition: target rows per proc", 3 * coarse_size_of_muelu);
+    list.set("repartition: max imbalance", 1.3);
+  }
+  return list;
+}
+
+/// Raises the diagonal of a matrix a little while it lives, and leaves its bits as they were: parts that float, in the
+/// bulk alone or where contact is open, would make the coarse matrix singular, and its direct solver fail on the one
+/// rank that has it.
+class RaisedDiagonal {
+ public:
+  explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(matrix.getNodeNumRows()) {
+    each([](Real& value, Real& kept) {
+      kept = value;
+      value *= 1 + 1e-8;
+    });
+  }
+  ~RaisedDiagonal() {
+    each([](Real& value, const Real& kept) { value = kept; });
+  }
+  RaisedDiagonal(const RaisedDiagonal&) = delete;
+  RaisedDiagonal& operator=(const RaisedDiagonal&) = delete;
+
+ private:
+  template <class Work>
+  void each(const Work& work) {
+    const auto local = matrix_.getLocalMatrixHost();
+    const auto rows = matrix_.getRowMap()->getLocalMap(), columns = matrix_.getColMap()->getLocalMap();
+    for (LocalIndex row = 0, n = local.numRows(); row < n; ++row) {
+      const LocalIndex diagonal = columns.getLocalElement(rows.getGlobalElement(row));
+      for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+        if (local.graph.entries(k) == diagonal) work(local.values(k), values_[row]);
+    }
+  }
+
+  CrsMatrix& matrix_;
+  std::vector<Real> values_;
+};
+
+/// Another operator, which takes no notice of alpha and beta, and minds them.
+class Scaled : public Operator {
+ public:
+  explicit Scaled(RCP<const Operator> A) : A_(std::move(A)) {}
+  RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, Real alpha, Real beta) const override {
+    if (alpha == 1 && beta == 0) return A_->apply(x, y, mode);
+    MultiVector Ax(y.getMap(), y.getNumVectors());
+    A_->apply(x, Ax, mode);
+    y.update(alpha, Ax, beta);
+  }
+
+ private:
+  RCP<const Operator> A_;
+};
+
+/// Of one block: on its coordinates and near null space, aggregated by its bulk. Of others: on the numbers alone.
+class MueLuMultigrid : public Preconditioner {
+ public:
+  MueLuMultigrid(const std::string& block, const ParameterList& parameters)
+      : Preconditioner("multigrid", block), parameters_(parameters) {}
+
+  int coarse_size() const override { return parameters_.get<int>("coarse: max size"); }
+  void describe(ParameterList& blocks) const override {
+    auto& list = blocks.sublist(block());
+    list.set("type", "MueLu");
+    list.sublist("MueLu").setParameters(parameters_);
+  }
+
+ private:
+  using Hierarchy = MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>;
+
+  void prepare(const LinearSystem& system, SolverCost& cost) override {
+    matrix_.update(system);
+    // MueLu takes matrices that may change; only RaisedDiagonal changes this one
+    const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(matrix_.matrix());
+    const auto& bulk = system.diagonal.front().bulk;
+    const bool by_bulk = bulk && system.diagonal.size() == 1;
+    const bool anew = hierarchy_.is_null() || (symmetric_ && !system.symmetric);
+    if (anew) {
+      symmetric_ = system.symmetric;
+      if (by_bulk)
+        bulk([&](const RCP<const Matrix>& of_bulk) { create(system, of_bulk->crs()); });
+      else
+        create(system, matrix);
+    }
+    if (!anew || by_bulk) {
+      const RaisedDiagonal raised(*matrix);
+      MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
+    }
+    cost.operator_complexity = hierarchy_->GetHierarchy()->GetOperatorComplexity();
+    cost.bytes = (cost.operator_complexity - 1) * matrix->getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex));
+  }
+  RCP<const Operator> made() const override { return rcp(new Scaled(hierarchy_)); }
+
+  /// Aggregates by the graph of the bulk, where no edge crosses an interface. Where the matrix is not symmetric the
+  /// restriction is smoothed with its transpose.
+  void create(const LinearSystem& system, const RCP<CrsMatrix>& bulk) {
+    const RaisedDiagonal raised(*bulk);
+    ParameterList list(parameters_);
+    list.get("problem: symmetric", symmetric_);
+    list.get("transpose: use implicit", symmetric_);
+    const auto& first = system.diagonal.front().block;
+    if (system.diagonal.size() == 1 && !first.coordinates.is_null()) {
+      auto& user_data = list.sublist("user data");
+      if (first.near_null_space.n() > 0)
+        user_data.set("Nullspace", rcp(new MultiVector(*first.near_null_space.make(), Teuchos::Copy)));
+      user_data.set("Coordinates", rcp(new MultiVector(*first.coordinates, Teuchos::Copy)));
+    }
+    const RCP<Operator> from = bulk;
+    hierarchy_ = MueLu::CreateTpetraPreconditioner(from, list);
+  }
+
+  ParameterList parameters_;
+  WholeMatrix matrix_;
+  RCP<Hierarchy> hierarchy_;
+  bool symmetric_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std::vector<Block>& blocks) {
+  check_names(ParameterList(given).setName("MueLu"), {*MueLu::MasterList::List()});
+  const auto& first = blocks.front();
+  const bool has_places = blocks.size() == 1 && !first.coordinates.is_null();
+  auto list =
+      multigrid_defaults(blocks.size() == 1 ? first.n_components : 1, first.map->getComm()->getSize(), has_places);
+  if (given.isParameter("smoother: type")) list.remove("smoother: params");
+  list.setParameters(given);
+  return std::make_unique<MueLuMultigrid>(first.name, list);
+}
+
+}  // namespace sprekk::solve

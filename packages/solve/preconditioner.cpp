@@ -1,0 +1,259 @@
+#include "solve/preconditioner.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/check.hpp"
+#include "multigrid/multigrid.hpp"
+#include "solve/condensed_pair.hpp"
+#include "solve/fine_level.hpp"
+#include "solve/sweep.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+using fields::Operator;
+using multigrid::Multigrid;
+using Teuchos::ParameterList;
+
+/// Multigrid on blocks of nodes.
+class NodeMultigrid : public Preconditioner {
+ public:
+  NodeMultigrid(const multigrid::Options& options, const std::string& block)
+      : Preconditioner("multigrid", block), options_(options) {}
+
+  bool has_cycles() const override { return true; }
+  bool is_flat() const override { return !multigrid_.is_null() && multigrid_->flat(); }
+  int coarse_size() const override { return options_.coarse_size; }
+  void describe(ParameterList& blocks) const override {
+    auto& list = blocks.sublist(block());
+    list.set("type", "multigrid");
+    list.sublist("multigrid")
+        .set("degree", options_.degree, "of Chebyshev's polynomial")
+        .set("coarsest level", options_.coarse_size, "unknowns at most");
+  }
+
+ private:
+  void prepare(const LinearSystem& system, SolverCost& cost) override {
+    const auto& diagonal = system.diagonal.front();
+    if (multigrid_.is_null()) {
+      const int n = diagonal.block.n_components;
+      const auto modes = diagonal.block.near_null_space.make();
+      const auto& places = diagonal.block.coordinates;
+      multigrid::Nodes nodes;
+      const auto look = [&](const RCP<const Matrix>& bulk) {
+        nodes = multigrid::nodes_of(multigrid::node_matrix(*bulk, n), modes, places);
+      };
+      diagonal.bulk ? diagonal.bulk(look) : look(diagonal.matrix);
+      multigrid_ = rcp(new Multigrid(diagonal.matrix, std::move(nodes), n, modes, options_));
+    }
+    multigrid_->setup(diagonal.matrix, diagonal.symmetric, diagonal.careful);
+    cost.operator_complexity = multigrid_->operator_complexity();
+    cost.bytes = multigrid_->bytes();
+    cost.cycle_bytes = multigrid_->cycle_bytes();
+  }
+  RCP<const Operator> made() const override { return multigrid_; }
+
+  multigrid::Options options_;
+  RCP<Multigrid> multigrid_;
+};
+
+/// Factors of the matrix of a group.
+class Direct : public Preconditioner {
+ public:
+  explicit Direct(const std::string& block) : Preconditioner("direct solver", block) {}
+  void describe(ParameterList& blocks) const override { blocks.sublist(block()).set("type", "direct"); }
+
+ private:
+  void prepare(const LinearSystem& system, SolverCost&) override {
+    matrix_.update(system);
+    const int n_ranks = system.joined->map()->getComm()->getSize();
+    if (direct_.is_null())
+      direct_ = rcp(new multigrid::DirectInverse(matrix_.matrix(), "its matrix", system.reproducible ? 1 : n_ranks));
+    direct_->setup(system.symmetric);
+  }
+  RCP<const Operator> made() const override { return direct_; }
+
+  WholeMatrix matrix_;
+  RCP<multigrid::DirectInverse> direct_;
+};
+
+[[noreturn]] void fail(const std::string& block, const std::string& entry, const std::string& what) {
+  throw Error(fmt::format("Sprekk > Solver > Blocks > {} > \"{}\": {}", block, entry, what));
+}
+
+std::string names_of(const std::vector<Block>& blocks) {
+  std::vector<std::string> names;
+  for (const auto& block : blocks) names.push_back(fmt::format("\"{}\"", block.name));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+int place_of(const std::string& name, const std::vector<Block>& blocks) {
+  const auto found = std::find_if(blocks.begin(), blocks.end(), [&](const Block& block) { return block.name == name; });
+  return found == blocks.end() ? -1 : static_cast<int>(found - blocks.begin());
+}
+
+/// The block that the group of this one begins with.
+int first_of_group(const PreconditionerOptions& options, const std::vector<Block>& blocks, int member) {
+  int block = member;
+  for (std::size_t steps = 0; steps <= blocks.size(); ++steps) {
+    const auto& [name, with] = std::pair(blocks[block].name, options.of(blocks[block].name).with);
+    const auto& enriched = blocks[block].enriches.empty() ? blocks[block].condensed_into : blocks[block].enriches;
+    const auto& to = with.empty() ? enriched : with;
+    if (to.empty()) return block;
+    const int next = place_of(to, blocks);
+    if (next < 0) fail(name, "with", fmt::format("is \"{}\", must be one of {}", to, names_of(blocks)));
+    block = next;
+  }
+  fail(blocks[member].name, "with", "leads in a circle");
+}
+
+/// [group][member] blocks, the first members first.
+std::vector<std::vector<int>> groups_of(const PreconditionerOptions& options, const std::vector<Block>& blocks) {
+  for (const auto& [name, of_block] : options.blocks)
+    SPREKK_CHECK(place_of(name, blocks) >= 0,
+                 "Sprekk > Solver > Blocks > \"{}\": no such block is left after elimination; there are {}", name,
+                 names_of(blocks));
+  std::vector<std::vector<int>> members(blocks.size());
+  for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
+    if (const int first = first_of_group(options, blocks, b); first == b) {
+      members[b].insert(members[b].begin(), b);
+    } else {
+      members[first].push_back(b);
+      if (options.of(blocks[b].name).type != "auto")
+        fail(blocks[b].name, "type",
+             fmt::format("cannot be chosen, for the block is in the group of \"{}\", whose type it takes",
+                         blocks[first].name));
+    }
+  std::vector<std::vector<int>> groups;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(groups), [](const auto& g) { return !g.empty(); });
+  return groups;
+}
+
+/// Groups in the order of the sweep.
+std::vector<std::vector<int>> in_order(const SweepOptions& options, const std::vector<Block>& blocks,
+                                       const std::vector<std::vector<int>>& groups) {
+  if (options.order.empty()) return groups;
+  std::vector<Block> first;
+  for (const auto& group : groups) first.push_back(blocks[group.front()]);
+  std::vector<std::vector<int>> ordered;
+  for (const auto& name : options.order)
+    if (const int g = place_of(name, first); g >= 0) ordered.push_back(groups[g]);
+  const bool each_once = options.order.size() == groups.size() && ordered.size() == groups.size() &&
+                         std::is_permutation(ordered.begin(), ordered.end(), groups.begin());
+  SPREKK_CHECK(each_once, "Sprekk > Solver > Sweep > \"order\": is {}, must name each of {} once",
+               fmt::join(options.order, ", "), names_of(first));
+  return ordered;
+}
+
+/// What is condensed into a block of a kind that multigrid knows.
+bool is_condensed_pair(const std::vector<Block>& blocks) {
+  return blocks.size() == 2 && blocks[1].condensed_into == blocks[0].name && !blocks[0].coordinates.is_null();
+}
+
+std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, const std::vector<Block>& blocks) {
+  const auto& first = blocks.front();
+  const auto& options = all.of(first.name);
+  if (options.type == "direct") return make_direct(blocks);
+  if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
+  if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
+  if (have_fine_level(blocks)) return std::make_unique<FineLevel>(options, blocks);
+  if (is_condensed_pair(blocks)) return std::make_unique<CondensedPair>(options, blocks);
+  if (blocks.size() == 1 && !first.coordinates.is_null()) return make_multigrid(options, first);
+  if (options.type == "MueLu") return make_muelu(options.muelu, blocks);
+  if (options.type == "multigrid")
+    fail(first.name, "type",
+         "multigrid is for blocks whose unknowns have places, and those that go with them; "
+         "MueLu, Ifpack2, Gauss-Seidel and direct are for any");
+  return blocks.size() == 1 ? make_gauss_seidel(blocks) : make_direct(blocks);
+}
+
+}  // namespace
+
+Preconditioner::Preconditioner(const std::string& method, const std::string& block)
+    : block_(block), cost_(std::make_shared<SolverCost>()) {
+  cost_->name = fmt::format("{} of '{}'", method, block);
+}
+
+void Preconditioner::setup(const LinearSystem& system, bool keeps) {
+  bool done = true;
+  const auto work = [&] { keeps ? static_cast<void>(done = renew(system)) : prepare(system, *cost_); };
+  try {
+    timed(cost_->setup_seconds, [&] { base::collectively(*system.joined->map()->getComm(), work); });
+  } catch (const Error& error) {
+    const std::string text = error.what(), mine = "preconditioner of block '";
+    if (text.rfind(mine, 0) == 0) throw;  // of a part
+    throw Error(fmt::format("{}{}': {}", mine, block_, gist(text)));
+  }
+  cost_->n_setups += done;
+}
+
+RCP<const Operator> Preconditioner::counted(const RCP<const Operator>& inverse) const {
+  return rcp(new CountedOperator(inverse, cost_));
+}
+
+LinearSystem alone(const DiagonalBlock& block) {
+  return {std::make_shared<Joined>(std::vector{block.matrix->row_map()}), {block.matrix}, block.symmetric, {block}, {}};
+}
+
+void WholeMatrix::update(const LinearSystem& system) {
+  SPREKK_CHECK(!system.blocks.front().is_null(), "it has no matrix of its own; solve directly");
+  if (system.joined->n_blocks() == 1) {
+    matrix_ = system.blocks.front()->crs();
+    return;
+  }
+  if (!joined_) joined_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks);
+  joined_->update();
+  matrix_ = joined_->matrix();
+}
+
+std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
+                                                    const std::vector<Block>& blocks) {
+  const auto groups = in_order(options.sweep, blocks, groups_of(options, blocks));
+  std::vector<std::unique_ptr<Preconditioner>> parts;
+  for (const auto& group : groups) {
+    std::vector<Block> members;
+    for (const int b : group) members.push_back(blocks[b]);
+    parts.push_back(make_group(options, members));
+  }
+  const bool whole = groups.size() == 1 && std::is_sorted(groups.front().begin(), groups.front().end());
+  if (whole) return std::move(parts.front());
+  return std::make_unique<Sweep>(options.sweep, blocks, groups, std::move(parts));
+}
+
+std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const Block& block) {
+  const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
+  const bool own = Multigrid::can_solve(block.n_components, n_modes);
+  if (options.type == "MueLu" || (options.type == "auto" && !own)) return make_muelu(options.muelu, {block});
+  if (!own)
+    fail(block.name, "type",
+         fmt::format("multigrid is not for {} unknowns of a node and {} motions; MueLu is", block.n_components,
+                     n_modes));
+  return std::make_unique<NodeMultigrid>(options.multigrid, block.name);
+}
+
+std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {
+  return std::make_unique<Direct>(blocks.front().name);
+}
+
+/// The last paragraph of an exception's text: what went wrong, without the place in the library.
+std::string gist(const std::string& text) {
+  const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1), first = text.find("\n\n");
+  if (gap == std::string::npos) return text.substr(0, end);
+  const bool with_place = text[first - 1] == ':';
+  std::string words = with_place ? text.substr(gap + 2, end - gap - 2) : text.substr(0, first);
+  std::replace(words.begin(), words.end(), '\n', ' ');
+  return words;
+}
+
+void check_names(const ParameterList& given, const std::vector<ParameterList>& allowed) {
+  for (const auto& item : given) {
+    const std::string& name = item.first;
+    bool known = name.rfind("level ", 0) == 0 || name == "user data";  // MueLu's sections of one level
+    for (const auto& list : allowed) known = known || list.isParameter(name) || list.isSublist(name);
+    SPREKK_CHECK(known, "{} has no parameter \"{}\"; its manual lists those that it has", given.name(), name);
+  }
+}
+
+}  // namespace sprekk::solve

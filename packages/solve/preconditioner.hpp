@@ -1,0 +1,90 @@
+// About the inverse of a linear system: a tree, whose leaves are methods for a block or a group of blocks, and whose
+// nodes join or refine them.
+#pragma once
+
+#include "solve/linear_system.hpp"
+#include "solve/preconditioner_options.hpp"
+#include "solve/solver_cost.hpp"
+
+namespace sprekk::solve {
+
+/// Made once for blocks, and set up for each of their systems; graphs stay as they are. All members are collective
+/// unless they return stored data.
+class Preconditioner {
+ public:
+  /// `method` of the group of blocks that begins with `block`, in words.
+  Preconditioner(const std::string& method, const std::string& block);
+  virtual ~Preconditioner() = default;
+
+  /// Makes ready for these values. `keeps`: hierarchies of multigrid stay those of an earlier system, and what is above
+  /// them is renewed. Throws an Error that names the block, on every rank.
+  void setup(const LinearSystem& system, bool keeps = false);
+  /// About (S A S)^-1 of the last set-up, S the scales of its blocks. The object may change at every set-up.
+  RCP<const fields::Operator> inverse() const { return counted(made()); }
+  /// x <- where Krylov's method has to start from; false: from 0, which x is.
+  virtual bool start(const Vector& b, Vector& x) const { return false; }
+
+  /// Whether it is symmetric for symmetric systems.
+  virtual bool is_symmetric() const { return true; }
+  /// Whether the one of an earlier system serves as long as little has changed.
+  virtual bool can_be_kept() const { return true; }
+  /// Whether it is cycles of Sprekk's own multigrid, which can be tried at a set-up.
+  virtual bool has_cycles() const { return false; }
+  /// Whether cells are so flat that smoothing has to be better than elsewhere. Known after the first set-up.
+  virtual bool is_flat() const { return false; }
+  /// As many unknowns or fewer are for a direct solver; 0: none.
+  virtual int coarse_size() const { return 0; }
+  /// Its own and those of what it uses.
+  virtual std::vector<SolverCost> costs() const { return {*cost_}; }
+  /// The tree as a scene would ask for it, with all that is handed to libraries: adds to Blocks' sections by name.
+  virtual void describe(Teuchos::ParameterList& blocks) const = 0;
+
+ protected:
+  const std::string& block() const { return block_; }
+
+  virtual void prepare(const LinearSystem& system, SolverCost& cost) = 0;
+  /// What is above a hierarchy that is kept; whether there is anything.
+  virtual bool renew(const LinearSystem& system) { return false; }
+  virtual RCP<const fields::Operator> made() const = 0;
+  virtual RCP<const fields::Operator> counted(const RCP<const fields::Operator>& inverse) const;
+
+ private:
+  std::string block_;
+  std::shared_ptr<SolverCost> cost_;
+};
+
+/// For all these blocks: of each group what its options ask for, and a sweep over the groups. A block's group is that
+/// which its options say, or that of the block which it enriches or is condensed into. Throws an Error that names the
+/// entry and what is allowed.
+std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
+                                                    const std::vector<Block>& blocks);
+
+/// Multigrid on what a block's coordinates and near null space belong to: Sprekk's own, or MueLu's where it is asked
+/// for or there is no other.
+std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const Block& block);
+
+/// Methods for the matrix of one block or of several joined.
+std::unique_ptr<Preconditioner> make_muelu(const Teuchos::ParameterList& given, const std::vector<Block>& blocks);
+std::unique_ptr<Preconditioner> make_ifpack2(const Teuchos::ParameterList& given, const std::vector<Block>& blocks);
+std::unique_ptr<Preconditioner> make_gauss_seidel(const std::vector<Block>& blocks);
+std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks);
+
+/// The matrix of a whole system, for methods that need one.
+class WholeMatrix {
+ public:
+  /// Takes over the present values. Throws where there is no matrix. Collective.
+  void update(const LinearSystem& system);
+  const RCP<const CrsMatrix>& matrix() const { return matrix_; }
+
+ private:
+  std::unique_ptr<JoinedMatrix> joined_;  // of several blocks
+  RCP<const CrsMatrix> matrix_;
+};
+
+/// Of the text of a library's exception: what went wrong, without the place in its sources.
+std::string gist(const std::string& text);
+
+/// Throws an Error that names the entry if a list has one that the library does not know; `allowed` are its lists.
+void check_names(const Teuchos::ParameterList& given, const std::vector<Teuchos::ParameterList>& allowed);
+
+}  // namespace sprekk::solve

@@ -1,0 +1,350 @@
+// Preconditioners of blocks and groups against the systems that they are about the inverse of, where what they leave to
+// multigrid is small enough to be solved directly.
+#include "solve/preconditioner.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/check.hpp"
+
+namespace sprekk::test {
+namespace {
+
+using fields::CrsMatrix;
+using fields::Map;
+using fields::MultiVector;
+using fields::Vector;
+using fields::wrapped;
+using solve::LinearSystem;
+using solve::make_preconditioner;
+using solve::PreconditionerOptions;
+
+/// A chain over all ranks: faces with a pressure each, cells between them, and nodes that move, as many as faces. Every
+/// row reads its neighbours; cells do not read each other.
+struct Chain {
+  enum Which { nodes, faces, cells };
+
+  /// `order` of the blocks; without `back`, nodes do not read pressures.
+  Chain(const std::vector<Which>& order_, bool back, bool schur) : order(order_) {
+    const auto comm = Tpetra::getDefaultComm();
+    const GlobalIndex n = 5 * comm->getSize() + 2;
+    std::vector<RCP<const Map>> maps;
+    for (const Which which : order) {
+      fields::Block block;
+      block.name = std::array{"nodes", "faces", "cells"}[which];
+      block.map = rcp(new Map(which == cells ? n - 1 : n, 0, comm));
+      block.n_components = 1;
+      if (which == cells) block.condensed_into = "faces";
+      const auto places = rcp(new MultiVector(block.map, 2));
+      for (std::size_t i = 0; i < block.map->getNodeNumElements(); ++i)
+        places->replaceLocalValue(i, 0, Real(block.map->getGlobalElement(i)));
+      if (which != cells) block.coordinates = places;
+      blocks.push_back(block);
+      maps.push_back(block.map);
+    }
+    const auto joined = std::make_shared<solve::Joined>(maps);
+    joined->set_scales({0.5, 4, 0.01});
+    system.joined = joined;
+    for (std::size_t r = 0; r < order.size(); ++r)
+      for (std::size_t s = 0; s < order.size(); ++s) {
+        const bool absent = !back && order[r] == nodes && order[s] != nodes;
+        system.blocks.push_back(absent ? Teuchos::null : matrix(r, s));
+      }
+    for (std::size_t r = 0; r < order.size(); ++r) {
+      system.diagonal.push_back({blocks[r], system.blocks[r * order.size() + r], {}, false});
+      if (schur && order[r] != nodes) {
+        const auto more = rcp(new Vector(maps[r]));
+        more->randomize(1, 2);
+        system.diagonal.back().schur = more;
+      }
+    }
+  }
+
+  /// Of faces and cells: the faces beside a cell, and back; of others, up to one place apart. No row is symmetric.
+  RCP<const fields::Matrix> matrix(int r, int s) const {
+    const auto result = rcp(new CrsMatrix(blocks[r].map, 3));
+    const auto& rows = *blocks[r].map;
+    const bool down = order[r] != cells && order[s] == cells, up = order[r] == cells && order[s] != cells;
+    for (std::size_t i = 0; i < rows.getNodeNumElements(); ++i) {
+      const GlobalIndex row = rows.getGlobalElement(i), n = blocks[s].map->getGlobalNumElements();
+      for (GlobalIndex k = up ? 0 : -1; k <= (down ? 0 : 1); ++k) {
+        const GlobalIndex column = row + k;
+        if (column < 0 || column >= n || (order[r] == cells && order[s] == cells && k != 0)) continue;
+        const Real value = (r == s && k == 0 ? 4 : 0) + 0.5 * std::cos(1.0 + row + 7 * column + 100 * r + 1000 * s);
+        result->insertGlobalValues(row, 1, &value, &column);
+      }
+    }
+    result->fillComplete(blocks[s].map, blocks[r].map);
+    return wrapped(result);
+  }
+
+  /// What the sweep is about the inverse of: with the Schur complements that are given.
+  void apply(const Vector& x, Vector& y) const {
+    system.joined_operator()->apply(x, y);
+    for (std::size_t r = 0; r < order.size(); ++r) {
+      if (system.diagonal[r].schur.is_null()) continue;
+      const auto& joined = *system.joined;
+      y.offsetViewNonConst(joined.map(r), joined.first(r))
+          ->elementWiseMultiply(joined.scale(r) * joined.scale(r), *system.diagonal[r].schur,
+                                *x.offsetView(joined.map(r), joined.first(r)), 1);
+    }
+  }
+
+  std::vector<Which> order;
+  std::vector<fields::Block> blocks;
+  LinearSystem system;
+};
+
+constexpr Real rounding = 1e-6;  // multigrid raises the diagonal of its last matrix by 1e-8 of itself
+
+/// y = the preconditioner's of x, once it is set up `times` times.
+Vector swept(const Chain& chain, const Vector& x, const PreconditionerOptions& options = {}, int times = 2) {
+  const auto preconditioner = make_preconditioner(options, chain.blocks);
+  for (int k = 0; k < times; ++k) preconditioner->setup(chain.system);
+  Vector y(x.getMap());
+  y.putScalar(3);
+  preconditioner->inverse()->apply(x, y);
+  return y;
+}
+
+Vector random_vector(const Chain& chain) {
+  Vector x(chain.system.joined->map());
+  x.randomize(-1, 1);
+  return x;
+}
+
+/// The largest of |y| among the unknowns of block r, over all ranks.
+Real largest(const Chain& chain, const Vector& y, int r) {
+  return y.offsetView(chain.system.joined->map(r), chain.system.joined->first(r))->getVector(0)->normInf();
+}
+
+/// The tree as a scene would write it.
+Teuchos::ParameterList tree(const PreconditionerOptions& options, const std::vector<fields::Block>& blocks) {
+  Teuchos::ParameterList list;
+  make_preconditioner(options, blocks)->describe(list);
+  return list;
+}
+
+std::string type_of(Teuchos::ParameterList& list, const std::string& block) {
+  return list.sublist(block).get<std::string>("type", "");
+}
+
+TEST(Preconditioner, GroupsBlocksWithWhatIsCondensedIntoThem) {
+  const Chain chain({Chain::cells, Chain::nodes, Chain::faces}, true, false);
+  auto list = tree({}, chain.blocks);
+  EXPECT_EQ(type_of(list, "nodes"), "multigrid");
+  EXPECT_EQ(type_of(list, "faces"), "multigrid");
+  EXPECT_EQ(list.sublist("cells").get<std::string>("with"), "faces");
+}
+
+/// The product by which cells are eliminated fits into the graph of the faces: nothing is left out.
+TEST(Preconditioner, OfACondensedPairIsTheInverseOfBothBlocks) {
+  for (const bool schur : {false, true})
+    for (const auto& order : {std::vector{Chain::faces, Chain::cells}, std::vector{Chain::cells, Chain::faces}}) {
+      const Chain chain(order, true, schur);
+      const auto x = random_vector(chain);
+      const auto y = swept(chain, x);
+      Vector back(x.getMap());
+      chain.apply(y, back);
+      back.update(-1, x, 1);
+      EXPECT_LT(back.normInf(), rounding) << schur;
+    }
+}
+
+/// Where nodes do not read pressures, one sweep is the inverse.
+TEST(Preconditioner, SweepIsTheInverseOfATriangularSystem) {
+  const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, false, false);
+  const auto x = random_vector(chain);
+  const auto y = swept(chain, x);
+  Vector back(x.getMap());
+  chain.apply(y, back);
+  back.update(-1, x, 1);
+  EXPECT_LT(back.normInf(), rounding);
+}
+
+/// Rows of the last group are in balance, those of the first with its own unknowns alone.
+TEST(Preconditioner, SweepSolvesOneGroupAfterTheOther) {
+  const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, true, false),
+      triangular({Chain::nodes, Chain::faces, Chain::cells}, false, false);
+  const auto x = random_vector(chain);
+  const auto y = swept(chain, x);
+  Vector back(x.getMap()), own(x.getMap());
+  chain.apply(y, back);
+  triangular.apply(y, own);
+  back.update(-1, x, 1);
+  own.update(-1, x, 1);
+  EXPECT_LT(largest(chain, own, 0), rounding);
+  EXPECT_GT(largest(chain, back, 0), 1e-3);
+  for (const int r : {1, 2}) EXPECT_LT(largest(chain, back, r), rounding);
+}
+
+TEST(Preconditioner, SweepAddsToWhatIsThere) {
+  const Chain chain({Chain::faces, Chain::nodes, Chain::cells}, true, false);
+  const auto x = random_vector(chain);
+  const auto once = swept(chain, x);
+  const auto preconditioner = make_preconditioner({}, chain.blocks);
+  preconditioner->setup(chain.system);
+  Vector y(x, Teuchos::Copy);
+  preconditioner->inverse()->apply(x, y, Teuchos::NO_TRANS, 2, -3);
+  y.update(-2, once, 1);
+  y.update(3, x, 1);
+  EXPECT_LT(y.normInf(), 1e-13 * once.normInf());
+}
+
+/// B_f of all blocks, each a group of its own or two together, solved directly: (S A S)_ff^-1.
+PreconditionerOptions direct(const std::vector<std::string>& blocks) {
+  PreconditionerOptions options;
+  for (const auto& name : blocks) options.blocks[name].type = "direct";
+  return options;
+}
+
+RCP<MultiVector> part(const Chain& chain, Vector& x, int r) {
+  return x.offsetViewNonConst(chain.system.joined->map(r), chain.system.joined->first(r));
+}
+
+/// x - A y in the rows of block r.
+Real residual(const Chain& chain, const Vector& x, const Vector& y, int r) {
+  Vector rest(x.getMap());
+  chain.apply(y, rest);
+  rest.update(1, x, -1);
+  return largest(chain, rest, r);
+}
+
+TEST(Preconditioner, DirectGroupIsTheInverse) {
+  const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, true, false);
+  auto options = direct({"faces"});
+  options.blocks["nodes"].with = "faces";
+  const auto x = random_vector(chain);
+  const auto y = swept(chain, x, options);
+  for (const int r : {0, 1, 2}) EXPECT_LT(residual(chain, x, y, r), 1e-9);
+}
+
+/// Each block's rows are in balance with its own unknowns alone.
+TEST(Preconditioner, DiagonalSweepSeesNoOtherGroup) {
+  const Chain chain({Chain::nodes, Chain::faces}, true, false);
+  auto options = direct({"nodes", "faces"});
+  options.sweep.type = "diagonal";
+  const auto x = random_vector(chain);
+  auto y = swept(chain, x, options);
+  for (const int r : {0, 1}) {
+    Vector alone(x.getMap());
+    alone.putScalar(0);
+    Tpetra::deep_copy(*part(chain, alone, r), *part(chain, y, r));
+    EXPECT_LT(residual(chain, x, alone, r), 1e-9);
+  }
+  EXPECT_GT(residual(chain, x, y, 0), 1e-3);
+}
+
+/// The group that comes last is in balance: the second of a forward sweep, the first of one backward or in the other
+/// order; and symmetric sweeps leave less of the other, too.
+TEST(Preconditioner, SweepsGoAsAskedFor) {
+  const Chain chain({Chain::nodes, Chain::faces}, true, false);
+  auto forward = direct({"nodes", "faces"}), reversed = forward, symmetric = forward;
+  reversed.sweep.order = {"faces", "nodes"};
+  symmetric.sweep.type = "symmetric";
+  const auto x = random_vector(chain);
+  const auto y = swept(chain, x, forward), of_reversed = swept(chain, x, reversed), both = swept(chain, x, symmetric);
+  EXPECT_LT(residual(chain, x, y, 1), 1e-9);
+  EXPECT_GT(residual(chain, x, y, 0), 1e-3);
+  EXPECT_LT(residual(chain, x, of_reversed, 0), 1e-9);
+  EXPECT_GT(residual(chain, x, of_reversed, 1), 1e-3);
+  EXPECT_LT(residual(chain, x, both, 0), 1e-9);
+  EXPECT_LT(residual(chain, x, both, 1), residual(chain, x, of_reversed, 1));
+}
+
+/// Without dropping, the factors of ILUT on one rank are exact; on several they leave out couplings of ranks.
+TEST(Preconditioner, Ifpack2TakesItsParameters) {
+  const Chain chain({Chain::nodes, Chain::faces}, false, false);
+  const auto x = random_vector(chain);
+  const auto of_ilut = [&](double fill, double drop) {
+    PreconditionerOptions options;
+    options.blocks["nodes"].type = "direct";
+    options.blocks["faces"].type = "Ifpack2";
+    auto& list = options.blocks["faces"].ifpack2;
+    list.set("type", "ILUT").set("fact: ilut level-of-fill", fill).set("fact: drop tolerance", drop);
+    return residual(chain, x, swept(chain, x, options), 1);
+  };
+  if (chain.system.joined->map()->getComm()->getSize() == 1) {
+    EXPECT_LT(of_ilut(20, 0), 1e-9);
+    EXPECT_GT(of_ilut(1, 0.5), 1e-3);
+  } else {
+    EXPECT_LT(of_ilut(20, 0), of_ilut(1, 0.5));
+  }
+}
+
+/// For any block: without places, and for several joined.
+TEST(Preconditioner, EveryTypeTakesEveryBlock) {
+  const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, false, false);
+  const auto x = random_vector(chain);
+  for (const std::string type : {"MueLu", "Gauss-Seidel", "direct", "Ifpack2"})
+    for (const std::string with : {"", "nodes"}) {
+      SCOPED_TRACE(type + " " + with);
+      PreconditionerOptions options;
+      options.blocks["nodes"].type = type;
+      if (type == "Ifpack2") options.blocks["nodes"].ifpack2.set("type", "RILUK");
+      options.blocks["faces"].with = with;
+      const auto y = swept(chain, x, options);
+      EXPECT_LT(residual(chain, x, y, 0), 0.9 * largest(chain, x, 0));
+      auto list = tree(options, chain.blocks);
+      EXPECT_EQ(type_of(list, "nodes"), type);
+    }
+}
+
+std::string error_of(const std::function<void(PreconditionerOptions&)>& change) {
+  const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, false, false);
+  PreconditionerOptions options;
+  change(options);
+  try {
+    make_preconditioner(options, chain.blocks);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Preconditioner, ErrorsNameTheEntry) {
+  const std::string names = "\"nodes\", \"faces\", \"cells\"", blocks = "Sprekk > Solver > Blocks > ";
+  EXPECT_EQ(error_of([](auto& o) { o.blocks["node"]; }),
+            blocks + "\"node\": no such block is left after elimination; there are " + names);
+  EXPECT_EQ(error_of([](auto& o) { o.blocks["faces"].with = "node"; }),
+            blocks + "faces > \"with\": is \"node\", must be one of " + names);
+  EXPECT_EQ(error_of([](auto& o) { o.blocks["faces"].with = "cells"; }),
+            blocks + "faces > \"with\": leads in a circle");
+  EXPECT_EQ(
+      error_of([](auto& o) { o.blocks["cells"].type = "direct"; }),
+      blocks + "cells > \"type\": cannot be chosen, for the block is in the group of \"faces\", whose type it takes");
+  EXPECT_EQ(error_of([](auto& o) { o.sweep.order = {"faces"}; }),
+            "Sprekk > Solver > Sweep > \"order\": is faces, must name each of \"nodes\", \"faces\" once");
+  EXPECT_EQ(error_of([](auto& o) {
+              o.sweep.order = {"faces", "faces"};
+            }),
+            "Sprekk > Solver > Sweep > \"order\": is faces, faces, must name each of \"nodes\", \"faces\" once");
+  const auto of_ifpack2 = [&](const std::string& method, const std::string& entry) {
+    return error_of([&](auto& o) {
+      o.blocks["nodes"].type = "Ifpack2";
+      o.blocks["nodes"].ifpack2.set("type", method).set(entry, 2.0);
+    });
+  };
+  EXPECT_NE(of_ifpack2("ILU", "fact: drop tolerance").find(blocks + "nodes > Ifpack2: "), std::string::npos);
+  EXPECT_EQ(of_ifpack2("ILUT", "fact: drop"), blocks +
+                                                  "nodes > Ifpack2 > \"fact: drop\": ILUT does not read this "
+                                                  "parameter; see Ifpack2's manual for those that it has");
+  const auto of_relaxation = of_ifpack2("RELAXATION", "relaxation: swep");
+  EXPECT_NE(of_relaxation.find("relaxation: swep"), std::string::npos) << of_relaxation;
+  const auto of_muelu = error_of([](auto& o) {
+    o.blocks["nodes"].type = "MueLu";
+    o.blocks["nodes"].muelu.set("smother: type", "CHEBYSHEV");
+  });
+  EXPECT_NE(of_muelu.find("MueLu has no parameter \"smother: type\""), std::string::npos) << of_muelu;
+  EXPECT_NE(error_of([](auto& o) {
+              o.blocks["cells"].with = "nodes";
+              o.blocks["nodes"].type = "multigrid";
+            }).find("nodes > \"type\": multigrid is for blocks whose unknowns have places"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace sprekk::test
