@@ -14,6 +14,18 @@ import linear  # noqa: E402
 import numpy as np  # noqa: E402
 
 SCENE = "poro/injection_3d.xml"
+@dataclass
+class Study:
+    """What is measured of the scene: cases, and the entries of each; on which meshes, with which bounds."""
+    name: str
+    text: str
+    cases: list
+    quick: tuple       # of the cases
+    entries: callable  # of a case
+    bounds: dict
+    levels: dict
+
+
 RATE, VOLUME = 5e-3 / 6, 9.0  # m^3/s and m^3, the most that is injected in all steps together
 TIGHT = 1e-19  # m^2: what leaks off within a step, which coarse meshes underestimate, matters little for fractures
 LEVELS = {"tetrahedra": ("tetrahedron", (10, 20, 30)), "hexahedra": ("hexahedron", (10, 20, 40))}  # cells along an edge; multiples of 10 fit the fractures
@@ -88,13 +100,13 @@ def exponent(rows):
     return float(x @ y / (x @ x))
 
 
-def draw(rows, file):
+def draw(study, rows, file):
     """Iterations and seconds of the series of meshes against unknowns."""
     import style
     figure, three = style.plt.subplots(1, 3, figsize=(10, 3.2))
     for axes, (label, what) in zip(three, (("Krylov iterations, most (-)", lambda row: row.run.most_used), ("Newton iterations, most of a step (-)", lambda row: row.newton),
                                            ("seconds per Newton iteration (s)", lambda row: row.seconds / len(row.run.krylov)))):
-        for colour, mesh in zip(style.LINES, LEVELS):
+        for colour, mesh in zip(style.LINES, study.levels):
             of = [row for row in rows if row.mesh == mesh]
             axes.plot([row.unknowns for row in of], [what(row) for row in of], color=colour, marker="o", markersize=4, label=mesh)
         axes.set(xscale="log", xlabel="unknowns (-)", title=label)
@@ -104,18 +116,19 @@ def draw(rows, file):
     figure.savefig(file, dpi=150)
 
 
-def main(words):
-    parser = linear.parser("poro", __doc__)
+def measure(study, words):
+    """Runs all cases on the coarsest meshes and the series of meshes, and prints; the exit status."""
+    parser = linear.parser(study.name, study.text)
     options = parser.parse_args(words)
-    runs = [(mesh, case, 0) for mesh in LEVELS for case in (QUICK if options.quick else CASES)]
+    runs = [(mesh, case, 0) for mesh in study.levels for case in (study.quick if options.quick else study.cases)]
     if not options.quick:
-        runs += [(mesh, "alike", level) for level in (1, 2) for mesh in LEVELS]
+        runs += [(mesh, "alike", level) for level in (1, 2) for mesh in study.levels]
     chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[1]}")
     options.output.mkdir(parents=True, exist_ok=True)
     table, rows, failed = linear.Table(COLUMNS, 36), [], []
     for mesh, case, level in chosen:
-        shape, counts = LEVELS[mesh]
-        sets = (f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * 3)}}}", *entries(case))
+        shape, counts = study.levels[mesh]
+        sets = (f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * 3)}}}", *study.entries(case))
         run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{mesh} {case} {counts[level]}"), scene=SCENE)
         if run.failure:
             failed.append(f"failed: {mesh}, {case}, {counts[level]}: {run.failure}")
@@ -124,16 +137,20 @@ def main(words):
             table.add(rows[-1].values(), failed[-1:] if run.failure else ())
     if not rows:
         sys.exit("\n".join(failed))
-    table.write(options.output / "poro.csv")
+    table.write(options.output / f"{study.name}.csv")
     series = [row for row in rows if row.case == "alike"]
     if series:
-        draw(series, options.output / "poro.png")
+        draw(study, series, options.output / f"{study.name}.png")
     total = {"krylov_max": max(row.run.most_used for row in rows), "krylov_given_up": max(row.run.most_given_up for row in rows), "krylov_growth": growth(series, lambda row: row.run.mean), "newton_max": max((row.newton for row in series), default=np.nan),
              "newton_growth": growth(series, lambda row: row.newton), "exponent": exponent(series), "failures": len(failed)}
-    wrong = linear.missed(total, {name: bound for name, bound in BOUNDS.items() if not np.isnan(total[name])})
-    print("\n".join(["", *failed, f"poro.csv, and poro.png of the series of meshes, in {options.output}", *wrong]))
+    wrong = linear.missed(total, {name: bound for name, bound in study.bounds.items() if not np.isnan(total[name])})
+    print("\n".join(["", *failed, f"{study.name}.csv, and {study.name}.png of the series of meshes, in {options.output}", *wrong]))
     print("krylov_max={krylov_max:.4g} krylov_given_up={krylov_given_up:.4g} krylov_growth={krylov_growth:.2f} newton_max={newton_max:.3g} newton_growth={newton_growth:.2f} exponent={exponent:.2f} failures={failures}".format(**total))
     return 1 if failed or (options.quick and wrong) else 0
+
+
+def main(words):
+    return measure(Study("poro", __doc__, list(CASES), QUICK, entries, BOUNDS, LEVELS), words)
 
 
 if __name__ == "__main__":
