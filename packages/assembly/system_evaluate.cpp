@@ -333,6 +333,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
+  constexpr Real share_at_work = 1e-3;  // of the energy of what is carried: as much of it acts on all else, or less
   const auto of_field = [&](int c) { return unknowns_[c].balance ? rounding(x, unknowns_[c].scale) : 0; };
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
@@ -357,8 +358,8 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
           s += w * size * size;
         },
         part);
-    const Real unit = carried_[b] ? blocks_[b].kinematic_scale : 1;  // so that these are powers, too
-    sum += powers ? dt_ * part / unit : part;                        // the energy of a power
+    const Real unit = carried_[b] ? blocks_[b].kinematic_scale / share_at_work : 1;  // so that these are powers, too
+    sum += powers ? dt_ * part / unit : part;                                        // the energy of a power
   }
   return base::sum_over_ranks(*comm(), sum);
 }

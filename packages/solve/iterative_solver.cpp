@@ -1,6 +1,7 @@
 // Belos, preconditioned from the right by a solver for each block.
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -65,14 +66,12 @@ class ScaledOperator : public Operator {
   mutable MultiVector Sx_, ASx_;
 };
 
-/// 1/sqrt(diagonal), or its inverse.
-RCP<const Vector> root_of_diagonal(const Matrix& A, bool inverse) {
-  const auto scale = rcp(new Vector(A.row_map()));
-  A.copy_diagonal(*scale);
-  const auto values = scale->getLocalViewHost(Tpetra::Access::ReadWrite);
+/// scale[i] <- 1/sqrt(of S A S's diagonal) for the rows of a block, s its scale.
+void scale_by_diagonal(const Matrix& A, Real s, Vector& scale) {
+  A.copy_diagonal(scale);
+  const auto values = scale.getLocalViewHost(Tpetra::Access::ReadWrite);
   for (std::size_t k = 0; k < values.extent(0); ++k)
-    values(k, 0) = values(k, 0) > 0 ? std::pow(values(k, 0), inverse ? 0.5 : -0.5) : 1;
-  return scale;
+    values(k, 0) = values(k, 0) > 0 ? 1 / (s * std::sqrt(values(k, 0))) : 1;
 }
 
 class IterativeSolver : public LinearSolver {
@@ -120,15 +119,15 @@ class IterativeSolver : public LinearSolver {
     return failure_;
   }
 
-  /// Rows of one unknown of a node are scaled by the roots of their diagonals: what conducts little then counts as much
-  /// as what conducts well. What rounding leaves of the residual is no failure.
+  /// Balances, and a field of one unknown a node, are scaled by the roots of their diagonals: what conducts little then
+  /// counts as much as what conducts well. What rounding leaves of the residual is no failure.
   LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
     if (coarse_) return coarse_->solve(b, x, tolerance);
     if (scale_.is_null()) return solve_scaled(b, x, tolerance);
     Vector scaled(b.getMap()), y(x.getMap());
     scaled.elementWiseMultiply(1, *scale_, b, 0);
     auto report = solve_scaled(scaled, y, tolerance);
-    if (!report.converged && report.residual <= noise(scaled, y)) {
+    if (!report.converged && blocks_.size() == 1 && report.residual <= noise(scaled, y)) {
       report.converged = true;
       report.reason.clear();
     }
@@ -144,14 +143,28 @@ class IterativeSolver : public LinearSolver {
   }
 
  private:
+  bool is_scaled(const DiagonalBlock& diagonal) const {
+    const auto& block = diagonal.block;
+    const bool alone = blocks_.size() == 1 && block.n_components == 1 && block.near_null_space.n() == 0 &&
+                       block.interpolation.is_null();
+    return (alone || block.balance) && !diagonal.matrix.is_null();
+  }
+
   void set_scale() {
-    const auto& first = system_.diagonal.front();
-    const bool scalar = blocks_.size() == 1 && first.block.n_components == 1 && first.block.near_null_space.n() == 0 &&
-                        first.block.interpolation.is_null();
-    scale_ = scalar ? root_of_diagonal(*first.matrix, false) : Teuchos::null;
-    if (!scalar) return;
+    scale_ = unscale_ = Teuchos::null;
+    const auto& diagonal = system_.diagonal;
+    if (std::none_of(diagonal.begin(), diagonal.end(), [&](const auto& of) { return is_scaled(of); })) return;
+    const auto& joined = *system_.joined;
+    const auto scale = rcp(new Vector(joined.map())), unscale = rcp(new Vector(joined.map()));
+    scale->putScalar(1);
+    for (int r = 0; r < joined.n_blocks(); ++r)
+      if (is_scaled(diagonal[r]))
+        scale_by_diagonal(*diagonal[r].matrix, joined.scale(r),
+                          *scale->offsetViewNonConst(joined.map(r), joined.first(r))->getVectorNonConst(0));
+    unscale->reciprocal(*scale);
+    scale_ = scale;
+    unscale_ = unscale;
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
-    unscale_ = root_of_diagonal(*first.matrix, true);
   }
 
   /// Of rows that are scaled, relative to b: each is a sum of terms as large as x.

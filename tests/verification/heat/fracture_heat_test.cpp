@@ -57,45 +57,6 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
     }
 }
 
-/// Fluid at 1 K enters a fracture, v = 1e-2 m/s, in rock at 0 K that conducts across the fracture alone (Lauwerier
-/// 1955): T_f = erfc(A x/sqrt(t - x/v)), A = sqrt(k rho c)/(rho_f c_f b v). Of first order by upwind flow.
-TEST(HeatInFractures, AFractureWarmsTheRock) {
-  constexpr Real v = 1e-2, t = 1e6, k = 2.5, rc = 2.2e6, c = 4.2e6;
-  const auto exact = [&](Real x) {
-    return std::erfc(std::sqrt(k * rc) / (c * aperture * v) * x / std::sqrt(t - x / v));
-  };
-  EXPECT_NEAR(exact(10), 0.429488231027, 1e-10);
-  for (const std::string cell : {"quadrilateral", "hexahedron"}) {
-    std::vector<Real> errors;
-    for (const int n : {6, 12}) {
-      auto scene = closed_box(cell, false);
-      const bool flat = is_flat(cell);
-      scene.mesh.cells = flat ? std::vector<int>{2 * n, 4 * n} : std::vector<int>{2 * n, 4 * n, 1};
-      scene.mesh.lower_corner = flat ? std::vector<Real>{0, -8} : std::vector<Real>{0, -8, 0};
-      scene.mesh.upper_corner = flat ? std::vector<Real>{20, 8} : std::vector<Real>{20, 8, 1};
-      scene.mesh.fractures["a"] = {flat ? std::vector<Real>{0, 0} : std::vector<Real>{0, 0, 0},
-                                   flat ? std::vector<Real>{20, 0} : std::vector<Real>{20, 0, 1}};
-      auto& rock = scene.materials.at("rock");
-      rock.permeability = {Expression(1e-30)};
-      warm(scene, 0, 1, rc, c);
-      rock.thermal_conductivity = {Expression(1e-9), Expression(k)};
-      if (!flat) rock.thermal_conductivity.push_back(Expression(k));
-      scene.materials.at("joint").filling_conductivity = Expression(100);
-      inject(scene, "west", "a", aperture * v);
-      hold(scene, "east", "0", "a");
-      hold_temperature(scene, "west", "1", "a");
-      model::Model model(scene, Tpetra::getDefaultComm());
-      for (int step = 1; step <= 2 * n; ++step) ASSERT_TRUE(model.step_to(step * t / (2 * n)).converged) << cell;
-      Real worst = 0;
-      for (const Real x : {20.0 * 5 / 24, 20.0 * 11 / 24, 20.0 * 17 / 24})
-        worst = std::max(worst, std::abs(value_at(model, "fracture temperature", {x, 0, flat ? 0 : 0.5}) - exact(x)));
-      errors.push_back(worst);
-    }
-    EXPECT_LT(errors[1], 0.05) << cell;
-    EXPECT_GT(std::log2(errors[0] / errors[1]), 0.7) << cell << ": " << errors[0] << ", " << errors[1];
-  }
-}
-
 /// Steady flow with conduction, T(0) = 0, T(1) = 1: T = (exp(Pe x) - 1)/(exp(Pe) - 1). Of first order at Pe = 10, and
 /// between 0 and 1 and rising at Pe = 1000, where the flows of heat are those of two points.
 TEST(HeatInRock, IsCarriedWithTheFluid) {
