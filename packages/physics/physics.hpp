@@ -5,9 +5,11 @@
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
+#include "physics/fluid_change.hpp"
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,7 @@ struct Carried {
   Real capacity;
   std::string total, unit;                           ///< what results.json calls the rate at which wells bring it
   std::map<std::string, base::Expression> in_wells;  ///< u of what these put in, of t; others bring what is there
+  std::optional<FluidChange> change = {};            ///< what it does to the fluid; of one physics at most
 };
 
 /// Base of each physics, of what it has nothing to say about. A physics is one room of packages/physics and a line in

@@ -9,13 +9,6 @@ using assembly::Loop;
 
 namespace {
 
-template <class A, class B>
-struct Joined;
-template <class... A, class... B>
-struct Joined<assembly::Slots<A...>, assembly::Slots<B...>> {
-  using Slots = assembly::Slots<A..., B...>;
-};
-
 /// | symbol   | shape | unit         |                                                        |
 /// | x        | m + 1 + n | Pa, m, U | what the flow depends on [m], u of the entity and its ends |
 /// | r        | 1 + n | Q/s          | of energy W                                            |
@@ -59,36 +52,46 @@ struct Advection {
 };
 
 /// Of flow in cells.
-template <Shape shape>
+template <Shape shape, bool changes>
 struct InCells {
-  using Flow = HybridCell<shape>;
-  using Carried = typename Flow::Columns;
+  using Cell = HybridCell<shape>;
+  using Flow = std::conditional_t<changes, ChangedFlow<Cell>, Cell>;
+  using Carried = typename Cell::Columns;
   static constexpr Loop loop = Loop::cells;
   HybridDiffusionParameters parameters;
-  std::unique_ptr<Flow> flow = {};
+  std::unique_ptr<Cell> cell = {};
 
-  std::vector<std::string> drivers() const { return {parameters.field, "face " + parameters.field}; }
+  std::vector<std::string> drivers() const {
+    std::vector<std::string> fields = {parameters.field, "face " + parameters.field};
+    if (changes) fields.push_back(parameters.change->field);
+    return fields;
+  }
   std::vector<std::string> carried(const std::string& field) const { return {field, "face " + field}; }
   std::string place() const { return ""; }
   void bind(const assembly::Context& context) {
-    flow = std::make_unique<Flow>(hybrid_cell<shape>(context, parameters));
+    cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
   }
-  Flow at(const assembly::State&) const { return *flow; }
+  Flow at(const assembly::State&) const {
+    if constexpr (changes)
+      return {*cell, parameters.change->response};
+    else
+      return *cell;
+  }
 };
 
 /// Of flow along fracture faces.
-template <Shape shape, bool widens>
+template <Shape shape, bool widens, bool changes>
 struct InFractures {
   static constexpr int n = FractureFaces<shape>::n;
-  using Flow = std::conditional_t<widens, WideningFace<n>, FractureFace<n>>;
+  using Face = FractureFace<n>;
+  using Fluid = std::conditional_t<changes, ChangedFlow<Face>, Face>;
+  using Flow = std::conditional_t<widens, WideningFace<Fluid>, Fluid>;
   using Carried = assembly::Slots<assembly::Slot<1 + n, 1>>;
   static constexpr Loop loop = Loop::fracture_cells;
   FractureFlowParameters parameters;
   std::unique_ptr<FractureFaces<shape>> faces = {};
 
-  std::vector<std::string> drivers() const {
-    return widens ? std::vector<std::string>{"face pressure", "widening"} : std::vector<std::string>{"face pressure"};
-  }
+  std::vector<std::string> drivers() const { return physics::drivers(parameters, widens); }
   std::vector<std::string> carried(const std::string& field) const { return {"face " + field}; }
   std::string place() const { return " in fractures"; }
   void bind(const assembly::Context& context) {
@@ -97,7 +100,13 @@ struct InFractures {
   }
   Flow at(const assembly::State& state) const {
     if constexpr (widens)
-      return {faces->op(), {faces->conduits(), state.coefficients}};
+      return {fluid(), {faces->conduits(), state.coefficients}};
+    else
+      return fluid();
+  }
+  Fluid fluid() const {
+    if constexpr (changes)
+      return {faces->op(), parameters.change->response};
     else
       return faces->op();
   }
@@ -163,14 +172,19 @@ std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried)
 
 std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffusionParameters& flow,
                                                  const Carried& carried) {
-  return mesh::for_shape(shape, [&](auto s) { return module_of(InCells<s()>{flow}, carried); });
+  return mesh::for_shape(shape, [&](auto s) {
+    return flow.change ? module_of(InCells<s(), true>{flow}, carried) : module_of(InCells<s(), false>{flow}, carried);
+  });
 }
 
 std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens) {
   return mesh::for_shape(shape, [&](auto s) {
-    return widens ? module_of(InFractures<s(), true>{flow}, carried)
-                  : module_of(InFractures<s(), false>{flow}, carried);
+    const auto make = [&](auto changes) {
+      return widens ? module_of(InFractures<s(), true, changes()>{flow}, carried)
+                    : module_of(InFractures<s(), false, changes()>{flow}, carried);
+    };
+    return flow.change ? make(std::true_type()) : make(std::false_type());
   });
 }
 
