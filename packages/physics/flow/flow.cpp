@@ -210,9 +210,11 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   }
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
-    modules.push_back(make_advection(mesh.shape, darcy, carried));
+    const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
+    modules.push_back(make_advection(mesh.shape, darcy, carried, stored(carried.stored_in_cells)));
     if (!mesh.fracture_names.empty())
-      modules.push_back(make_fracture_advection(mesh.shape, fractures, carried, deforms));
+      modules.push_back(
+          make_fracture_advection(mesh.shape, fractures, carried, deforms, stored(carried.stored_in_fractures)));
   }
   if (!flow.wells.empty()) {
     WellsParameters all{.wells = wells(scene, mesh.dim()),

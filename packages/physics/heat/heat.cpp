@@ -148,6 +148,7 @@ void compare_fluid(Comparison& c) {
     c.fail("Heat > \"fluid heat capacity\"", "needs the section \"Flow\"; a joint may have a capacity of its own");
   if (!c.scene().flow && heat.fluid_expansion > 0)
     c.fail("Heat > \"fluid thermal expansion\"", "needs the section \"Flow\"");
+  if (!c.scene().flow && heat.advection != "upwind") c.fail("Heat > \"advection\"", "needs the section \"Flow\"");
   compare_change(c);
   Names wells;
   if (c.scene().flow)
@@ -326,6 +327,11 @@ void HeatSection::describe(base::Section& s) {
       scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
       "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
       "orthogonal, else mimetic");
+  s.choice(
+      advection, "advection", {"upwind", "second order"},
+      "how the fluid carries heat between cells, and along fractures; second order: with limited corrections once per "
+      "step, of use for steps in which it does not cross more than about a cell, with implicit Euler");
+  s.entry(of_friction, "heat of friction", "-", "what fractures dissipate as they slide warms them");
   s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
 }
 
@@ -406,6 +412,10 @@ void Heat::compare(Comparison& c) {
   compare_start(c);
   compare_fluid(c);
   compare_conditions(c);
+  if (!c.scene().heat->of_friction) return;
+  if (!Mechanics::is_in(c.scene())) c.fail("Heat > \"heat of friction\"", "needs rock that deforms");
+  if (!c.scene().heat->initial_temperature)
+    c.fail("Heat > \"initial temperature\"", "missing; it is required with \"heat of friction\"");
 }
 
 std::string Heat::no_error_estimate(const Scene& scene) {
@@ -417,8 +427,29 @@ std::vector<Carried> Heat::carried(const Scene& scene) {
   Carried energy{
       .field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
   energy.change = scene.heat->fluid_change();
+  if (scene.heat->advection == "second order") {
+    energy.stored_in_cells = [](const Setting& setting) {
+      const auto capacity = capacity_of_rock(setting.scene, setting.mesh);
+      std::vector<Real> all;
+      for (LocalIndex c = 0; c < setting.mesh.n_cells(); ++c) all.push_back(capacity.of_cell(setting.mesh, c));
+      return all;
+    };
+    energy.stored_in_fractures = [](const Setting& setting) {
+      std::vector<Real> all;
+      for (const auto& face : fillings(setting)) all.push_back(face.capacity);
+      return all;
+    };
+  }
   for (const auto& [name, well] : scene.heat->wells) energy.in_wells.emplace(name, well.temperature);
   return {energy};
+}
+
+std::string Heat::takes_friction_power(const Scene& scene) {
+  return scene.heat && scene.heat->of_friction ? "face temperature" : "";
+}
+
+std::string Heat::needs_implicit_euler(const Scene& scene) {
+  return scene.heat && scene.heat->advection == "second order" ? "Heat > \"advection\" = \"second order\"" : "";
 }
 
 void Heat::add_modules(const Setting& setting, Modules& modules) {
