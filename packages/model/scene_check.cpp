@@ -51,6 +51,11 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   if (!rates)
     comparison.fail("Time > \"scheme\"",
                     fmt::format("is \"{}\": needs the section \"{}\"", scheme, fmt::join(absent, "\" or \"")));
+  physics::for_each_physics([&](auto physics) {
+    const auto entry = physics.needs_implicit_euler(comparison.scene());
+    if (!entry.empty() && scheme != "implicit Euler")
+      comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": {} goes with implicit Euler", scheme, entry));
+  });
 }
 
 void compare_error_estimate(Comparison& comparison) {

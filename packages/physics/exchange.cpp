@@ -4,18 +4,23 @@
 
 namespace sprekk::physics {
 
-/// Of one exchange, and its derivative in the widening of its face.
+/// Of one exchange, and its derivatives in the widening of its face and in what the fluid carries.
 struct Exchange::Coefficient {
   ConstView<Real*> factor, widening;
-  ConstView<LocalIndex*> face;
+  ConstView<LocalIndex*> row, face;
   PresentConduits conduits;
+  FlowFactor fluid;
 
   KOKKOS_INLINE_FUNCTION bool widens() const { return conduits.conduit.extent(0) > 0; }
-  KOKKOS_INLINE_FUNCTION Real operator()(int k) const {
-    return widens() ? factor(k) * conduits.transmissivity(face(k), widening(face(k))) : factor(k);
+  KOKKOS_INLINE_FUNCTION Real operator()(int k) const { return own(k) * fluid.value(row(k)); }
+  KOKKOS_INLINE_FUNCTION Real by_widening(int k) const {
+    return factor(k) * conduits.dtransmissivity(face(k), widening(face(k))) * fluid.value(row(k));
   }
-  KOKKOS_INLINE_FUNCTION Real derivative(int k) const {
-    return factor(k) * conduits.dtransmissivity(face(k), widening(face(k)));
+  KOKKOS_INLINE_FUNCTION Real by_carried(int k) const { return own(k) * fluid.slope(row(k)); }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Real own(int k) const {
+    return widens() ? factor(k) * conduits.transmissivity(face(k), widening(face(k))) : factor(k);
   }
 };
 
@@ -26,8 +31,12 @@ void Exchange::add(LocalIndex row, Real coefficient, LocalIndex face) {
 }
 
 void Exchange::bind(const assembly::Context& context, int block, const laws::Fluid& fluid,
-                    const std::vector<laws::Conduit>& conduits) {
+                    const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change) {
   block_ = block;
+  if (change) {
+    carried_ = context.field(change->field);
+    response_ = change->response;
+  }
   fluid_ = fluid;
   std::vector<LocalIndex> rows, faces;
   std::vector<Real> coefficients;
@@ -54,7 +63,13 @@ void Exchange::set_outside(const std::vector<Real>& pressures) {
 }
 
 Exchange::Coefficient Exchange::coefficient(const assembly::State& state) const {
-  return {coefficient_, widening_ < 0 ? ConstView<Real*>() : state.x[widening_], face_, {conduit_, state.coefficients}};
+  const auto field = [&](int block) { return block < 0 ? ConstView<Real*>() : ConstView<Real*>(state.x[block]); };
+  return {coefficient_,
+          field(widening_),
+          row_,
+          face_,
+          {conduit_, state.coefficients},
+          {carried_ >= 0, response_, field(carried_)}};
 }
 
 void Exchange::add_residual(const assembly::State& state, const assembly::Rows& r) const {
@@ -82,11 +97,18 @@ void Exchange::add_jacobian(const assembly::State& state, fields::BlockMatrix& J
       "exchange", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int k) {
         add_entry(local, row(k), row(k), coefficient(k) * fluid.ddrop_da(x(row(k)), outside(k), 0));
       });
+  if (carried_ >= 0) {
+    const auto by_carried = J(block_, carried_)->getLocalMatrixDevice();
+    Kokkos::parallel_for(
+        "exchange", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int k) {
+          add_entry(by_carried, row(k), row(k), coefficient.by_carried(k) * fluid.drop(x(row(k)), outside(k), 0));
+        });
+  }
   if (widening_ < 0 || J(block_, widening_).is_null()) return;
   const auto by_widening = J(block_, widening_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
       "exchange", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int k) {
-        add_entry(by_widening, row(k), face(k), coefficient.derivative(k) * fluid.drop(x(row(k)), outside(k), 0));
+        add_entry(by_widening, row(k), face(k), coefficient.by_widening(k) * fluid.drop(x(row(k)), outside(k), 0));
       });
 }
 

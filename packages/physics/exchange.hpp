@@ -4,6 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/fluid.hpp"
 #include "physics/flow/present_conduits.hpp"
+#include "physics/fluid_change.hpp"
 
 #include <vector>
 
@@ -16,8 +17,9 @@ class Exchange {
   /// Adds one with a coefficient to a row; those that other ranks own are dropped. `face`: owned, needed with conduits.
   void add(LocalIndex row, Real coefficient, LocalIndex face = -1);
   /// Once all are added. `block`: that of the field. `conduits`: [local fracture face], which "widening" widens.
+  /// `change`: the coefficient is times FlowFactor, its field being one on the same entities.
   void bind(const assembly::Context& context, int block, const laws::Fluid& fluid,
-            const std::vector<laws::Conduit>& conduits = {});
+            const std::vector<laws::Conduit>& conduits = {}, const std::optional<FluidChange>& change = {});
   /// The pressures outside, in the order in which exchanges were added.
   void set_outside(const std::vector<Real>& pressures);
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
@@ -27,8 +29,9 @@ class Exchange {
   struct Coefficient;
   Coefficient coefficient(const assembly::State& state) const;
 
-  int block_ = -1, widening_ = -1;
+  int block_ = -1, widening_ = -1, carried_ = -1;
   laws::Fluid fluid_;
+  laws::FluidResponse response_;
   std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> coefficients_;
   std::vector<char> kept_;  // [exchange as added]

@@ -176,6 +176,27 @@ struct FlowMatrix {
   }
 };
 
+/// The balance of an entity with n ends, and the flow into these, from the outward flow q through them.
+template <int n>
+KOKKOS_INLINE_FUNCTION void balance(const Real (&q)[n], Real (&r)[1 + n]) {
+  r[0] = 0;
+  for (int i = 0; i < n; ++i) {
+    r[0] += q[i];
+    r[1 + i] = -q[i];
+  }
+}
+/// Its derivatives from those of q.
+template <int n, int m>
+KOKKOS_INLINE_FUNCTION void balance(const Real (&dq)[n][m], Real (&J)[1 + n][m]) {
+  for (int k = 0; k < m; ++k) {
+    J[0][k] = 0;
+    for (int i = 0; i < n; ++i) {
+      J[0][k] += dq[i][k];
+      J[1 + i][k] = -dq[i][k];
+    }
+  }
+}
+
 /// The balance of an entity with n ends, sum_i q_i, and the flow into it through them, -q_i, with
 /// q_i = sum_j T_ij ((e - e_j)/c + e e_j lift_j): mass per density at reference conditions, see laws::Fluid; for a
 /// constant density q_i = sum_j T_ij (p - p_j + lift_j).
@@ -190,6 +211,12 @@ struct HybridFlow {
   laws::Fluid fluid;
   Real T[n][n], lift[n];
 
+  /// The same of a fluid that weighs so much more.
+  KOKKOS_INLINE_FUNCTION HybridFlow heavier(Real factor) const {
+    HybridFlow result = *this;
+    for (Real& each : result.lift) each *= factor;
+    return result;
+  }
   /// Outward flow through each end.
   KOKKOS_INLINE_FUNCTION void flow(const Real (&x)[1 + n], Real (&q)[n]) const {
     Real drop[n];
@@ -203,23 +230,13 @@ struct HybridFlow {
   KOKKOS_INLINE_FUNCTION void residual(const Real (&x)[1 + n], Real (&r)[1 + n]) const {
     Real q[n];
     flow(x, q);
-    r[0] = 0;
-    for (int i = 0; i < n; ++i) {
-      r[0] += q[i];
-      r[1 + i] = -q[i];
-    }
+    balance(q, r);
   }
 
   KOKKOS_INLINE_FUNCTION void jacobian(const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
     Real dq[n][1 + n];
     dflow(x, dq);
-    for (int k = 0; k < 1 + n; ++k) {
-      J[0][k] = 0;
-      for (int i = 0; i < n; ++i) {
-        J[0][k] += dq[i][k];
-        J[1 + i][k] = -dq[i][k];
-      }
-    }
+    balance(dq, J);
   }
 
   /// The derivatives of flow() in x.
@@ -315,6 +332,11 @@ struct HybridCell {
     return result;
   }
 
+  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int cell) const {
+    Real X[mesh::n_nodes(shape)][dim];
+    geometry.gather(cell, X);
+    return at(cell, Faces(X));
+  }
   KOKKOS_INLINE_FUNCTION void flow(int cell, const Real (&x)[1 + n], Real (&q)[n]) const { at(cell).flow(x, q); }
   KOKKOS_INLINE_FUNCTION void dflow(int cell, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
     at(cell).dflow(x, dq);
@@ -324,13 +346,6 @@ struct HybridCell {
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int cell, const Real (&x)[1 + n], Real (&J)[1 + n][1 + n]) const {
     at(cell).jacobian(x, J);
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION HybridFlow<n> at(int cell) const {
-    Real X[mesh::n_nodes(shape)][dim];
-    geometry.gather(cell, X);
-    return at(cell, Faces(X));
   }
 };
 

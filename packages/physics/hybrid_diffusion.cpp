@@ -1,8 +1,10 @@
 #include "physics/hybrid_diffusion.hpp"
 
+#include "assembly/term.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/flow/changed_flow.hpp"
 #include "physics/hybrid_rock.hpp"
 
 #include <algorithm>
@@ -30,7 +32,8 @@ class HybridDiffusion final : public assembly::Module {
 
   void set_fields(const std::set<std::string>& fields) override {
     const auto& others = parameters_.coupled_by;
-    coupled_ = std::any_of(others.begin(), others.end(), [&](const auto& name) { return fields.count(name) > 0; });
+    coupled_ = parameters_.change ||
+               std::any_of(others.begin(), others.end(), [&](const auto& name) { return fields.count(name) > 0; });
   }
 
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
@@ -48,7 +51,7 @@ class HybridDiffusion final : public assembly::Module {
     (stay ? cells.condensed_into : cells.local_group) = stay ? on_facets : field + " in cells";
     d.unknowns = {cells, facets};
     d.scales = {{field, 1e-12}};
-    for (const auto& row : names_) d.couplings.push_back({Loop::cells, row, {field, on_facets}});
+    for (const auto& row : names_) d.couplings.push_back({Loop::cells, row, columns()});
     d.outputs = {{{field, parameters_.unit, fields::Entity::cell, 1}, [this](const auto& s) { return values(s); }},
                  {{parameters_.flux, parameters_.flux_unit, fields::Entity::cell, 3},
                   [this](const auto& s) { return fluxes(s); }}};
@@ -61,8 +64,7 @@ class HybridDiffusion final : public assembly::Module {
     size_ = mesh::largest_extent(*mesh_);
     op_ = std::make_unique<Op>(hybrid_cell<shape>(context, parameters_));
     blocks_ = {context.field(names_[0]), context.field(names_[1])};
-    assembler_ = std::make_unique<Assembler>(context, Loop::cells, blocks_, blocks_,
-                                             is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
+    set_flow(context);
     for (int k = 0; k < 2; ++k) load_[k] = assembly::Load(context.layout(blocks_[k]).n_owned());
     add_conditions();
     outflow_.bind(context, blocks_[1], parameters_.fluid);
@@ -73,13 +75,13 @@ class HybridDiffusion final : public assembly::Module {
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    assembler_->add_residual(*op_, state, r);
+    flow_.add_residual(state, r);
     outflow_.add_residual(state, r);
     for (int k = 0; k < 2; ++k) load_[k].add_to(r[blocks_[k]]);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    assembler_->add_jacobian(*op_, state, J);
+    flow_.add_jacobian(state, J);
     outflow_.add_jacobian(state, J);
   }
   bool symmetric(const assembly::State&) const override { return is_linear(); }
@@ -112,7 +114,23 @@ class HybridDiffusion final : public assembly::Module {
   }
 
  private:
-  using Assembler = assembly::Assembler<Op>;
+  std::vector<std::string> columns() const {
+    std::vector<std::string> all = {names_[0], names_[1]};
+    if (parameters_.change) all.push_back(parameters_.change->field);
+    return all;
+  }
+  ChangedFlow<Op> changed() const { return {*op_, parameters_.change->response}; }
+
+  void set_flow(const assembly::Context& context) {
+    std::vector<int> columns;
+    for (const auto& name : this->columns()) columns.push_back(context.field(name));
+    const auto set = [&](auto op) {
+      flow_ = assembly::Term(context, Loop::cells, blocks_, columns, !is_linear(), [op](const auto&) { return op; });
+    };
+    if (!parameters_.change) return set(*op_);
+    carried_ = columns.back();
+    set(changed());
+  }
 
   std::vector<Real> values(const assembly::State& state) const {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
@@ -122,6 +140,9 @@ class HybridDiffusion final : public assembly::Module {
   std::vector<Real> fluxes(const assembly::State& state) const {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
     const auto trace = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    const bool changes = parameters_.change.has_value();
+    const auto carried =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[changes ? carried_ : blocks_[0]]);
     std::vector<Real> values;
     Real X[mesh::n_nodes(shape)][dim], x[1 + n_faces], q[n_faces];
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
@@ -129,8 +150,9 @@ class HybridDiffusion final : public assembly::Module {
       const CellFaces<shape> faces(X);
       x[0] = u(c);
       for (int k = 0; k < n_faces; ++k) x[1 + k] = trace(mesh_->facets->of_cell[c * n_faces + k]);
-      op_->at(c, faces).flow(x, q);
-      const Real scale = 1 / (parameters_.fluid.density(x[0]) * faces.volume);
+      const auto [density, mobility] = changes ? factors(carried(c)) : std::array<Real, 2>{1, 1};
+      op_->at(c, faces).heavier(density).flow(x, q);
+      const Real scale = mobility / (parameters_.fluid.density(x[0]) * faces.volume);
       for (int i = 0; i < 3; ++i) {
         Real v = 0;
         for (int k = 0; k < n_faces && i < dim; ++k) v += q[k] * faces.centre[k][i] * scale;
@@ -138,6 +160,12 @@ class HybridDiffusion final : public assembly::Module {
       }
     }
     return values;
+  }
+
+  /// Of density and mobility.
+  std::array<Real, 2> factors(Real carried) const {
+    const auto& response = parameters_.change->response;
+    return {response.density(carried).value, response.mobility(carried).value};
   }
 
   /// The largest component on the diagonal. Collective.
@@ -148,7 +176,7 @@ class HybridDiffusion final : public assembly::Module {
     return base::max_over_ranks(*mesh.comm, here);
   }
 
-  bool is_linear() const { return parameters_.fluid.compressibility == 0; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.change; }
 
   /// The quadrature points of all boundary faces with a condition.
   void add_conditions() {
@@ -179,7 +207,8 @@ class HybridDiffusion final : public assembly::Module {
   Real size_ = 0;            // largest extent of the domain, m
   bool loaded_ = false;
   std::unique_ptr<Op> op_;
-  std::unique_ptr<Assembler> assembler_;
+  assembly::Term flow_;
+  int carried_ = -1;  // block of what changes the fluid
   Outflow outflow_;
   std::array<assembly::Load, 2> load_;  // Q per time
 };

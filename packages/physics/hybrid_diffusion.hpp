@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/module.hpp"
+#include "physics/fluid_change.hpp"
 #include "physics/hybrid_cell.hpp"
 #include "physics/outflow.hpp"
 #include "physics/properties.hpp"
@@ -26,6 +27,7 @@ struct HybridDiffusionParameters {
   FluxScheme scheme = FluxScheme::rt0;
   std::string reason = "";                       ///< why this one
   laws::Fluid fluid = {};                        ///< of energy: the default, whose density is 1
+  std::optional<FluidChange> change = {};        ///< flows are those of ChangedFlow
   std::array<Real, 3> weight{};                  ///< rho_0 g, N/m^3
   std::optional<base::Expression> initial = {};  ///< u at the start; none: it has no meaning
   std::vector<base::Expression> source = {};     ///< Q per volume and time; empty or one

@@ -5,9 +5,12 @@
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
+#include "physics/fluid_change.hpp"
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +49,10 @@ struct Carried {
   Real capacity;
   std::string total, unit;                           ///< what results.json calls the rate at which wells bring it
   std::map<std::string, base::Expression> in_wells;  ///< u of what these put in, of t; others bring what is there
+  std::optional<FluidChange> change = {};            ///< what it does to the fluid; of one physics at most
+  /// Where it is carried with second order, see Antidiffusion: what cells store of it per volume and u, and what fills
+  /// fracture faces, of local ones.
+  std::function<std::vector<Real>(const Setting&)> stored_in_cells = {}, stored_in_fractures = {};
 };
 
 /// Base of each physics, of what it has nothing to say about. A physics is one room of packages/physics and a line in
@@ -91,10 +98,14 @@ struct Physics {
   static bool has_initial_state(const Scene&) { return true; }
   /// Names of the sections that bring such rates.
   static std::vector<std::string> sections_with_rates() { return {}; }
+  /// The entry that asks for implicit Euler as the scheme in time; empty: any will do.
+  static std::string needs_implicit_euler(const Scene&) { return ""; }
   /// Why there is no error estimate with it; empty if there is.
   static std::string no_error_estimate(const Scene&) { return ""; }
   /// What the fluid carries for it.
   static std::vector<Carried> carried(const Scene&) { return {}; }
+  /// The field on facets whose balance in fractures gets the power that their sliding dissipates; empty: none.
+  static std::string takes_friction_power(const Scene&) { return ""; }
   /// Reports what does not fit together.
   static void compare(Comparison&) {}
   /// The same of conditions on a mesh that has all of their names; not collective.

@@ -1,6 +1,7 @@
 #include "physics/storage.hpp"
 
 #include "assembly/assembler.hpp"
+#include "physics/flow/changed_flow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,11 @@ struct StorageCell {
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
     r[0] = volume(e) * rate * (space * fluid.density(old) * denser + growth(e) * step * fluid.density(x[0]));
   }
+  /// V s, now and at the start of the step.
+  KOKKOS_INLINE_FUNCTION Real stored(int e, const Real (&x)[1]) const {
+    return volume(e) * (room(e) + growth(e) * (x[0] - initial(e))) * fluid.density(x[0]);
+  }
+  KOKKOS_INLINE_FUNCTION Real stored_before(int e) const { return stored(e, {initial(e) + gained(e, 0)}); }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[1], Real (&J)[1][1]) const {
     const Real space = room(e) + growth(e) * (x[0] - initial(e));
     J[0][0] = volume(e) * rate * fluid.density(x[0]) * (space * fluid.compressibility + growth(e));
@@ -57,9 +63,43 @@ struct StorageFace : StorageCell {
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
     r[0] = volume(e) * rate * (a_old * fluid.density(old) * denser + opened * fluid.density(x[0]));
   }
+  KOKKOS_INLINE_FUNCTION Real stored(int e, const Real (&x)[2]) const {
+    return volume(e) * (room(e) + x[1]) * fluid.density(x[0]);
+  }
+  KOKKOS_INLINE_FUNCTION Real stored_before(int e) const {
+    return stored(e, {initial(e) + gained(e, 0), gained(e, 1)});
+  }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
     J[0][1] = volume(e) * rate * fluid.density(x[0]);
     J[0][0] = J[0][1] * (room(e) + x[1]) * fluid.compressibility;
+  }
+};
+
+/// The same with the density times d(v), see laws::FluidResponse, v being the last of x and of what is kept.
+template <class Op>
+struct Changed {
+  static constexpr int m = Op::Columns::size;
+  using Columns = typename Joined<typename Op::Columns, assembly::Slots<assembly::Slot<1, 1>>>::Slots;
+  using Rows = typename Op::Rows;
+  Op base;
+  laws::FluidResponse response;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1], Real (&r)[1]) const {
+    r[0] = 0;
+    if (e >= static_cast<int>(base.gained.extent(0))) return;  // another rank's
+    Real own[m];
+    for (int k = 0; k < m; ++k) own[k] = x[k];
+    const Real d = response.density(x[m]).value, d_old = response.density(base.gained(e, m)).value;
+    base.residual(e, own, r);
+    r[0] = d * r[0] + base.rate * base.stored_before(e) * (d - d_old);
+  }
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[m + 1], Real (&J)[1][m + 1]) const {
+    Real own[m], by_own[1][m];
+    for (int k = 0; k < m; ++k) own[k] = x[k];
+    const auto d = response.density(x[m]);
+    base.jacobian(e, own, by_own);
+    for (int k = 0; k < m; ++k) J[0][k] = d.value * by_own[0][k];
+    J[0][m] = base.rate * base.stored(e, own) * d.slope;
   }
 };
 
@@ -68,20 +108,23 @@ struct Stored {
   Real volume;
   Capacity capacity;
   Real initial;
+  Real carried = 0;  ///< what changes the fluid, at the start
 };
 
 /// Finds what is stored in the entities of a loop, in their order.
 using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
 
-template <class Op>
+template <class Op, bool changes>
 class Storage final : public assembly::Module {
  public:
-  static constexpr int n = Op::Columns::size;  // of the history
+  static constexpr int m = Op::Columns::size, n = m + changes;  // of the history
 
   struct Of {
     std::string name, field, scale;
     fields::Entity entity;
     Loop loop;
+    std::string carried;  ///< field that changes the fluid
+    laws::FluidResponse response;
   };
   Storage(Of of, laws::Fluid fluid, Find find) : of_(std::move(of)), find_(std::move(find)) { op_.fluid = fluid; }
 
@@ -89,31 +132,38 @@ class Storage final : public assembly::Module {
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
-    d.couplings = {{of_.loop, of_.field, {of_.field}}};
-    if (n == 2) d.couplings[0].columns.push_back("widening");
+    d.couplings = {{of_.loop, of_.field, columns()}};
     d.stores = true;
-    d.history = {{"gained " + of_.scale + (n == 2 ? ", widening" : ""), of_.entity, n}};
+    const std::string kept = std::string(m == 2 ? ", widening" : "") + (changes ? ", " + of_.carried : "");
+    d.history = {{"gained " + of_.scale + kept, of_.entity, n}};
     return d;
   }
 
   void bind(const assembly::Context& context) override {
-    const int field = context.field(of_.field);
     std::vector<Real> volume, room, growth, initial;
     for (const auto& stored : find_(*context.mesh())) {
       volume.push_back(stored.volume);
       room.push_back(stored.capacity.room);
       growth.push_back(stored.capacity.growth);
       initial.push_back(stored.initial);
+      carried_.push_back(stored.carried);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
     op_.volume = assembly::to_device(volume, "volume");
     op_.room = assembly::to_device(room, "room");
     op_.growth = assembly::to_device(growth, "growth");
     op_.initial = assembly::to_device(initial, "initial values");
-    std::vector<int> columns = {field};
-    if (n == 2) columns.push_back(context.field("widening"));
+    std::vector<int> columns;
+    for (const auto& name : this->columns()) columns.push_back(context.field(name));
     assembler_ =
-        std::make_unique<Assembler>(context, of_.loop, std::vector{field}, columns, Assembler::Positions::keep);
+        std::make_unique<Assembler>(context, of_.loop, std::vector{columns[0]}, columns, Assembler::Positions::keep);
+  }
+
+  void initial_history(const std::vector<View<Real**>>& history) const override {
+    if (!changes) return;
+    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), history[0]);
+    for (std::size_t e = 0; e < kept.extent(0); ++e) kept(e, m) = carried_[e];
+    Kokkos::deep_copy(history[0], kept);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -129,73 +179,104 @@ class Storage final : public assembly::Module {
     const auto initial = op_.initial;
     const auto gained = state.history[0];
     assembler_->for_each(
-        op_, state, KOKKOS_LAMBDA(int e, const Real(&x)[n]) {
+        at(state), state, KOKKOS_LAMBDA(int e, const Real(&x)[n]) {
           if (e >= static_cast<int>(gained.extent(0))) return;
           for (int k = 0; k < n; ++k) gained(e, k) = k == 0 ? x[0] - initial(e) : x[k];
         });
   }
 
  private:
-  using Assembler = assembly::Assembler<Op>;
+  using Whole = std::conditional_t<changes, Changed<Op>, Op>;
+  using Assembler = assembly::Assembler<Whole>;
 
-  Op at(const assembly::State& state) const {
+  Whole at(const assembly::State& state) const {
     Op op = op_;
     op.gained = state.history[0];
     op.rate = state.rate;
-    return op;
+    if constexpr (changes)
+      return {op, of_.response};
+    else
+      return op;
+  }
+  std::vector<std::string> columns() const {
+    std::vector<std::string> fields = {of_.field};
+    if (m == 2) fields.push_back("widening");
+    if (changes) fields.push_back(of_.carried);
+    return fields;
   }
 
   Of of_;
   Find find_;
-  Real largest_ = 0;  // initial value on this rank
+  std::vector<Real> carried_;  // [entity] at the start
+  Real largest_ = 0;           // initial value on this rank
   Op op_;
   std::unique_ptr<Assembler> assembler_;
 };
 
+/// `prefix`: of the name of the field that changes the fluid.
+template <class Op>
+std::unique_ptr<assembly::Module> module_of(std::string name, std::string field, std::string scale,
+                                            fields::Entity entity, Loop loop, const std::string& prefix,
+                                            const std::optional<FluidChange>& change, const laws::Fluid& fluid,
+                                            Find find) {
+  const auto make = [&](auto changes) -> std::unique_ptr<assembly::Module> {
+    using Module = Storage<Op, changes()>;
+    typename Module::Of of{.name = std::move(name),
+                           .field = std::move(field),
+                           .scale = std::move(scale),
+                           .entity = entity,
+                           .loop = loop,
+                           .carried = change ? prefix + change->field : "",
+                           .response = change ? change->response : laws::FluidResponse()};
+    return std::make_unique<Module>(std::move(of), fluid, std::move(find));
+  };
+  return change ? make(std::true_type()) : make(std::false_type());
+}
+
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters) {
-  const Storage<StorageCell>::Of of{.name = parameters.name,
-                                    .field = parameters.field,
-                                    .scale = parameters.field,
-                                    .entity = fields::Entity::cell,
-                                    .loop = Loop::cells};
-  const auto fluid = parameters.fluid;
-  return std::make_unique<Storage<StorageCell>>(of, fluid, [parameters = std::move(parameters)](const auto& mesh) {
+  const auto find = [parameters](const mesh::Mesh& mesh) {
     std::vector<Stored> stored;
     mesh::for_shape(mesh.shape, [&](auto shape) {
+      const auto mean = [&](LocalIndex c, const base::Expression& of) {
+        return assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return of(x, 0); });
+      };
       for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-        const auto [volume, initial] =
-            assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return parameters.initial(x, 0); });
-        stored.push_back({.volume = volume, .capacity = parameters.capacity.of_cell(mesh, c), .initial = initial});
+        const auto [volume, initial] = mean(c, parameters.initial);
+        stored.push_back({.volume = volume,
+                          .capacity = parameters.capacity.of_cell(mesh, c),
+                          .initial = initial,
+                          .carried = parameters.change ? mean(c, parameters.change->initial)[1] : 0});
       }
     });
     return stored;
-  });
+  };
+  return module_of<StorageCell>(parameters.name, parameters.field, parameters.field, fields::Entity::cell, Loop::cells,
+                                "", parameters.change, parameters.fluid, find);
 }
 
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
-  const auto make = [&](auto op) -> std::unique_ptr<assembly::Module> {
-    using Module = Storage<decltype(op)>;
-    const typename Module::Of of{.name = "fracture storage",
-                                 .field = "face pressure",
-                                 .scale = "pressure",
-                                 .entity = fields::Entity::fracture_face,
-                                 .loop = Loop::fracture_faces};
-    return std::make_unique<Module>(of, parameters.fluid, [parameters](const mesh::Mesh& mesh) {
-      std::vector<Stored> stored;
-      mesh::for_shape(mesh.shape, [&](auto shape) {
-        for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-          const auto& face = mesh.fracture_faces[f];
-          const Real initial =
-              assembly::face_mean<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                           [&](const auto&, const auto& x) { return parameters.initial(x, 0); });
-          stored.push_back(
-              {.volume = face.area, .capacity = {.room = parameters.aperture[f], .growth = 0}, .initial = initial});
-        }
-      });
-      return stored;
+  const auto find = [parameters](const mesh::Mesh& mesh) {
+    std::vector<Stored> stored;
+    mesh::for_shape(mesh.shape, [&](auto shape) {
+      const auto mean = [&](const mesh::Mesh::FractureFace& face, const base::Expression& of) {
+        return assembly::face_mean<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                            [&](const auto&, const auto& x) { return of(x, 0); });
+      };
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+        const auto& face = mesh.fracture_faces[f];
+        stored.push_back({.volume = face.area,
+                          .capacity = {.room = parameters.aperture[f], .growth = 0},
+                          .initial = mean(face, parameters.initial),
+                          .carried = parameters.change ? mean(face, parameters.change->initial) : 0});
+      }
     });
+    return stored;
+  };
+  const auto make = [&](auto op) {
+    return module_of<decltype(op)>("fracture storage", "face pressure", "pressure", fields::Entity::fracture_face,
+                                   Loop::fracture_faces, "face ", parameters.change, parameters.fluid, find);
   };
   return parameters.widens ? make(StorageFace()) : make(StorageCell());
 }

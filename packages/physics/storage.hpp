@@ -4,9 +4,11 @@
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
 #include "laws/fluid.hpp"
+#include "physics/fluid_change.hpp"
 #include "physics/properties.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +22,12 @@ struct Capacity {
 };
 
 struct StorageParameters {
-  std::string name;                    ///< of the module
-  std::string field;                   ///< u, on cells
-  Properties<Capacity> capacity = {};  ///< of cells
-  laws::Fluid fluid = {};              ///< of energy: the default, whose density is 1
-  base::Expression initial = 0;        ///< u at the start
+  std::string name;                        ///< of the module
+  std::string field;                       ///< u, on cells
+  Properties<Capacity> capacity = {};      ///< of cells
+  laws::Fluid fluid = {};                  ///< of energy: the default, whose density is 1
+  base::Expression initial = 0;            ///< u at the start
+  std::optional<FluidChange> change = {};  ///< densities are times that of its response
 };
 
 /// Adds V (s - s_old)/dt to the rows of u (implicit Euler), with s as Capacity says: what the cell gains in a step. It
@@ -36,6 +39,7 @@ struct FractureStorageParameters {
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
   bool widens = false;           ///< the aperture grows by "widening" of PoroelasticCoupling
+  std::optional<FluidChange> change = {};
 };
 
 /// The same for "face pressure" on fracture faces, of which all is space for fluid: area for V, aperture for the room.

@@ -1,5 +1,6 @@
 #include "physics/flow/advection.hpp"
 
+#include "physics/flow/antidiffusion.hpp"
 #include "physics/flow/fracture_faces.hpp"
 #include "physics/hybrid_rock.hpp"
 
@@ -8,13 +9,6 @@ namespace sprekk::physics {
 using assembly::Loop;
 
 namespace {
-
-template <class A, class B>
-struct Joined;
-template <class... A, class... B>
-struct Joined<assembly::Slots<A...>, assembly::Slots<B...>> {
-  using Slots = assembly::Slots<A..., B...>;
-};
 
 /// | symbol   | shape | unit         |                                                        |
 /// | x        | m + 1 + n | Pa, m, U | what the flow depends on [m], u of the entity and its ends |
@@ -72,45 +66,82 @@ struct Advection {
 };
 
 /// Of flow in cells.
-template <Shape shape>
+template <Shape shape, bool changes>
 struct InCells {
-  using Flow = HybridCell<shape>;
-  using Carried = typename Flow::Columns;
+  using Cell = HybridCell<shape>;
+  using Flow = std::conditional_t<changes, ChangedFlow<Cell>, Cell>;
+  using Carried = typename Cell::Columns;
   static constexpr Loop loop = Loop::cells;
   HybridDiffusionParameters parameters;
-  std::unique_ptr<Flow> flow = {};
+  std::unique_ptr<Cell> cell = {};
 
-  std::vector<std::string> drivers() const { return {parameters.field, "face " + parameters.field}; }
+  std::vector<std::string> drivers() const {
+    std::vector<std::string> fields = {parameters.field, "face " + parameters.field};
+    if (changes) fields.push_back(parameters.change->field);
+    return fields;
+  }
   std::vector<std::string> carried(const std::string& field) const { return {field, "face " + field}; }
   std::string place() const { return ""; }
+  static constexpr auto entity = fields::Entity::cell;
+  static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_cells(mesh); }
+  static LocalIndex row(const mesh::Mesh&, LocalIndex cell) { return cell; }
+  static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
+  /// Times the size, m^3 that store.
+  Real room(LocalIndex, const Real*, Real) const { return 1; }
   void bind(const assembly::Context& context) {
-    flow = std::make_unique<Flow>(hybrid_cell<shape>(context, parameters));
+    cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
   }
-  Flow at(const assembly::State&) const { return *flow; }
+  Flow at(const assembly::State&) const {
+    if constexpr (changes)
+      return {*cell, parameters.change->response};
+    else
+      return *cell;
+  }
 };
 
 /// Of flow along fracture faces.
-template <Shape shape, bool widens>
+template <Shape shape, bool widens, bool changes>
 struct InFractures {
   static constexpr int n = FractureFaces<shape>::n;
-  using Flow = std::conditional_t<widens, WideningFace<n>, FractureFace<n>>;
+  using Face = FractureFace<n>;
+  using Fluid = std::conditional_t<changes, ChangedFlow<Face>, Face>;
+  using Flow = std::conditional_t<widens, WideningFace<Fluid>, Fluid>;
   using Carried = assembly::Slots<assembly::Slot<1 + n, 1>>;
   static constexpr Loop loop = Loop::fracture_cells;
   FractureFlowParameters parameters;
   std::unique_ptr<FractureFaces<shape>> faces = {};
 
-  std::vector<std::string> drivers() const {
-    return widens ? std::vector<std::string>{"face pressure", "widening"} : std::vector<std::string>{"face pressure"};
-  }
+  std::vector<std::string> drivers() const { return physics::drivers(parameters, widens); }
   std::vector<std::string> carried(const std::string& field) const { return {"face " + field}; }
   std::string place() const { return " in fractures"; }
+  static constexpr auto entity = fields::Entity::fracture_face;
+  static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_fractures(mesh); }
+  static LocalIndex row(const mesh::Mesh& mesh, LocalIndex face) { return mesh.facets->fracture_face[face]; }
+  static std::vector<Real> sizes(const mesh::Mesh& mesh) {
+    std::vector<Real> areas;
+    for (const auto& face : mesh.fracture_faces) areas.push_back(face.area);
+    return areas;
+  }
+  /// Times the size, m^3 at reference conditions; what the flow depends on begins with p_F and ends with the widening.
+  Real room(LocalIndex face, const Real* drivers, Real u) const {
+    const Real aperture =
+        parameters.faces[face].along.mechanical_aperture(widens ? drivers[Flow::Columns::size - 1] : 0);
+    return aperture * parameters.fluid.density(drivers[0]) *
+           (changes ? parameters.change->response.density(u).value : 1);
+  }
   void bind(const assembly::Context& context) {
     faces = std::make_unique<FractureFaces<shape>>(context.mesh(), context.layout(context.field("face pressure")),
                                                    parameters, widens);
   }
   Flow at(const assembly::State& state) const {
     if constexpr (widens)
-      return {faces->op(), {faces->conduits(), state.coefficients}};
+      return {fluid(), {faces->conduits(), state.coefficients}};
+    else
+      return fluid();
+  }
+  Fluid fluid() const {
+    if constexpr (changes)
+      return {faces->op(), parameters.change->response};
     else
       return faces->op();
   }
@@ -119,8 +150,8 @@ struct InFractures {
 template <class Where>
 class AdvectionModule final : public assembly::Module {
  public:
-  AdvectionModule(Where where, const Carried& carried)
-      : where_(std::make_unique<Where>(std::move(where))), carried_(carried) {}
+  AdvectionModule(Where where, const Carried& carried, std::vector<Real> stored)
+      : where_(std::make_unique<Where>(std::move(where))), carried_(carried), stored_(std::move(stored)) {}
 
   std::string name() const override { return "advection of " + carried_.field + where_->place(); }
 
@@ -128,6 +159,7 @@ class AdvectionModule final : public assembly::Module {
     assembly::Declaration d;
     for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
     d.carries = rows();
+    if (corrects()) d.history = {{"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_kept(n)}};
     return d;
   }
 
@@ -140,19 +172,76 @@ class AdvectionModule final : public assembly::Module {
     assembler_ = std::make_unique<Assembler>(context, Where::loop, numbers(rows()), numbers(columns()),
                                              Assembler::Positions::keep);
     where_->bind(context);
+    if (corrects()) bind_correction(context);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     assembler_->add_residual(at(state), state, r);
+    if (!corrects()) return;
+    const auto rows = r[block_];
+    const auto row = row_;
+    const auto gains = gains_;
+    const Real rate = state.rate;
+    Kokkos::parallel_for(
+        "antidiffusion", Kokkos::RangePolicy<Execution>(0, gains.extent(0)),
+        KOKKOS_LAMBDA(int e) { rows(row(e)) -= rate * gains(e); });
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     assembler_->add_jacobian(at(state), state, J);
   }
   bool symmetric(const assembly::State&) const override { return false; }
 
+  void start_step(const assembly::State& state) override {
+    if (corrects())
+      gains_ = assembly::to_device(
+          correction_->gains(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0])), "gains");
+  }
+
+  /// What upwind flow has left out in the step.
+  void commit(assembly::State& state) const override {
+    if (!corrects()) return;
+    const View<Real**> found("found", assembler_->n_entities(), Op::Columns::size), flows("flows", found.extent(0), n);
+    const auto op = at(state);
+    assembler_->for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
+          Real drivers[m], q[n];
+          for (int k = 0; k < Op::Columns::size; ++k) found(e, k) = x[k];
+          for (int k = 0; k < m; ++k) drivers[k] = x[k];
+          op.flow.flow(e, drivers, q);
+          for (int i = 0; i < n; ++i) flows(e, i) = op.capacity * q[i];
+        });
+    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), found);
+    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), flows);
+    std::vector<Real> u, of_ends, flow, stored;
+    for (LocalIndex e = 0; e < assembler_->n_entities(); ++e) {
+      u.push_back(x(e, m));
+      stored.push_back(stored_[e] * sizes_[e] * where_->room(e, &x(e, 0), u.back()));
+      for (int i = 0; i < n; ++i) {
+        of_ends.push_back(x(e, m + 1 + i));
+        flow.push_back(q(e, i));
+      }
+    }
+    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
+    correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
+    Kokkos::deep_copy(state.history[0], kept);
+  }
+
  private:
   using Op = Advection<typename Where::Flow, typename Where::Carried>;
   using Assembler = assembly::Assembler<Op>;
+  static constexpr int n = Op::n, m = Op::m;
+
+  bool corrects() const { return carried_.stored_in_cells != nullptr; }
+  void bind_correction(const assembly::Context& context) {
+    const auto& mesh = *context.mesh();
+    block_ = context.field(rows()[0]);
+    sizes_ = Where::sizes(mesh);
+    correction_ = std::make_unique<Antidiffusion>(mesh, Where::entity, Where::graph(mesh));
+    std::vector<LocalIndex> rows;
+    for (LocalIndex e = 0; e < fields::n_entities(mesh, Where::entity, false); ++e) rows.push_back(Where::row(mesh, e));
+    row_ = assembly::to_device(rows, "rows");
+    gains_ = assembly::to_device(std::vector<Real>(rows.size(), 0), "gains");
+  }
 
   Op at(const assembly::State& state) const { return {where_->at(state), carried_.capacity}; }
   std::vector<std::string> rows() const { return where_->carried(carried_.field); }
@@ -165,25 +254,38 @@ class AdvectionModule final : public assembly::Module {
   std::unique_ptr<Where> where_;
   Carried carried_;
   std::unique_ptr<Assembler> assembler_;
+  std::vector<Real> stored_;  // [local entity] per volume and u; with a correction, and the following
+  std::vector<Real> sizes_;   // [local entity]
+  std::unique_ptr<Antidiffusion> correction_;
+  int block_ = -1;              // of its rows
+  ConstView<LocalIndex*> row_;  // [owned entity]
+  ConstView<Real*> gains_;      // [owned entity] at the start of the step
 };
 
 template <class Where>
-std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried) {
-  return std::make_unique<AdvectionModule<Where>>(std::move(where), carried);
+std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried, const std::vector<Real>& stored) {
+  return std::make_unique<AdvectionModule<Where>>(std::move(where), carried, stored);
 }
 
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffusionParameters& flow,
-                                                 const Carried& carried) {
-  return mesh::for_shape(shape, [&](auto s) { return module_of(InCells<s()>{flow}, carried); });
+                                                 const Carried& carried, const std::vector<Real>& stored) {
+  return mesh::for_shape(shape, [&](auto s) {
+    return flow.change ? module_of(InCells<s(), true>{flow}, carried, stored)
+                       : module_of(InCells<s(), false>{flow}, carried, stored);
+  });
 }
 
 std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
-                                                          const Carried& carried, bool widens) {
+                                                          const Carried& carried, bool widens,
+                                                          const std::vector<Real>& stored) {
   return mesh::for_shape(shape, [&](auto s) {
-    return widens ? module_of(InFractures<s(), true>{flow}, carried)
-                  : module_of(InFractures<s(), false>{flow}, carried);
+    const auto make = [&](auto changes) {
+      return widens ? module_of(InFractures<s(), true, changes()>{flow}, carried, stored)
+                    : module_of(InFractures<s(), false, changes()>{flow}, carried, stored);
+    };
+    return flow.change ? make(std::true_type()) : make(std::false_type());
   });
 }
 

@@ -14,13 +14,15 @@ namespace sprekk::physics {
 /// with the outward flow q_i of HybridDiffusion and c = Carried::capacity: upwind, with the facet between two cells as
 /// their neighbour. Since what flows is in balance, that is the balance of c u times the mass of fluid; of differences
 /// only, so that nothing changes where u is uniform, however well the flow is solved. Where fluid leaves through a
-/// boundary without a condition on u, it takes u_K along.
+/// boundary without a condition on u, it takes u_K along. `stored`: what local cells store per volume and u, for
+/// Antidiffusion, with implicit Euler; empty: upwind alone. History: what that keeps.
 std::unique_ptr<assembly::Module> make_advection(mesh::Shape shape, const HybridDiffusionParameters& flow,
-                                                 const Carried& carried);
+                                                 const Carried& carried, const std::vector<Real>& stored = {});
 
 /// The same along fractures, with the flow of FractureFlow through ridges: all that ends in a ridge mixes there.
-/// `widens`: as "widening" of PoroelasticCoupling has it.
+/// `widens`: as "widening" of PoroelasticCoupling has it. `stored`: by what fills local fracture faces, per volume.
 std::unique_ptr<assembly::Module> make_fracture_advection(mesh::Shape shape, const FractureFlowParameters& flow,
-                                                          const Carried& carried, bool widens);
+                                                          const Carried& carried, bool widens,
+                                                          const std::vector<Real>& stored = {});
 
 }  // namespace sprekk::physics

@@ -18,11 +18,13 @@ struct Brought::Kernel {
   PresentConduits conduits;
   laws::Fluid fluid;
   Real capacity;
+  FlowFactor change;
 
   KOKKOS_INLINE_FUNCTION bool widens() const { return conduits.conduit.extent(0) > 0; }
-  KOKKOS_INLINE_FUNCTION Real conductance(int k) const {
+  KOKKOS_INLINE_FUNCTION Real unchanged(int k) const {
     return widens() ? index(k) * conduits.transmissivity(face(k), widening(face(k))) : index(k);
   }
+  KOKKOS_INLINE_FUNCTION Real conductance(int k) const { return unchanged(k) * change.value(row(k)); }
   KOKKOS_INLINE_FUNCTION Real drop(int k) const { return fluid.drop(driver(k), p(row(k)), 0); }
   KOKKOS_INLINE_FUNCTION Real flow(int k) const { return held(k) ? conductance(k) * drop(k) : driver(k); }
   KOKKOS_INLINE_FUNCTION bool counts(int k) const { return brings(k) && flow(k) > 0; }
@@ -37,8 +39,12 @@ void Brought::add(LocalIndex row, Real index, bool by_pressure, LocalIndex face)
 }
 
 void Brought::bind(const assembly::Context& context, int pressure, int carried, const laws::Fluid& fluid, Real capacity,
-                   const std::vector<laws::Conduit>& conduits) {
+                   const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change) {
   pressure_ = pressure;
+  if (change) {
+    changing_ = context.field(change->field);
+    response_ = change->response;
+  }
   carried_ = carried;
   fluid_ = fluid;
   capacity_ = capacity;
@@ -86,7 +92,8 @@ Brought::Kernel Brought::kernel(const assembly::State& state) const {
           widening_ < 0 ? ConstView<Real*>() : state.x[widening_],
           {conduit_, state.coefficients},
           fluid_,
-          capacity_};
+          capacity_,
+          {changing_ >= 0, response_, changing_ < 0 ? ConstView<Real*>() : ConstView<Real*>(state.x[changing_])}};
 }
 
 void Brought::add_residual(const assembly::State& state, const assembly::Rows& r) const {
@@ -113,6 +120,16 @@ void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J)
           add_entry(by_pressure, row, row,
                     kernel.conductance(k) * kernel.fluid.ddrop_db(kernel.driver(k), kernel.p(row), 0) * kernel.rise(k));
       });
+  if (changing_ >= 0) {
+    const auto by_changing = J(carried_, changing_)->getLocalMatrixDevice();
+    Kokkos::parallel_for(
+        "brought", all, KOKKOS_LAMBDA(int k) {
+          if (!kernel.counts(k) || !kernel.held(k)) return;
+          const LocalIndex row = kernel.row(k);
+          add_entry(by_changing, row, row,
+                    kernel.unchanged(k) * kernel.change.slope(row) * kernel.drop(k) * kernel.rise(k));
+        });
+  }
   if (widening_ < 0 || J(carried_, widening_).is_null()) return;
   const auto by_widening = J(carried_, widening_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
@@ -120,8 +137,8 @@ void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J)
         if (!kernel.counts(k) || !kernel.held(k)) return;
         const LocalIndex face = kernel.face(k);
         add_entry(by_widening, kernel.row(k), face,
-                  kernel.index(k) * kernel.conduits.dtransmissivity(face, kernel.widening(face)) * kernel.drop(k) *
-                      kernel.rise(k));
+                  kernel.index(k) * kernel.conduits.dtransmissivity(face, kernel.widening(face)) *
+                      kernel.change.value(kernel.row(k)) * kernel.drop(k) * kernel.rise(k));
       });
 }
 

@@ -4,6 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/fluid.hpp"
 #include "physics/flow/present_conduits.hpp"
+#include "physics/fluid_change.hpp"
 
 #include <vector>
 
@@ -16,9 +17,10 @@ class Brought {
  public:
   /// Adds a connection in a row; those that other ranks own are dropped. `face`: owned, needed with conduits.
   void add(LocalIndex row, Real index, bool by_pressure, LocalIndex face);
-  /// Once all are added. Blocks of pressures and of u in the same entities; `conduits` as in Exchange::bind().
+  /// Once all are added. Blocks of pressures and of u in the same entities; `conduits` and `change` as in
+  /// Exchange::bind().
   void bind(const assembly::Context& context, int pressure, int carried, const laws::Fluid& fluid, Real capacity,
-            const std::vector<laws::Conduit>& conduits);
+            const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change);
   /// Of one connection in a step.
   struct Control {
     Real driver;  ///< q, or the pressure in the well
@@ -34,8 +36,9 @@ class Brought {
   struct Kernel;
   Kernel kernel(const assembly::State& state) const;
 
-  int pressure_ = -1, carried_ = -1, widening_ = -1;
+  int pressure_ = -1, carried_ = -1, widening_ = -1, changing_ = -1;
   laws::Fluid fluid_;
+  laws::FluidResponse response_;
   Real capacity_ = 0;
   std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> indices_;

@@ -87,7 +87,17 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   return faces;
 }
 
-HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh) {
+/// What all physics of a scene have the fluid carry.
+std::vector<Carried> carried_in(const Scene& scene) {
+  std::vector<Carried> all;
+  for_each_physics([&](auto physics) {
+    for (auto& one : physics.carried(scene)) all.push_back(one);
+  });
+  return all;
+}
+
+HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh,
+                                     const std::optional<FluidChange>& change) {
   const auto& flow = *scene.flow;
   HybridDiffusionParameters darcy{.name = "Darcy flow",
                                   .field = "pressure",
@@ -96,6 +106,7 @@ HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh)
                                   .flux_unit = "m/s",
                                   .outflow = {"conductance", "inflows", mesh.dim() == 2 ? "m^2/s" : "m^3/s"},
                                   .fluid = {flow.compressibility, flow.reference_pressure},
+                                  .change = change,
                                   .conditions = fluid_conditions(scene, mesh, false),
                                   .coupled_by = {"displacement"}};
   base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
@@ -114,6 +125,7 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
                                      const HybridDiffusionParameters& darcy) {
   FractureFlowParameters fractures{.scheme = darcy.scheme,
                                    .fluid = darcy.fluid,
+                                   .change = darcy.change,
                                    .weight = darcy.weight,
                                    .outflow = darcy.outflow,
                                    .conditions = fluid_conditions(scene, mesh, true)};
@@ -126,15 +138,6 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
       fractures.cut_by[index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
   }
   return fractures;
-}
-
-/// What all physics of a scene have the fluid carry.
-std::vector<Carried> carried_in(const Scene& scene) {
-  std::vector<Carried> all;
-  for_each_physics([&](auto physics) {
-    for (auto& one : physics.carried(scene)) all.push_back(one);
-  });
-  return all;
 }
 
 }  // namespace
@@ -193,7 +196,11 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (!is_in(scene)) return;
   const auto& flow = *scene.flow;
   const bool deforms = Mechanics::is_in(scene);
-  auto darcy = darcy_flow(scene, mesh);
+  const auto all_carried = carried_in(scene);
+  std::optional<FluidChange> change;
+  for (const auto& carried : all_carried)
+    if (carried.change) change = carried.change;
+  auto darcy = darcy_flow(scene, mesh, change);
   auto fractures = fracture_flow(scene, mesh, darcy);
   fractures.faces = hydraulics(setting);
   std::vector<Real> aperture;
@@ -202,11 +209,12 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
     aperture.push_back(face.along.mechanical_aperture());
   }
   const auto fluid = darcy.fluid;
-  const auto all_carried = carried_in(scene);
   for (const auto& carried : all_carried) {
-    modules.push_back(make_advection(mesh.shape, darcy, carried));
+    const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
+    modules.push_back(make_advection(mesh.shape, darcy, carried, stored(carried.stored_in_cells)));
     if (!mesh.fracture_names.empty())
-      modules.push_back(make_fracture_advection(mesh.shape, fractures, carried, deforms));
+      modules.push_back(
+          make_fracture_advection(mesh.shape, fractures, carried, deforms, stored(carried.stored_in_fractures)));
   }
   if (!flow.wells.empty()) {
     WellsParameters all{.wells = wells(scene, mesh.dim()),
@@ -220,21 +228,22 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   }
   modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(darcy)));
   StorageParameters storage{
-      .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure};
+      .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure, .change = change};
   base::collectively(*mesh.comm, [&] {
     storage.capacity = by_cell(
         scene, mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
         [&](const Material& rock, const auto& x) { return rock.capacity(fluid.compressibility, x); });
   });
+  const bool denser = fluid.compressibility > 0 || change;
   const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
-                                  [&](const auto& of) { return of.growth > 0 || of.room * fluid.compressibility > 0; });
+                                  [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
   if (base::on_any_rank(*mesh.comm, stores))  // values are those of this rank's cells
     modules.push_back(make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;
   modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (flow.compressibility > 0 || deforms)
+  if (denser || deforms)
     modules.push_back(make_fracture_storage(
-        {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms}));
+        {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change}));
 }
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {

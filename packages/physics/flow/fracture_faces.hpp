@@ -3,11 +3,13 @@
 
 #include "assembly/assembler.hpp"
 #include "mesh/facets.hpp"
+#include "physics/flow/changed_flow.hpp"
 #include "physics/flow/face_plane.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/present_conduits.hpp"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace sprekk::physics {
@@ -16,56 +18,55 @@ namespace sprekk::physics {
 template <int n>
 using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
 
-/// The same where T is that of a transmissivity of 1, and the face's own follows from its widening, the last of x, m.
-template <int n>
-struct WideningFace : FractureFace<n> {
-  using Base = FractureFace<n>;
-  using Columns = assembly::Slots<assembly::Slot<1 + n, 1>, assembly::Slot<1, 1>>;
-  using Rows = typename Base::Columns;
+/// The flow of `Base` where T is that of a transmissivity of 1, and the face's own follows from its widening, the last
+/// of x, m.
+template <class Base>
+struct WideningFace {
+  static constexpr int n_ends = Base::n_ends, n = n_ends, m = Base::Columns::size;
+  using Columns = typename Joined<typename Base::Columns, assembly::Slots<assembly::Slot<1, 1>>>::Slots;
+  using Rows = typename Base::Rows;
 
+  Base base;
   PresentConduits conduits;
 
-  WideningFace(const Base& base, const PresentConduits& conduits) : Base(base), conduits(conduits) {}
-  KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[2 + n], Real (&q)[n]) const {
-    Real p[1 + n];
-    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
-    Base::flow(face, p, q);
-    const Real transmissivity = conduits.transmissivity(face, x[1 + n]);
+  KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[m + 1], Real (&q)[n]) const {
+    Real own[m];
+    for (int k = 0; k < m; ++k) own[k] = x[k];
+    base.flow(face, own, q);
+    const Real transmissivity = conduits.transmissivity(face, x[m]);
     for (Real& each : q) each *= transmissivity;
   }
-  KOKKOS_INLINE_FUNCTION void dflow(int face, const Real (&x)[2 + n], Real (&dq)[n][2 + n]) const {
-    Real p[1 + n], q[n], own[n][1 + n];
-    for (int k = 0; k < 1 + n; ++k) p[k] = x[k];
-    Base::flow(face, p, q);
-    Base::dflow(face, p, own);
-    const Real transmissivity = conduits.transmissivity(face, x[1 + n]),
-               by_widening = conduits.dtransmissivity(face, x[1 + n]);
+  KOKKOS_INLINE_FUNCTION void dflow(int face, const Real (&x)[m + 1], Real (&dq)[n][m + 1]) const {
+    Real own[m], q[n], by_own[n][m];
+    for (int k = 0; k < m; ++k) own[k] = x[k];
+    base.flow(face, own, q);
+    base.dflow(face, own, by_own);
+    const Real transmissivity = conduits.transmissivity(face, x[m]), by_widening = conduits.dtransmissivity(face, x[m]);
     for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < 1 + n; ++k) dq[i][k] = transmissivity * own[i][k];
-      dq[i][1 + n] = by_widening * q[i];
+      for (int k = 0; k < m; ++k) dq[i][k] = transmissivity * by_own[i][k];
+      dq[i][m] = by_widening * q[i];
     }
   }
-  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
+  KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[m + 1], Real (&r)[1 + n]) const {
     Real q[n];
     flow(face, x, q);
-    r[0] = 0;
-    for (int i = 0; i < n; ++i) {
-      r[0] += q[i];
-      r[1 + i] = -q[i];
-    }
+    balance(q, r);
   }
-  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
-    Real dq[n][2 + n];
+  KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[m + 1], Real (&J)[1 + n][m + 1]) const {
+    Real dq[n][m + 1];
     dflow(face, x, dq);
-    for (int k = 0; k < 2 + n; ++k) {
-      J[0][k] = 0;
-      for (int i = 0; i < n; ++i) {
-        J[0][k] += dq[i][k];
-        J[1 + i][k] = -dq[i][k];
-      }
-    }
+    balance(dq, J);
   }
 };
+
+/// The fields that flow along faces depends on, in the order of the unknowns of its operator: FractureFace, then
+/// ChangedFlow, then WideningFace.
+inline std::vector<std::string> drivers(const FractureFlowParameters& parameters, bool widens) {
+  std::vector<std::string> fields = {"face pressure"};
+  if (parameters.change) fields.push_back("face " + parameters.change->field);
+  if (widens) fields.push_back("widening");
+  return fields;
+}
 
 /// The faces of a mesh, with what fractures that cut others resist at their ridges.
 template <Shape shape>

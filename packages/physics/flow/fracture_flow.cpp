@@ -1,6 +1,6 @@
 #include "physics/flow/fracture_flow.hpp"
 
-#include "assembly/assembler.hpp"
+#include "assembly/term.hpp"
 #include "mesh/extents.hpp"
 #include "physics/flow/fracture_faces.hpp"
 
@@ -28,8 +28,7 @@ class FractureFlow final : public assembly::Module {
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
-    d.couplings = {{Loop::fracture_cells, "face pressure", {"face pressure"}}};
-    if (widens_) d.couplings[0].columns.push_back("widening");
+    d.couplings = {{Loop::fracture_cells, "face pressure", drivers(parameters_, widens_)}};
     using assembly::Summary;
     d.outputs = {
         {{"fracture pressure", "Pa", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "fracture pressure"}},
@@ -47,15 +46,9 @@ class FractureFlow final : public assembly::Module {
     size_ = mesh::largest_extent(*mesh_);
     block_ = context.field("face pressure");
     faces_ = std::make_unique<FractureFaces<shape>>(mesh_, context.layout(block_), parameters_, widens_);
-    const std::vector<int> rows = {block_};
-    if (widens_) {
-      widening_ = context.field("widening");
-      widening_assembler_ = std::make_unique<WideningAssembler>(
-          context, Loop::fracture_cells, rows, std::vector<int>{block_, widening_}, WideningAssembler::Positions::keep);
-    } else {
-      assembler_ = std::make_unique<Assembler>(context, Loop::fracture_cells, rows, rows,
-                                               is_linear() ? Assembler::Positions::once : Assembler::Positions::keep);
-    }
+    if (widens_) widening_ = context.field("widening");
+    if (parameters_.change) carried_ = context.field("face " + parameters_.change->field);
+    set_flow(context);
     load_ = assembly::Load(context.layout(block_).n_owned());
     for_each_end([&](std::size_t condition, const mesh::Facets::Rim& rim, Real area, const auto& x) {
       outflow_.add(condition, mesh_->facets->ridge[rim.face * n + rim.ridge], area, x);
@@ -64,21 +57,13 @@ class FractureFlow final : public assembly::Module {
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    if (widens_)
-      widening_assembler_->add_residual(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
-                                        r);
-    else
-      assembler_->add_residual(faces_->op(), state, r);
+    flow_.add_residual(state, r);
     outflow_.add_residual(state, r);
     load_.add_to(r[block_]);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    if (widens_)
-      widening_assembler_->add_jacobian(WideningFace<n>(faces_->op(), {faces_->conduits(), state.coefficients}), state,
-                                        J);
-    else
-      assembler_->add_jacobian(faces_->op(), state, J);
+    flow_.add_jacobian(state, J);
     outflow_.add_jacobian(state, J);
   }
   /// Hydraulic apertures.
@@ -129,8 +114,30 @@ class FractureFlow final : public assembly::Module {
 
  private:
   static constexpr Real of_displacement = 1e-2, of_size = 1e-4;  // see open_
-  using Assembler = assembly::Assembler<Op>;
-  using WideningAssembler = assembly::Assembler<WideningFace<n>>;
+
+  void set_flow(const assembly::Context& context) {
+    std::vector<int> columns;
+    for (const auto& name : drivers(parameters_, widens_)) columns.push_back(context.field(name));
+    with_fluid([&](const auto& op) {
+      const auto set = [&](const auto& at) {
+        flow_ = assembly::Term(context, Loop::fracture_cells, {block_}, columns, !is_linear(), at);
+      };
+      using Fluid = std::decay_t<decltype(op)>;
+      if (widens_)
+        set([op, conduits = faces_->conduits()](const assembly::State& state) {
+          return WideningFace<Fluid>{op, {conduits, state.coefficients}};
+        });
+      else
+        set([op](const assembly::State&) { return op; });
+    });
+  }
+  template <class Visit>
+  void with_fluid(const Visit& visit) const {
+    if (parameters_.change)
+      visit(ChangedFlow<Op>{faces_->op(), parameters_.change->response});
+    else
+      visit(faces_->op());
+  }
 
   std::vector<Real> pressures(const assembly::State& state) const {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
@@ -151,13 +158,17 @@ class FractureFlow final : public assembly::Module {
   std::vector<Real> fluxes(const assembly::State& state) const {
     const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
     const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
+    const auto& change = parameters_.change;
+    const auto carried = change ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[carried_]) : p;
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const Plane plane = faces_->plane(f);
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
-      faces_->op().at(f).flow(x, q);
-      const Real wider = widens_ ? parameters_.faces[f].along.transmissivity(widening(f)) : 1;
+      const Real u = carried(mesh_->facets->fracture_face[f]);
+      faces_->op().at(f).heavier(change ? change->response.density(u).value : 1).flow(x, q);
+      const Real wider = (widens_ ? parameters_.faces[f].along.transmissivity(widening(f)) : 1) *
+                         (change ? change->response.mobility(u).value : 1);
       const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
@@ -179,7 +190,7 @@ class FractureFlow final : public assembly::Module {
     return high;
   }
 
-  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_; }
+  bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && !parameters_.change; }
 
   /// Calls visit(area, source) at the points of a face.
   template <class Visit>
@@ -208,13 +219,12 @@ class FractureFlow final : public assembly::Module {
   FractureFlowParameters parameters_;
   bool widens_ = false;  // by "widening" of PoroelasticCoupling, which T then depends on
   RCP<const mesh::Mesh> mesh_;
-  int block_ = -1, widening_ = -1;  // face pressure, widening
-  Real size_ = 0;                   // largest extent of the domain, m
-  Real open_ = 0;                   // aperture of a fracture that lets the fluid on without a drop of pressure, m
+  int block_ = -1, widening_ = -1, carried_ = -1;  // face pressure, widening, what changes the fluid
+  Real size_ = 0;                                  // largest extent of the domain, m
+  Real open_ = 0;  // aperture of a fracture that lets the fluid on without a drop of pressure, m
   bool loaded_ = false;
   std::unique_ptr<FractureFaces<shape>> faces_;
-  std::unique_ptr<Assembler> assembler_;
-  std::unique_ptr<WideningAssembler> widening_assembler_;
+  assembly::Term flow_;
   Outflow outflow_;      // through the ends
   assembly::Load load_;  // m^3/s
 };

@@ -4,10 +4,12 @@
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
 #include "laws/conduit.hpp"
+#include "physics/fluid_change.hpp"
 #include "physics/hybrid_cell.hpp"
 #include "physics/outflow.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprekk::physics {
@@ -24,7 +26,8 @@ struct FractureFlowParameters {
   std::vector<base::Expression> source = {};  ///< [fracture] volume of fluid per area and time, m/s
   FluxScheme scheme = FluxScheme::rt0;        ///< as in the rock
   laws::Fluid fluid = {};
-  std::array<Real, 3> weight{};  ///< rho_0 g, N/m^3
+  std::optional<FluidChange> change = {};  ///< flows are those of ChangedFlow
+  std::array<Real, 3> weight{};            ///< rho_0 g, N/m^3
   OutflowNames outflow = {};
   std::vector<FluxCondition> conditions = {};  ///< those with a fracture
   Real softness = 0;                           ///< of those that widen by "widening" of PoroelasticCoupling, which T

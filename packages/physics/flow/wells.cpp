@@ -30,6 +30,10 @@ class Wells final : public assembly::Module {
       d.history = {{"widening", fields::Entity::fracture_face, 1}};
     }
     for (const auto& carried : parameters_.carried) {
+      if (carried.change) {
+        d.couplings.push_back({assembly::Loop::cells, "pressure", {carried.field}});
+        d.couplings.push_back({assembly::Loop::cells, "face pressure", {"face " + carried.field}});
+      }
       const auto &u = carried.field, on_facets = "face " + u;
       d.couplings.push_back({assembly::Loop::cells, u, {u, "pressure"}});
       d.couplings.push_back({assembly::Loop::cells, on_facets, {on_facets, "face pressure"}});
@@ -53,7 +57,7 @@ class Wells final : public assembly::Module {
     for (int k = 0; k < 2; ++k) {
       const bool widens = widens_ && k == 1;
       exchange_[k].bind(context, blocks[k], parameters_.fluid,
-                        widens ? parameters_.faces : std::vector<laws::Conduit>());
+                        widens ? parameters_.faces : std::vector<laws::Conduit>(), change(k == 1));
       load_[k] = assembly::Load(context.layout(blocks[k]).n_owned());
       blocks_[k] = blocks[k];
     }
@@ -157,14 +161,14 @@ class Wells final : public assembly::Module {
     const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p[1];
     for (const auto& c : connections_) {
       const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
-      const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0);
+      const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0) * flow_factor(state, c);
       const bool held = well(c).pressure.has_value();
       const Real flow = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
       const Real drop = flow == 0 ? 0 : flow / W;
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
       totals[of_well + 1].value +=
-          share * (held ? control(well(c))(well(c).points[0], state.t) : at + drop - head(c, at + drop));
+          share * (held ? control(well(c))(well(c).points[0], state.t) : at + drop - head(c, at + drop, state.t));
       totals[of_well + 3 + c.fracture].value += flow;
       auto next = of_well + 3 + mesh_->fracture_names.size();
       for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {
@@ -191,9 +195,26 @@ class Wells final : public assembly::Module {
             brought.add(c.row, widens ? c.index : index(c), well(c).pressure.has_value(), c.face);
         carried_.push_back(context.field(in_fractures ? "face " + carried.field : carried.field));
         brought.bind(context, blocks_[in_fractures], carried_.back(), parameters_.fluid, carried.capacity,
-                     widens ? parameters_.faces : std::vector<laws::Conduit>());
+                     widens ? parameters_.faces : std::vector<laws::Conduit>(), change(in_fractures));
       }
     }
+  }
+
+  /// The carried quantity that changes the fluid, by the field of cells or of facets.
+  std::optional<FluidChange> change(bool in_fractures) const {
+    for (const auto& carried : parameters_.carried)
+      if (auto change = carried.change) {
+        if (in_fractures) change->field = "face " + change->field;
+        return change;
+      }
+    return {};
+  }
+  /// The density of the fluid in a well over rho_0: of what it puts in, else at u_0.
+  Real heaviness(const Well& well, Real t) const {
+    for (const auto& carried : parameters_.carried)
+      if (const auto value = carried.in_wells.find(well.name); carried.change && value != carried.in_wells.end())
+        return carried.change->response.density(value->second(well.points[0], t)).value;
+    return 1;
   }
 
   void set_carried(Real t) {
@@ -218,6 +239,13 @@ class Wells final : public assembly::Module {
     return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(u, c.row))();
   }
 
+  Real flow_factor(const assembly::State& state, const WellConnection& c) const {
+    for (std::size_t j = 0; j < parameters_.carried.size(); ++j)
+      if (const auto& change = parameters_.carried[j].change)
+        return change->response.flow(carried_at(state, j, c)).value;
+    return 1;
+  }
+
   const Well& well(const WellConnection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
 
@@ -237,18 +265,18 @@ class Wells final : public assembly::Module {
   }
   Real rate(const WellConnection& c, Real t) const { return control(well(c))(well(c).points[0], t) * share(c); }
 
-  Real lift(const WellConnection& c) const {
+  Real lift(const WellConnection& c, Real t) const {
     Real sum = 0;
     for (int i = 0; i < mesh_->dim(); ++i) sum += parameters_.weight[i] * (c.x[i] - well(c).points[0][i]);
-    return sum;
+    return sum * heaviness(well(c), t);
   }
   /// The pressure in the well where it is connected.
   Real pressure(const WellConnection& c, Real t) const {
     const Real first = control(well(c))(well(c).points[0], t);
-    return first + parameters_.fluid.head(first, lift(c));
+    return first + parameters_.fluid.head(first, lift(c, t));
   }
   /// What of a pressure at a connection is due to the fluid between there and the first point.
-  Real head(const WellConnection& c, Real p) const { return -parameters_.fluid.head(p, -lift(c)); }
+  Real head(const WellConnection& c, Real p, Real t) const { return -parameters_.fluid.head(p, -lift(c, t)); }
 
   WellsParameters parameters_;
   bool widens_ = false;  // fractures do

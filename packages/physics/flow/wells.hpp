@@ -42,12 +42,13 @@ struct WellsParameters {
 /// one, or that of State::coefficients; in 2D, where flow in the fracture is along a line, W = 2 T/((1 + skin) r_w).
 /// p_w is the pressure at the first point plus the weight of fluid at rest between there and the middle of what is in
 /// the cell. A well with a rate puts it in by the shares of W at the start of the step, as if it drew all cells down by
-/// the same. Lengths do not depend on the partition, and a well in a face between cells counts once: wells are moved by
-/// 1e-9 of the domain's extent, in a direction that no face has. Errors, on every rank: a well leaves the domain, lies
-/// in a fracture, or is as wide as an equivalent radius. Totals: "wells", the name, then "rate", "pressure" (of a well
-/// with a rate the mean by shares), "in rock" and "in FRACTURE", rates;
-/// and of what is carried by the name of its field its value in the fluid that is put in or taken out, the mean by
-/// shares, and as Carried::total c q u, the rate that is put in.
+/// the same. Where what the fluid carries changes it, W is times d m at the cell or face, see laws::FluidResponse, and
+/// the fluid in a well as heavy as what it puts in, else as rho_0. Lengths do not depend on the partition, and a well
+/// in a face between cells counts once: wells are moved by 1e-9 of the domain's extent, in a direction that no face
+/// has. Errors, on every rank: a well leaves the domain, lies in a fracture, or is as wide as an equivalent radius.
+/// Totals: "wells", the name, then "rate", "pressure" (of a well with a rate the mean by shares), "in rock" and "in
+/// FRACTURE", rates; and of what is carried by the name of its field its value in the fluid that is put in or taken
+/// out, the mean by shares, and as Carried::total c q u, the rate that is put in.
 std::unique_ptr<assembly::Module> make_wells(WellsParameters parameters);
 
 }  // namespace sprekk::physics

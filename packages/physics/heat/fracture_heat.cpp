@@ -91,7 +91,7 @@ class FractureHeat final : public assembly::Module {
     const auto kept = Kokkos::create_mirror_view(history[0]);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       kept(f, 0) = start(f, parameters_.initial);
-      kept(f, 1) = parameters_.faces[f].aperture * density_at(start(f, parameters_.initial_pressure));
+      kept(f, 1) = parameters_.faces[f].aperture * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
     }
     Kokkos::deep_copy(history[0], kept);
   }
@@ -104,12 +104,14 @@ class FractureHeat final : public assembly::Module {
     const auto p = pressure_ < 0 ? ConstView<Real*>() : state.x[pressure_];
     const auto widening = widening_ < 0 ? ConstView<Real*>() : state.x[widening_];
     const auto fluid = parameters_.fluid.value_or(laws::Fluid());
-    const bool flows = pressure_ >= 0, widens = widening_ >= 0;
+    const bool flows = pressure_ >= 0, widens = widening_ >= 0, changes = parameters_.change.has_value();
+    const auto response = changes ? parameters_.change->response : laws::FluidResponse();
     Kokkos::parallel_for(
         "filling", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int f) {
           const Real a = aperture(f) + (widens ? widening(f) : 0);
           kept(f, 0) = T(facet(f));
-          kept(f, 1) = (a > 0 ? a : 0) * (flows ? fluid.density(p(facet(f))) : 1);
+          kept(f, 1) = (a > 0 ? a : 0) * (flows ? fluid.density(p(facet(f))) : 1) *
+                       (changes ? response.density(kept(f, 0)).value : 1);
         });
   }
 
@@ -124,7 +126,10 @@ class FractureHeat final : public assembly::Module {
     return assembly::face_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
                                       [&](const auto&, const auto& x) { return value(x, 0); });
   }
-  Real density_at(Real p) const { return parameters_.fluid ? parameters_.fluid->density(p) : 1; }
+  Real density_at(Real p, Real T) const {
+    const auto& change = parameters_.change;
+    return (parameters_.fluid ? parameters_.fluid->density(p) : 1) * (change ? change->response.density(T).value : 1);
+  }
 
   Filling<expands ? 2 : 1> filling(const assembly::State& state) const {
     auto op = filling_;

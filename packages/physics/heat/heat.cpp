@@ -6,6 +6,7 @@
 #include "physics/entry_of_place.hpp"
 #include "physics/heat/fracture_heat.hpp"
 #include "physics/heat/thermal_expansion.hpp"
+#include "physics/heat/water.hpp"
 #include "physics/hybrid_diffusion.hpp"
 #include "physics/storage.hpp"
 #include "physics/tensor_entry.hpp"
@@ -30,6 +31,20 @@ Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh&
 
 SchemeEntry scheme_entry(const HeatSection& heat) {
   return {.section = "Heat", .name = heat.scheme, .property = "thermal conductivity"};
+}
+
+bool is_water(Real T) { return T >= coldest_water && T <= warmest_water; }
+
+/// Calls see(place in the scene, temperature) for all that a scene gives.
+template <class See>
+void for_each_temperature(const Scene& scene, const See& see) {
+  if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);
+  for (const auto& [name, well] : scene.heat->wells)
+    see("Heat > Wells > " + name + " > \"temperature\"", well.temperature);
+  for (const auto& [name, region] : scene.regions)
+    if (region.temperature) see("Regions > " + name + " > \"temperature\"", *region.temperature);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.temperature) see("Boundary conditions > " + name + " > \"temperature\"", *condition.temperature);
 }
 
 bool no_heat(const Comparison& c) { return !c.scene().heat && c.is_absent("Heat"); }
@@ -102,6 +117,25 @@ void compare_start(Comparison& c) {
   });
   if (stores_in_fractures(c)) require("what fills fractures has a heat capacity");
   if (scene.flow && scene.heat->fluid_expansion > 0) require("a fluid has a \"fluid thermal expansion\"");
+  if (scene.flow && scene.heat->fluid != "constant") require("a fluid changes with the temperature");
+}
+
+/// What changes density and viscosity.
+void compare_change(Comparison& c) {
+  const auto& heat = *c.scene().heat;
+  const auto of = [&](const std::string& entry, const std::string& what) { c.fail("Heat > \"" + entry + "\"", what); };
+  if (heat.fluid != "constant" && !c.scene().flow) of("fluid", "needs the section \"Flow\"");
+  if (heat.fluid != "exponential" && heat.viscosity_decay > 0)
+    of("viscosity decay", "is of \"fluid\" = \"exponential\"; here that is \"" + heat.fluid + "\"");
+  if (heat.fluid != "water") return;
+  if (heat.fluid_expansion > 0) of("fluid thermal expansion", "is known of \"fluid\" = \"water\": leave it out");
+  const auto see = [&](const std::string& place, const base::Expression& T) {
+    if (T.is_constant() && !is_water(T({}, 0)))
+      c.fail(place, fmt::format("is {} K, must be between {} and {} K, where \"fluid\" = \"water\" is tabulated",
+                                T.text(), coldest_water, warmest_water));
+  };
+  see("Heat > \"reference temperature\"", heat.reference_temperature);
+  for_each_temperature(c.scene(), see);
 }
 
 void compare_fluid(Comparison& c) {
@@ -114,6 +148,8 @@ void compare_fluid(Comparison& c) {
     c.fail("Heat > \"fluid heat capacity\"", "needs the section \"Flow\"; a joint may have a capacity of its own");
   if (!c.scene().flow && heat.fluid_expansion > 0)
     c.fail("Heat > \"fluid thermal expansion\"", "needs the section \"Flow\"");
+  if (!c.scene().flow && heat.advection != "upwind") c.fail("Heat > \"advection\"", "needs the section \"Flow\"");
+  compare_change(c);
   Names wells;
   if (c.scene().flow)
     for (const auto& [name, well] : c.scene().flow->wells) wells.push_back(name);
@@ -153,9 +189,10 @@ Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
       });
 }
 
-/// Of what fluid and grains gain in a cell that its pores do not.
+/// Of what fluid and grains gain in a cell that its pores do not, unless what the pores store is of a fluid that
+/// changes.
 Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) {
-  const Real of_fluid = scene.heat->fluid_expansion;
+  const Real of_fluid = scene.heat->fluid == "constant" ? scene.heat->fluid_expansion : 0;
   return by_cell(
       scene, mesh,
       [](const Material& rock) {
@@ -235,7 +272,8 @@ void add_fractures(const Setting& setting, const std::vector<FractureHeatParamet
   FractureHeatParameters fractures{.faces = faces,
                                    .scheme = scheme,
                                    .initial = scene.heat->initial_temperature.value_or(0),
-                                   .expansion = scene.heat->fluid_expansion,
+                                   .expansion = scene.heat->fluid == "constant" ? scene.heat->fluid_expansion : 0,
+                                   .change = scene.heat->fluid_change(),
                                    .widens = Mechanics::is_in(scene) && has_unknown_pressure(scene)};
   if (scene.flow) {
     fractures.fluid = {scene.flow->compressibility, scene.flow->reference_pressure};
@@ -276,11 +314,34 @@ void HeatSection::describe(base::Section& s) {
           "rho_0 c of the fluid of \"Flow\", at its reference pressure; needed with it");
   s.entry(fluid_expansion, "fluid thermal expansion", "K^-1", base::at_least(0),
           "volumetric, of the fluid: what becomes warmer needs more room, in pores and fractures");
+  s.choice(fluid, "fluid", {"constant", "exponential", "water"},
+           "how density and viscosity of the fluid of \"Flow\" change with the temperature T; exponential: rho = rho_0 "
+           "exp(c (p - p_0) - \"fluid thermal expansion\" (T - T_0)), mu = mu_0 exp(-\"viscosity decay\" (T - T_0)); "
+           "water: as "
+           "those of saturated liquid (IAPWS) to those at T_0, from 273.16 to 623.15 K");
+  s.entry(viscosity_decay, "viscosity decay", "K^-1", base::at_least(0),
+          "of an exponential fluid, about 0.02 of water");
+  s.entry(reference_temperature, "reference temperature", "K", base::at_least(0),
+          "T_0, where density and viscosity of \"Flow\" are as given there, unless the fluid is constant");
   s.choice(
       scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
       "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
       "orthogonal, else mimetic");
+  s.choice(
+      advection, "advection", {"upwind", "second order"},
+      "how the fluid carries heat between cells, and along fractures; second order: with limited corrections once per "
+      "step, of use for steps in which it does not cross more than about a cell, with implicit Euler");
+  s.entry(of_friction, "heat of friction", "-", "what fractures dissipate as they slide warms them");
   s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
+}
+
+std::optional<FluidChange> HeatSection::fluid_change() const {
+  if (fluid == "constant") return {};
+  const auto response = fluid == "water" ? response_of_water(reference_temperature)
+                                         : laws::FluidResponse{.reference = reference_temperature,
+                                                               .expansion = fluid_expansion,
+                                                               .thinning = viscosity_decay};
+  return FluidChange{"temperature", response, initial_temperature.value_or(0)};
 }
 
 void Heat::Sections::describe(base::Section& s) {
@@ -351,6 +412,10 @@ void Heat::compare(Comparison& c) {
   compare_start(c);
   compare_fluid(c);
   compare_conditions(c);
+  if (!c.scene().heat->of_friction) return;
+  if (!Mechanics::is_in(c.scene())) c.fail("Heat > \"heat of friction\"", "needs rock that deforms");
+  if (!c.scene().heat->initial_temperature)
+    c.fail("Heat > \"initial temperature\"", "missing; it is required with \"heat of friction\"");
 }
 
 std::string Heat::no_error_estimate(const Scene& scene) {
@@ -361,8 +426,30 @@ std::vector<Carried> Heat::carried(const Scene& scene) {
   if (!scene.heat || !scene.heat->fluid_capacity) return {};
   Carried energy{
       .field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
+  energy.change = scene.heat->fluid_change();
+  if (scene.heat->advection == "second order") {
+    energy.stored_in_cells = [](const Setting& setting) {
+      const auto capacity = capacity_of_rock(setting.scene, setting.mesh);
+      std::vector<Real> all;
+      for (LocalIndex c = 0; c < setting.mesh.n_cells(); ++c) all.push_back(capacity.of_cell(setting.mesh, c));
+      return all;
+    };
+    energy.stored_in_fractures = [](const Setting& setting) {
+      std::vector<Real> all;
+      for (const auto& face : fillings(setting)) all.push_back(face.capacity);
+      return all;
+    };
+  }
   for (const auto& [name, well] : scene.heat->wells) energy.in_wells.emplace(name, well.temperature);
   return {energy};
+}
+
+std::string Heat::takes_friction_power(const Scene& scene) {
+  return scene.heat && scene.heat->of_friction ? "face temperature" : "";
+}
+
+std::string Heat::needs_implicit_euler(const Scene& scene) {
+  return scene.heat && scene.heat->advection == "second order" ? "Heat > \"advection\" = \"second order\"" : "";
 }
 
 void Heat::add_modules(const Setting& setting, Modules& modules) {
@@ -414,8 +501,21 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
 std::vector<std::string> Heat::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
+  std::vector<std::string> all;
   const auto skew = scheme_warning(scheme_entry(*scene.heat), mesh, conductivity_of(scene, mesh));
-  return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
+  if (!skew.empty()) all.push_back(scene.origin + ": " + skew);
+  if (!scene.flow || scene.heat->fluid != "water") return all;
+  const Real T = scene.heat->reference_temperature;
+  const auto see = [&, &scene = scene](const std::string& entry, Real given, Real of_water, const std::string& unit) {
+    if (std::abs(given / of_water - 1) > 0.05)
+      all.push_back(
+          fmt::format("{}: Sprekk > Flow > \"{}\": is {:.6g} {}, but water has {:.6g} at the \"reference "
+                      "temperature\" of Heat, {:.6g} K",
+                      scene.origin, entry, given, unit, of_water, T));
+  };
+  see("density", scene.flow->density, water_density(T), "kg/m^3");
+  see("viscosity", scene.flow->viscosity, water_viscosity(T), "Pa*s");
+  return all;
 }
 
 /// Rock and water are warmer than that; 0 may stand for a difference.
@@ -429,15 +529,24 @@ std::vector<std::string> Heat::plausibility(const Setting& setting, const std::v
                                 "rock is hardly that cold",
                                 "temperatures are in K: add 273.15 to those in degrees Celsius"));
   };
-  if (!is_in(scene)) return all;
-  if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);
-  for (const auto& [name, well] : scene.heat->wells)
-    see("Heat > Wells > " + name + " > \"temperature\"", well.temperature);
-  for (const auto& [name, region] : scene.regions)
-    if (region.temperature) see("Regions > " + name + " > \"temperature\"", *region.temperature);
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (condition.temperature) see("Boundary conditions > " + name + " > \"temperature\"", *condition.temperature);
+  if (is_in(scene)) for_each_temperature(scene, see);
   return all;
+}
+
+/// Outside of the table water is as at its end.
+std::vector<std::string> Heat::warnings_of_state(const Setting& setting,
+                                                 const std::vector<assembly::OutputField>& outputs) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene) || scene.heat->fluid != "water") return {};
+  bool outside = false;
+  for (const auto& output : outputs)
+    if (output.name == "temperature" || output.name == "fracture temperature")
+      outside = outside || !std::all_of(output.values.begin(), output.values.end(), is_water);
+  if (!base::on_any_rank(*mesh.comm, outside)) return {};
+  return {
+      fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K, beyond which "
+                  "its density and viscosity stay those of the end",
+                  scene.origin, coldest_water, warmest_water)};
 }
 
 }  // namespace sprekk::physics

@@ -24,9 +24,15 @@ struct HeatSection {
   std::optional<base::Expression> initial_temperature;  ///< needed where heat is stored, and where rock expands
   std::optional<Real> fluid_capacity;                   ///< per volume, needed with Flow
   Real fluid_expansion = 0;                             ///< volumetric
-  std::string scheme = "auto";
+  std::string fluid = "constant";                       ///< how the fluid of Flow changes with T
+  Real viscosity_decay = 0;                             ///< of an exponential one
+  Real reference_temperature = 293.15;                  ///< T_0, of the density and viscosity of Flow
+  std::string scheme = "auto", advection = "upwind";
+  bool of_friction = false;                      ///< sliding fractures become warmer
   std::map<std::string, WellTemperature> wells;  ///< by names of those of Flow
   void describe(base::Section& section);
+  /// What the temperature does to density and viscosity, if anything.
+  std::optional<FluidChange> fluid_change() const;
 };
 
 struct Heat : Physics<Heat> {
@@ -75,10 +81,15 @@ struct Heat : Physics<Heat> {
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static std::string no_error_estimate(const Scene& scene);
   static std::vector<Carried> carried(const Scene& scene);
+  static std::string takes_friction_power(const Scene& scene);
+  /// What does not go with BDF2, empty: all does.
+  static std::string needs_implicit_euler(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
   static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
+  static std::vector<std::string> warnings_of_state(const Setting& setting,
+                                                    const std::vector<assembly::OutputField>& outputs);
 };
 
 }  // namespace sprekk::physics

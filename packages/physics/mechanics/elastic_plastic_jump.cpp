@@ -3,7 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
-#include "physics/mechanics/joint_face.hpp"
+#include "physics/mechanics/friction_power.hpp"
 #include "physics/mechanics/joint_material.hpp"
 #include "physics/mechanics/runaway.hpp"
 
@@ -74,6 +74,8 @@ class ElasticPlasticJump final : public assembly::Module {
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
     if (tips) d.couplings[0].columns.push_back("tip displacement");
+    d.stores = dissipates();
+    if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     add_outputs(d);
@@ -88,11 +90,13 @@ class ElasticPlasticJump final : public assembly::Module {
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     faces_->add_residual(at(state), state, r);
+    if (dissipates()) sliding_->add_residual(sliding(state), state, r);
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     Op op = at(state);
     op.damping = state.contact.damping;
     faces_->add_jacobian(op, state, J);
+    if (dissipates()) sliding_->add_jacobian(sliding(state), state, J);
   }
   void initial(const assembly::Rows& x) const override;
   void initial_history(const std::vector<View<Real**>>& history) const override;
@@ -119,6 +123,11 @@ class ElasticPlasticJump final : public assembly::Module {
     op.tether = state.contact.tether;
     op.anchor = state.contact.anchor;
     return op;
+  }
+
+  bool dissipates() const { return !parameters_.power_to.empty(); }
+  SlidingFace<shape, tips> sliding(const assembly::State& state) const {
+    return {.face = at(state), .area = area_, .rate = state.rate};
   }
 
   /// Calls visit(face, point) for every owned face, on the host.
@@ -189,7 +198,9 @@ class ElasticPlasticJump final : public assembly::Module {
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> faces_;
-  View<Real*> softness_;           // [owned face], where laws keep numbers
+  std::unique_ptr<assembly::Assembler<SlidingFace<shape, tips>>> sliding_;  // where power goes somewhere
+  ConstView<Real*> area_;                                                   // [owned face] m^2, there
+  View<Real*> softness_;                                                    // [owned face], where laws keep numbers
   View<Real*> merit_weight_;       // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
   std::vector<Real> modulus_;      // [owned face] Young's, of the softer side, Pa
   std::vector<Real> size_;         // [fracture] m
@@ -236,6 +247,15 @@ void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
   using Assembler = assembly::Assembler<Op>;
   faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
                                        Assembler::Positions::keep);
+  if (dissipates()) {
+    using Sliding = assembly::Assembler<SlidingFace<shape, tips>>;
+    sliding_ =
+        std::make_unique<Sliding>(context, Loop::fracture_faces, std::vector<int>{context.field(parameters_.power_to)},
+                                  fields_, Sliding::Positions::keep);
+    std::vector<Real> area;
+    for (const auto& face : mesh_->fracture_faces) area.push_back(face.area);
+    area_ = assembly::to_device(area, "area");
+  }
   const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
   View<Real***> frame("frame", n_faces, dim, dim);
   View<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);

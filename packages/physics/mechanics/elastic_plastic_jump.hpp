@@ -9,6 +9,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace sprekk::physics {
@@ -32,6 +33,8 @@ struct ElasticPlasticJumpParameters {
   Real start = 0;  ///< time of the initial state, s
   int n_kept = 0;  ///< how many numbers the joints of any rank keep of a face, at most
   std::vector<laws::JointQuantity> quantities = {};  ///< that joints of any rank tell
+  std::string power_to =
+      "";  ///< field on facets whose rows of fracture faces get what SlidingFace dissipates; empty: none
 };
 
 /// mean(sigma_0 n) + p n in the frames of owned faces, Pa, of both sides in the mean; zero without initial stress.

@@ -179,20 +179,28 @@ struct JointFace {
     }
     damp(f, evaluate(f, w, traction, R), R);
     for (int k = 0; k < dim; ++k) {
-      for (int i = 0; i < dim; ++i) {
-        Real dR_djump = 0;  // derivative in component i of the global jump
-        for (int l = 0; l < dim; ++l) dR_djump += R[k].dx(l) * frame(f, l, i);
-        for (int a = 0; a < n; ++a) {
-          J[k][a * dim + i] = -share(f, a) * dR_djump;
-          J[k][(n + a) * dim + i] = share(f, a) * dR_djump;
-          if (!tips) continue;
-          J[k][q + a * dim + i] = -tip_share(f, a) * dR_djump;
-          J[k][q + (n + a) * dim + i] = tip_share(f, n + a) * dR_djump;
-        }
-        J[k][beta + i] = -bubble_mean(f) * dR_djump;
-        J[k][beta + dim + i] = bubble_mean(f) * dR_djump;
-        J[k][lambda + i] = R[k].dx(dim + i);
+      Real by_w[dim];
+      for (int l = 0; l < dim; ++l) {
+        by_w[l] = R[k].dx(l);
+        J[k][lambda + l] = R[k].dx(dim + l);
       }
+      chain(f, by_w, J[k]);
+    }
+  }
+  /// From the derivatives in w those in the displacements.
+  KOKKOS_INLINE_FUNCTION void chain(int f, const Real (&by_w)[dim], Real (&row)[Columns::size]) const {
+    for (int i = 0; i < dim; ++i) {
+      Real by_jump = 0;  // derivative in component i of the global jump
+      for (int l = 0; l < dim; ++l) by_jump += by_w[l] * frame(f, l, i);
+      for (int a = 0; a < n; ++a) {
+        row[a * dim + i] = -share(f, a) * by_jump;
+        row[(n + a) * dim + i] = share(f, a) * by_jump;
+        if (!tips) continue;
+        row[q + a * dim + i] = -tip_share(f, a) * by_jump;
+        row[q + (n + a) * dim + i] = tip_share(f, n + a) * by_jump;
+      }
+      row[beta + i] = -bubble_mean(f) * by_jump;
+      row[beta + dim + i] = bubble_mean(f) * by_jump;
     }
   }
 };

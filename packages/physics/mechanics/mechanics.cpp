@@ -86,6 +86,15 @@ FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>&
   return any ? fluid : FluidPressure();
 }
 
+/// The field that takes the power of friction, empty: none.
+std::string power_to(const Scene& scene) {
+  std::string field;
+  for_each_physics([&](auto physics) {
+    if (auto one = physics.takes_friction_power(scene); !one.empty()) field = std::move(one);
+  });
+  return field;
+}
+
 MechanicsParameters parameters_of(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   BulkMomentumParameters bulk{.elasticity = elasticity(scene, mesh),
@@ -103,7 +112,8 @@ MechanicsParameters parameters_of(const Setting& setting) {
           .fluid_pressure = unknown ? FluidPressure() : fluid,
           .initial_pressure = unknown ? fluid : FluidPressure(),
           .start = start,
-          .augmentation = scene.augmentation};
+          .augmentation = scene.augmentation,
+          .power_to = power_to(scene)};
 }
 
 std::vector<base::Expression> lithostatic_stress(const Scene& scene) {

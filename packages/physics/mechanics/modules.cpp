@@ -46,7 +46,8 @@ ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const Mecha
           .fluid_pressure = fluid,
           .start = parameters.start,
           .n_kept = most_kept(mesh, parameters.joints.values),
-          .quantities = told_quantities(mesh, parameters.joints.values)};
+          .quantities = told_quantities(mesh, parameters.joints.values),
+          .power_to = parameters.power_to};
 }
 
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,

@@ -13,6 +13,7 @@ struct MechanicsParameters {
   FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
   Real start = 0;                       ///< time of the initial state, s
   Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
+  std::string power_to = "";            ///< see there
 };
 
 /// Of the module for jumps.

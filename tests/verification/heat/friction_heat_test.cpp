@@ -1,0 +1,99 @@
+// What sliding fractures dissipate warms them.
+#include "../uniform/states.hpp"
+#include "assembly/jacobian_check.hpp"
+#include "unit/assembly/dense.hpp"
+#include "warm_boxes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+/// The block of regimes_2d or 3d between tied sides: pressed by 0.2 m, and moved along by 0.3 m per second from t = 1
+/// on.
+model::Scene sliding_block(int dim, Real dilation_angle) {
+  auto scene = read_scene(fmt::format("verification/regimes_{}d.xml", dim));
+  tie_sides(scene);
+  for (int k = 0; k < dim - 1; ++k) scene.mesh.cells[k] = 3;
+  auto& joint = scene.materials.at("joint");
+  joint.dilation_angle = Expression(dilation_angle);
+  joint.filling_heat_capacity = Expression(0);
+  warm(scene, 10, 0.5, 3, 0);
+  scene.heat->of_friction = true;
+  auto& moved = scene.boundary_conditions.at("moved").displacement;
+  moved.assign(dim, Expression(0));
+  moved[0] = Expression("t > 1 ? 0.3*(t - 1) : 0");
+  moved[dim - 1] = Expression(-0.2);
+  return scene;
+}
+
+/// Without loss of heat: what the block gains in each step is the work of the traction on the plastic jump, dilation
+/// included, and without that mu N times the slip.
+TEST(HeatOfFriction, IsWhatSlidingDissipates) {
+  for (const int dim : {2, 3})
+    for (const Real angle : {0.0, 10.0}) {
+      model::Model model(sliding_block(dim, angle), Tpetra::getDefaultComm());
+      const auto& mesh = model.mesh();
+      const auto sum = [&](Real here) {
+        Real all = 0;
+        Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+        return all;
+      };
+      const auto content = [&] {
+        const auto T = model.output("temperature").values;
+        const auto volumes = assembly::cell_volumes(mesh);
+        Real here = 0;
+        for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) here += 3 * volumes[c] * T[c];
+        return sum(here);
+      };
+      ASSERT_TRUE(model.step_to(1).converged) << dim;
+      auto plastic = model.output("plastic jump local").values;
+      Real before = content(), all_work = 0;
+      EXPECT_NEAR(before, 30, 1e-10);
+      for (int step = 1; step <= 8; ++step) {
+        ASSERT_TRUE(model.step_to(1 + 0.5 * step).converged) << dim << " " << step;
+        const auto now = model.output("plastic jump local").values, traction = model.output("traction local").values;
+        Real work = 0, by_hand = 0;
+        for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+          const Real area = mesh.fracture_faces[f].area;
+          Real slip = 0;
+          for (int k = 0; k < dim; ++k)
+            work += area * traction[dim * f + k] * (now[dim * f + k] - plastic[dim * f + k]);
+          for (int k = 1; k < dim; ++k) slip += std::pow(now[dim * f + k] - plastic[dim * f + k], 2);
+          by_hand -= area * 0.6 * traction[dim * f] * std::sqrt(slip);
+        }
+        work = sum(work);
+        const Real after = content();
+        EXPECT_NEAR(after - before, work, 1e-10) << dim << " " << angle << " " << step;
+        if (angle == 0) {
+          EXPECT_NEAR(work, sum(by_hand), 1e-10) << dim << " " << step;
+        }
+        EXPECT_GE(work, -1e-12);
+        before = after;
+        plastic = now;
+        all_work += work;
+      }
+      EXPECT_GT(all_work, 0.05) << dim << " " << angle;
+    }
+}
+
+/// The rows that take the power; those of the joint have kinks, and a suite of their own.
+TEST(HeatOfFriction, JacobianIsItsDerivative) {
+  for (const int dim : {2, 3}) {
+    model::Model model(sliding_block(dim, 10), Tpetra::getDefaultComm());
+    auto& system = model.system();
+    system.set_time(1, 0.5);
+    auto x = system.initial();
+    test::randomize(x, 0.3, 1);
+    system.commit(x);
+    test::randomize(x, 0.3, 2);
+    int checked = 0;
+    for (const auto& e : assembly::check_jacobian(system, x, 1e-6)) {
+      if (e.module.find("jump") == std::string::npos || e.row != "face temperature") continue;
+      ++checked;
+      EXPECT_LE(e.error, 1e-5) << dim << ": " << e.row << ", " << e.column;
+    }
+    EXPECT_GE(checked, 3);
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
