@@ -123,7 +123,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart
   std::size_t k = 0;
   for (; k + n_sums * lanes <= n; k += n_sums * lanes) {
     const char* const next = reinterpret_cast<const char*>(a + h * k) + ahead;
-    for (std::size_t l = 0; l < h * n_sums * lanes * sizeof(Number); l += line) __builtin_prefetch(next + l);
+    for (std::size_t l = 0; l < h * n_sums * lanes * sizeof(Number); l += line) fields::prefetch(next + l);
     for (int l = 0; l < n_sums; ++l) add(k + l * lanes, l);
   }
   for (; k + lanes <= n; k += lanes) add(k, 0);
