@@ -4,7 +4,7 @@
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/joint_face.hpp"
-#include "physics/mechanics/joint_material.hpp"
+#include "physics/mechanics/joint_slopes.hpp"
 #include "physics/mechanics/runaway.hpp"
 
 #include <algorithm>
