@@ -1,11 +1,16 @@
-# What the packages link; an installed Sprekk includes this file as well. Imported targets of the distribution's Trilinos
-# carry no include directories, and some libraries have no targets at all, hence the wrappers.
+# What the packages link; an installed Sprekk includes this file as well. Trilinos from 13.4 on has imported targets that
+# are complete; those of 13.2 carry no include directories, and some libraries have no targets at all, hence the wrappers.
 find_package(MPI REQUIRED COMPONENTS C CXX)
 find_package(Trilinos REQUIRED COMPONENTS
   Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 MueLu NOX Sacado Kokkos Teuchos)
 add_library(sprekk_trilinos INTERFACE IMPORTED)
-target_include_directories(sprekk_trilinos SYSTEM INTERFACE ${Trilinos_INCLUDE_DIRS})
-target_link_libraries(sprekk_trilinos INTERFACE ${Trilinos_LIBRARIES} MPI::MPI_CXX)
+target_link_libraries(sprekk_trilinos INTERFACE MPI::MPI_CXX)
+if(TARGET Trilinos::all_selected_libs)
+  target_link_libraries(sprekk_trilinos INTERFACE Trilinos::all_selected_libs)
+else()
+  target_include_directories(sprekk_trilinos SYSTEM INTERFACE ${Trilinos_INCLUDE_DIRS})
+  target_link_libraries(sprekk_trilinos INTERFACE ${Trilinos_LIBRARIES})
+endif()
 
 function(sprekk_external target header library)
   find_path(${target}_INCLUDE ${header} REQUIRED)

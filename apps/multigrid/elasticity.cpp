@@ -67,11 +67,11 @@ int main(int argc, char** argv) {
   const Tpetra::ScopeGuard guard(&argc, &argv);
   const auto comm = Tpetra::getDefaultComm();
   const fields::Map nodes(n * n * n, 0, comm);
-  const auto map = rcp(new fields::Map(3 * n * n * n, 3 * nodes.getNodeNumElements(), 0, comm));
+  const auto map = rcp(new fields::Map(3 * n * n * n, 3 * base::n_local_elements(nodes), 0, comm));
   const auto A = rcp(new fields::CrsMatrix(map, 192));
   const auto rigid_motions = rcp(new fields::MultiVector(map, 6));
   fields::Vector b(map), x(map);
-  for (const GlobalIndex node : nodes.getNodeElementList()) {
+  for (const GlobalIndex node : base::local_elements(nodes)) {
     add_rows(node, *A, b);
     for (int k = 0; k < 3; ++k) {
       rigid_motions->replaceGlobalValue(3 * node + k, k, 1);
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   cycle.setup(matrix, true);                                      // values
   const int iterations = solve(*matrix, cycle, b, x);
 
-  for (const GlobalIndex node : nodes.getNodeElementList())
+  for (const GlobalIndex node : base::local_elements(nodes))
     for (int k = 0; k < 3; ++k) x.sumIntoGlobalValue(3 * node + k, -exact(point(node), k));
   const Real error = x.normInf() / exact({n, 0, 0}, 0);
   if (comm->getRank() == 0)

@@ -64,6 +64,23 @@ class Assembler {
 
   LocalIndex n_entities() const { return n_entities_; }
 
+  template <class T>
+  using PerColumn = Kokkos::Array<T, Columns::n>;
+
+  /// Copies an entity's unknowns into one local array.
+  struct Gather {
+    Op op;
+    PerColumn<ConstView<LocalIndex**>> first;  // [entity, group]
+    PerColumn<ConstView<Real*>> x;             // [unknown]
+
+    KOKKOS_INLINE_FUNCTION void operator()(int e, Real (&local)[Columns::size]) const {
+      for (int k = 0; k < Columns::n; ++k)
+        for (int g = 0; g < Columns::count(k); ++g)
+          for (int c = 0; c < Columns::width(k); ++c)
+            local[Columns::offset(k) + g * Columns::width(k) + c] = first[k](e, g) < 0 ? 0 : x[k](first[k](e, g) + c);
+    }
+  };
+
   /// r[row field] += op.residual over all entities, owned rows only.
   void add_residual(const Op& op, const State& state, const Rows& r) const {
     ResidualKernel kernel{gather(op, state), {}, {}, {}};
@@ -121,22 +138,6 @@ class Assembler {
   using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
   template <class T>
   using PerRow = Kokkos::Array<T, OpRows::n>;
-  template <class T>
-  using PerColumn = Kokkos::Array<T, Columns::n>;
-
-  /// Copies an entity's unknowns into one local array.
-  struct Gather {
-    Op op;
-    PerColumn<ConstView<LocalIndex**>> first;  // [entity, group]
-    PerColumn<ConstView<Real*>> x;             // [unknown]
-
-    KOKKOS_INLINE_FUNCTION void operator()(int e, Real (&local)[Columns::size]) const {
-      for (int k = 0; k < Columns::n; ++k)
-        for (int g = 0; g < Columns::count(k); ++g)
-          for (int c = 0; c < Columns::width(k); ++c)
-            local[Columns::offset(k) + g * Columns::width(k) + c] = first[k](e, g) < 0 ? 0 : x[k](first[k](e, g) + c);
-    }
-  };
 
   struct ResidualKernel {
     Gather gather;

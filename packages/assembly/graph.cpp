@@ -94,7 +94,7 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
   View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
   auto host = Kokkos::create_mirror_view(positions);
   Kokkos::deep_copy(host, -1);
-  std::vector<LocalIndex> position_of(matrix.getColMap()->getNodeNumElements(), 0);  // in the row; else anything
+  std::vector<LocalIndex> position_of(base::n_local_elements(*matrix.getColMap()), 0);  // in the row; else anything
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
     if (!writers->any(row)) continue;
     const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;
@@ -120,7 +120,7 @@ RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& colum
     SPREKK_CHECK(rows.width == width, "rows of {} are written in groups of {} and of {}", row_layout.field().name,
                  width, rows.width);
   const LocalIndex n_rows = row_layout.n_owned();
-  const Columns columns(n_rows, column_layout.ghosted()->getNodeNumElements(), couplings);
+  const Columns columns(n_rows, base::n_local_elements(*column_layout.ghosted()), couplings);
   using Graph = fields::CrsGraph::local_graph_device_type;
   const Graph::row_map_type::non_const_type row_start("row start", n_rows + 1);
   const Graph::entries_type::non_const_type row_columns("columns", width * columns.columns.size());

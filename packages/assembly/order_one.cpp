@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace sprekk::assembly {
@@ -73,7 +74,7 @@ class Shares {
 
  private:
   static bool has(unsigned set, int corner) { return (set >> corner) & 1u; }
-  static int size(unsigned set) { return __builtin_popcount(set); }
+  static int size(unsigned set) { return std::popcount(set); }
   static bool is_inside(unsigned set) { return size(set) > 2; }  // of a face or cell: 4 or 8 corners
 
   /// Nodes inside of faces and cells are where corners and the nodes on edges put them.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace sprekk::assembly {
@@ -23,6 +24,15 @@ View<Real*> owned_view(fields::Vector& v) {
 ConstView<Real*> const_view(const fields::Vector& v) {
   const auto local = v.getLocalViewDevice(Tpetra::Access::ReadOnly);
   return ConstView<Real*>(local.data(), local.extent(0));
+}
+
+/// gain = (with - without)/rate; [entity, component] of [unknown].
+void set_gains(const View<Real**>& gain, const View<Real*>& with, const View<Real*>& without, Real rate) {
+  const int width = static_cast<int>(gain.extent(1));
+  Kokkos::parallel_for(
+      "gains", Kokkos::RangePolicy<Execution>(0, gain.extent(0)), KOKKOS_LAMBDA(int e) {
+        for (int k = 0; k < width; ++k) gain(e, k) = (with(e * width + k) - without(e * width + k)) / rate;
+      });
 }
 
 }  // namespace
@@ -162,15 +172,7 @@ void System::find_gains() {
     modules_[m]->residual(s, without);
   }
   const Real rate = rates_.now;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const auto gain = gains_[b];
-    const auto a = with[b], c = without[b];
-    const int width = static_cast<int>(gain.extent(1));
-    Kokkos::parallel_for(
-        "gains", Kokkos::RangePolicy<Execution>(0, gain.extent(0)), KOKKOS_LAMBDA(int e) {
-          for (int k = 0; k < width; ++k) gain(e, k) = (a(e * width + k) - c(e * width + k)) / rate;
-        });
-  }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) set_gains(gains_[b], with[b], without[b], rate);
 }
 
 void System::residual(const BlockVector& x, BlockVector& r) {
@@ -257,8 +259,8 @@ namespace {
 
 /// What rounding of other balances' unknowns leaves of the rows of block b: sum over these c of |J_bc| times their
 /// `rounding(c)`. Collective.
-template <class Rounding>
-View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n, const Rounding& rounding) {
+View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n,
+                               const std::function<Real(int)>& rounding) {
   View<Real*> sum("rounding", n);
   for (int c = 0; c < J.n_blocks(); ++c) {
     if (c == b || J(b, c).is_null()) continue;

@@ -9,7 +9,7 @@ namespace sprekk::fields {
 Halo::Halo(RCP<const Map> owned, RCP<const Map> all) : owned_(owned), all_(all) {
   if (all->getGlobalNumElements() == owned->getGlobalNumElements()) return;
   import_ = rcp(new Import(owned, all));
-  SPREKK_CHECK(import_->getNumSameIDs() == owned->getNodeNumElements(), "owned nodes must come first");
+  SPREKK_CHECK(import_->getNumSameIDs() == base::n_local_elements(*owned), "owned nodes must come first");
 }
 
 std::vector<LocalIndex> Halo::sent_nodes() const {

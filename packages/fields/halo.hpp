@@ -14,8 +14,8 @@ class Halo {
   /// `all` begins with the nodes of `owned`, in their order.
   Halo(RCP<const Map> owned, RCP<const Map> all);
 
-  LocalIndex n_owned() const { return static_cast<LocalIndex>(owned_->getNodeNumElements()); }
-  LocalIndex n_all() const { return static_cast<LocalIndex>(all_->getNodeNumElements()); }
+  LocalIndex n_owned() const { return static_cast<LocalIndex>(base::n_local_elements(*owned_)); }
+  LocalIndex n_all() const { return static_cast<LocalIndex>(base::n_local_elements(*all_)); }
   const RCP<const Map>& owned() const { return owned_; }
   const RCP<const Map>& all() const { return all_; }
   std::vector<LocalIndex> sent_nodes() const;  ///< owned ones that are ghosts of other ranks, perhaps several times

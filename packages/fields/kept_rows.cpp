@@ -73,7 +73,7 @@ void KeptRows::keep(const Marks& marks) {
       const std::size_t w_before = k_before < 0 ? 0 : before.marks.first_word(k_before) + w - marks.first_word(k);
       const std::uint64_t known = k_before < 0 ? 0 : before.marks.bits(w_before);
       for (std::uint64_t left = marks.bits(w); left != 0; left &= left - 1) {
-        const std::size_t bit = Kept::lowest(left);
+        const std::size_t bit = lowest_bit(left);
         if (!(known >> bit & 1))
           visit(w, bit, J.value(place + bit));
         else

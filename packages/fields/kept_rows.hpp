@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "fields/matrix.hpp"
+#include "fields/node_kernels.hpp"
 
 namespace sprekk::fields {
 
@@ -62,11 +63,10 @@ class KeptRows {
       std::size_t i = first_value(k), first = 0;
       for (std::size_t w = marks.first_word(k); w < marks.first_word(k + 1); ++w, first += Marks::word)
         for (std::uint64_t left = marks.bits(w); left != 0; left &= left - 1) {
-          const std::size_t bit = lowest(left);
+          const std::size_t bit = lowest_bit(left);
           visit(first + bit, present(w) >> bit & 1 ? value(i++) : 0);
         }
     }
-    KOKKOS_FORCEINLINE_FUNCTION static std::size_t lowest(std::uint64_t bits) { return __builtin_ctzll(bits); }
   };
 
   RCP<const Matrix> J_;

@@ -12,7 +12,7 @@ using Policy = Kokkos::RangePolicy<Execution>;
 bool in_blocks(const Map& columns, const View<std::size_t*>& start, const View<LocalIndex*>& column, int height,
                int width) {
   constexpr int most = 3;
-  const auto n_columns = static_cast<LocalIndex>(columns.getNodeNumElements());
+  const auto n_columns = static_cast<LocalIndex>(base::n_local_elements(columns));
   const auto n_rows = static_cast<LocalIndex>(start.extent(0)) - 1;
   if (height > most || width > most || n_columns % width != 0 || n_rows % height != 0) return false;
   for (LocalIndex c = 0; c < n_columns; ++c)
@@ -86,7 +86,7 @@ RCP<CrsMatrix> Matrix::crs() const {
           numbers.for_row(i, [&](LocalIndex c, std::size_t place) { column(place) = c; });
         });
   }
-  const Local local("matrix", n_rows, static_cast<LocalIndex>(columns_->getNodeNumElements()), column.extent(0),
+  const Local local("matrix", n_rows, static_cast<LocalIndex>(base::n_local_elements(*columns_)), column.extent(0),
                     numbers.value, start, column);
   return crs_ = rcp(new CrsMatrix(local, rows_, columns_, domain_, rows_, import_, Teuchos::null));
 }

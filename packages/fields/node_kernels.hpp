@@ -1,15 +1,60 @@
-// What kernels on blocks of nodes share.
+// What kernels on blocks of nodes share, and all that depends on the compiler: vector types, prefetching, wide
+// instructions, each with a fallback. Device code of these kernels has never been compiled.
 #pragma once
 
 #include "base/types.hpp"
 
+#include <cstddef>
+#include <cstdint>
+
 namespace sprekk::fields {
+
+#if defined(__GNUC__)  // Clang has them as well
+template <int n>
+struct Pack {
+  typedef Real Type __attribute__((vector_size(n * sizeof(Real)), aligned(alignof(Real)), may_alias));
+};
+
+/// Asks memory for what will be read soon.
+KOKKOS_FORCEINLINE_FUNCTION void prefetch(const void* address) { __builtin_prefetch(address); }
+
+/// The number of the lowest bit that is set; there must be one.
+KOKKOS_FORCEINLINE_FUNCTION std::size_t lowest_bit(std::uint64_t bits) { return __builtin_ctzll(bits); }
+#else
+template <int n>
+struct Pack {
+  struct Type {
+    Real number[n];
+
+    KOKKOS_FORCEINLINE_FUNCTION Type& operator+=(const Type& x) {
+      for (int k = 0; k < n; ++k) number[k] += x.number[k];
+      return *this;
+    }
+    KOKKOS_FORCEINLINE_FUNCTION friend Type operator*(Type a, const Type& b) {
+      for (int k = 0; k < n; ++k) a.number[k] *= b.number[k];
+      return a;
+    }
+    KOKKOS_FORCEINLINE_FUNCTION friend Type operator*(Real a, Type b) {
+      for (int k = 0; k < n; ++k) b.number[k] *= a;
+      return b;
+    }
+  };
+};
+
+KOKKOS_FORCEINLINE_FUNCTION void prefetch(const void*) {}
+
+KOKKOS_FORCEINLINE_FUNCTION std::size_t lowest_bit(std::uint64_t bits) {
+  std::size_t lowest = 0;
+  for (; (bits & 1) == 0; bits >>= 1) ++lowest;
+  return lowest;
+}
+#endif
 
 /// n numbers that lie together, in vectors of 4, 2 and 1 of them.
 template <int n>
 struct Numbers {
   static constexpr int here = n >= 4 ? 4 : n >= 2 ? 2 : 1;
-  typedef Real Vector __attribute__((vector_size(here * sizeof(Real)), aligned(alignof(Real)), may_alias));
+  using Vector = typename Pack<here>::Type;
 
   Vector head = {};
   Numbers<n - here> rest;

@@ -1,6 +1,7 @@
 // Distributed vectors and matrices as the project names them.
 #pragma once
 
+#include "base/trilinos_compat.hpp"
 #include "base/types.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>

@@ -31,7 +31,7 @@ std::string to_hdf5(const NamedVectors& vectors) {
   const Handle file(H5Fcreate("vectors", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "a file in memory");
   for (const auto& [name, vector] : vectors) {
     const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, name);
-    const auto numbers = vector->getMap()->getNodeElementList();
+    const auto numbers = base::local_elements(*vector->getMap());
     const auto values = vector->getData();
     write(group, "numbers", H5T_NATIVE_LLONG, numbers.getRawPtr(), numbers.size());
     write(group, "values", H5T_NATIVE_DOUBLE, values.getRawPtr(), values.size());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/types.hpp"
-#include "laws/joint_kinds.hpp"
+#include "laws/aperture_kinds.hpp"
 
 namespace sprekk::laws {
 

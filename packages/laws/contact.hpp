@@ -7,6 +7,8 @@
 
 namespace sprekk::laws {
 
+enum class ContactState : int { open = 0, stick = 1, slip = 2 };
+
 /// x without derivatives.
 template <class T>
 KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {

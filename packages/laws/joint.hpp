@@ -12,8 +12,6 @@
 
 namespace sprekk::laws {
 
-enum class ContactState : int { open = 0, stick = 1, slip = 2 };
-
 /// |v|, with derivative zero at v = 0 (the root's own derivative is infinite there).
 template <int n, class T>
 KOKKOS_INLINE_FUNCTION T norm(const T (&v)[n]) {

@@ -1,8 +1,7 @@
 // All laws of joints that a scene can name, by role; the first of each list is the one of joints that name none.
 #pragma once
 
-#include "laws/aperture/barton.hpp"
-#include "laws/aperture/mechanical.hpp"
+#include "laws/aperture_kinds.hpp"
 #include "laws/bond/constant.hpp"
 #include "laws/bond/linear_softening.hpp"
 #include "laws/bond/none.hpp"
@@ -77,11 +76,6 @@ using DriverKinds = Kinds<
     SlipDriver,
     CompressionDriver,
     WorkDriver>;
-
-/// Which aperture a fluid flows in where the walls are a apart, m: Real hydraulic(Real a), and its derivative slope(a).
-using ApertureKinds = Kinds<
-    MechanicalAperture,
-    BartonAperture>;
 
 // clang-format on
 

@@ -25,12 +25,13 @@ inline Real peak_slip_of(Real JRC, Real length) { return length / 500 * std::pow
 
 /// The part of the roughness that slip has mobilised, by slip over delta_p: Barton's (1982) table from 0.3 on. Kinks
 /// are rounded to within 1e-3.
-inline constexpr PiecewiseLinear<7> mobilised_roughness{
-    {0.3, 0.6, 1, 2, 4, 10, 100}, {0, 0.75, 1, 0.85, 0.7, 0.5, 0}, 0.003};
+KOKKOS_INLINE_FUNCTION constexpr PiecewiseLinear<7> mobilised_roughness() {
+  return {{0.3, 0.6, 1, 2, 4, 10, 100}, {0, 0.75, 1, 0.85, 0.7, 0.5, 0}, 0.003};
+}
 
 /// The part of the residual friction that slip has mobilised: before 0.3 the table's roughness is negative, so that no
 /// friction is mobilised without slip. For the negative slip of iterates the line goes on.
-inline constexpr PiecewiseLinear<2> mobilised_friction{{-0.3, 0.3}, {-1, 1}, 0.003};
+KOKKOS_INLINE_FUNCTION constexpr PiecewiseLinear<2> mobilised_friction() { return {{-0.3, 0.3}, {-1, 1}, 0.003}; }
 
 inline Entry roughness_entry() {
   return Entry{"joint roughness coefficient", "-", base::at_least(0),

@@ -6,6 +6,7 @@
 #include <Tpetra_Vector.hpp>
 #include <vector>
 
+#include "base/trilinos_compat.hpp"
 #include "base/types.hpp"
 
 namespace sprekk::mesh {
@@ -19,7 +20,7 @@ class GhostExchange {
   /// Sets the values of ghosts, [entity * width + k], to those of their owners. T is an integer type. Collective.
   template <class T>
   void operator()(std::vector<T>& values, int width = 1) const {
-    const auto n = import_.getTargetMap()->getNodeNumElements();
+    const auto n = base::n_local_elements(*import_.getTargetMap());
     for (int k = 0; k < width; ++k) {
       {
         const auto from = owned_.getDataNonConst();

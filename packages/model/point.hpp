@@ -1,6 +1,7 @@
 // One point of a joint, driven along a path without a mesh.
 #pragma once
 
+#include "laws/contact.hpp"
 #include "model/scene.hpp"
 
 #include <iosfwd>

@@ -4,7 +4,9 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "model/point.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/joint_material.hpp"
+#include "physics/mechanics/joint_slopes.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>

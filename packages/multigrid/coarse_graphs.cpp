@@ -32,7 +32,7 @@ RCP<const Map> with_named(const RCP<const Map>& owned, const std::vector<View<Gl
       if (nodes(k) >= 0 && !owned->isNodeGlobalElement(nodes(k))) others.push_back(nodes(k));
   std::sort(others.begin(), others.end());
   others.erase(std::unique(others.begin(), others.end()), others.end());
-  const auto mine = owned->getNodeElementList();
+  const auto mine = base::local_elements(*owned);
   std::vector<GlobalIndex> all(mine.begin(), mine.end());
   all.insert(all.end(), others.begin(), others.end());
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();

@@ -17,9 +17,9 @@ using fields::Map;
 RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const auto &rows = A->getRowMap(), &columns = A->getColMap();
-  const auto map = rcp(new Map(invalid, rows->getNodeNumElements(), 0, rows->getComm()));
+  const auto map = rcp(new Map(invalid, base::n_local_elements(*rows), 0, rows->getComm()));
   Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex> of_rows(rows), of_columns(columns);
-  for (LocalIndex i = 0, n = rows->getNodeNumElements(); i < n; ++i)
+  for (LocalIndex i = 0, n = base::n_local_elements(*rows); i < n; ++i)
     of_rows.replaceLocalValue(i, map->getGlobalElement(i));
   if (A->getGraph()->getImporter().is_null())
     Tpetra::deep_copy(of_columns, of_rows);

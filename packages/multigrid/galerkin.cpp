@@ -65,7 +65,7 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   };
   const auto nearby = with_named(coarse_map, {aggregate});
   const auto aggregate_nearby = to_local(aggregate, *nearby);
-  const auto P = with_ghosts(to_global(make_rows(n_owned, nearby->getNodeNumElements(),
+  const auto P = with_ghosts(to_global(make_rows(n_owned, base::n_local_elements(*nearby),
                                                  [&](LocalIndex i, const auto& add) {
                                                    if (aggregate(i) < 0) return;
                                                    entries(i, [&](LocalIndex j, std::size_t e) {
@@ -76,7 +76,7 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
                              halo);
   const auto reached = with_named(coarse_map, {P.node});
   const auto column_P_reached = to_local(P.node, *reached);
-  const auto AP = with_ghosts(to_global(make_rows(n_owned, reached->getNodeNumElements(),
+  const auto AP = with_ghosts(to_global(make_rows(n_owned, base::n_local_elements(*reached),
                                                   [&](LocalIndex i, const auto& add) {
                                                     if (aggregate(i) < 0) return;
                                                     entries(i, [&](LocalIndex j, std::size_t) {

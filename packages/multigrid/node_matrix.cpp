@@ -18,7 +18,7 @@ struct ColumnNodes {
 
 ColumnNodes column_nodes(const CrsMatrix& A, int size) {
   const auto &rows = *A.getRowMap(), &columns = *A.getColMap();
-  const LocalIndex n_owned = rows.getNodeNumElements() / size;
+  const LocalIndex n_owned = base::n_local_elements(rows) / size;
   std::vector<GlobalIndex> nodes(n_owned);
   std::unordered_map<GlobalIndex, LocalIndex> local;
   for (LocalIndex i = 0; i < n_owned; ++i) {
@@ -29,7 +29,7 @@ ColumnNodes column_nodes(const CrsMatrix& A, int size) {
     local[nodes[i]] = i;
   }
   ColumnNodes result;
-  for (LocalIndex c = 0, n = columns.getNodeNumElements(); c < n; ++c) {
+  for (LocalIndex c = 0, n = base::n_local_elements(columns); c < n; ++c) {
     const GlobalIndex node = columns.getGlobalElement(c) / size;
     const auto [at, is_new] = local.emplace(node, static_cast<LocalIndex>(nodes.size()));
     if (is_new) nodes.push_back(node);
@@ -123,7 +123,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart
   std::size_t k = 0;
   for (; k + n_sums * lanes <= n; k += n_sums * lanes) {
     const char* const next = reinterpret_cast<const char*>(a + h * k) + ahead;
-    for (std::size_t l = 0; l < h * n_sums * lanes * sizeof(Number); l += line) __builtin_prefetch(next + l);
+    for (std::size_t l = 0; l < h * n_sums * lanes * sizeof(Number); l += line) fields::prefetch(next + l);
     for (int l = 0; l < n_sums; ++l) add(k + l * lanes, l);
   }
   for (; k + lanes <= n; k += lanes) add(k, 0);
@@ -171,14 +171,14 @@ void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& ou
 NodeMatrix node_matrix(const Matrix& A, int size) {
   const auto& numbers = A.numbers();
   const auto &rows = *A.row_map(), &columns = *A.column_map();
-  bool rows_first = columns.getNodeNumElements() >= rows.getNodeNumElements();
-  for (LocalIndex i = 0, n = rows.getNodeNumElements(); i < n && rows_first; ++i)
+  bool rows_first = base::n_local_elements(columns) >= base::n_local_elements(rows);
+  for (LocalIndex i = 0, n = base::n_local_elements(rows); i < n && rows_first; ++i)
     rows_first = columns.getGlobalElement(i) == rows.getGlobalElement(i);
   const bool in_nodes = rows_first && numbers.height == size && numbers.width == size;
   if (!base::on_all_ranks(*rows.getComm(), in_nodes)) return node_matrix(*A.crs(), size);
   const auto nodes = [size](const Map& unknowns) {
     std::vector<GlobalIndex> numbers;
-    for (LocalIndex i = 0, n = unknowns.getNodeNumElements(); i < n; i += size)
+    for (LocalIndex i = 0, n = base::n_local_elements(unknowns); i < n; i += size)
       numbers.push_back(unknowns.getGlobalElement(i) / size);
     return fields::make_map(numbers, unknowns.getComm());
   };
@@ -199,7 +199,7 @@ RCP<CrsMatrix> crs_matrix(const NodeMatrix& A) {
   const int size = A.height;
   const auto unknowns = [&](const Map& nodes) {
     std::vector<GlobalIndex> all;
-    for (const GlobalIndex node : nodes.getNodeElementList())
+    for (const GlobalIndex node : base::local_elements(nodes))
       for (int c = 0; c < size; ++c) all.push_back(size * node + c);
     const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
     return rcp(new Map(invalid, Teuchos::arrayViewFromVector(all), 0, nodes.getComm()));

@@ -69,7 +69,7 @@ __attribute__((target("avx2,fma"))) void multiply_row_wide(const Number* a, cons
   for (auto& of_row : sums)
     for (auto& part : of_row) part = _mm256_setzero_pd();
   for (std::size_t k = 0; k < n; ++k, a += b * b) {
-    for (int m = 0; m < b * b && b > 1; m += line) __builtin_prefetch(a + ahead + m);
+    for (int m = 0; m < b * b && b > 1; m += line) fields::prefetch(a + ahead + m);
     const Real* const from = x + static_cast<std::size_t>(column[k]) * b;
     for (int c = 0; c < b; ++c)
       for (int p = 0; p < n_parts; ++p) {

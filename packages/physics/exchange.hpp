@@ -25,8 +25,9 @@ class Exchange {
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const;
 
+  struct Coefficient;  ///< device code
+
  private:
-  struct Coefficient;
   Coefficient coefficient(const assembly::State& state) const;
 
   int block_ = -1, widening_ = -1, carried_ = -1;

@@ -50,7 +50,8 @@ struct CellFaces {
  private:
   /// Area vector and centre of a face, of triangles around its first corner in 3D.
   KOKKOS_INLINE_FUNCTION void measure(int f) {
-    const auto& nodes = mesh::face_nodes(shape)[f];
+    static constexpr auto nodes_of = mesh::face_nodes(shape);  // a table of the device's own
+    const auto& nodes = nodes_of[f];
     const auto& a = corners[nodes[0]];
     const auto& b = corners[nodes[1]];
     if constexpr (dim == 2) {

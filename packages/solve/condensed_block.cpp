@@ -132,7 +132,7 @@ void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool di
         const LocalIndex row = held(i), own = diagonal ? own_column(row) : -1;
         numbers.for_row(row, [&](LocalIndex column, std::size_t k) {
           if (row_flag(row) == 0 && column_flag(column) == 0) return;
-          const Real size = Kokkos::Experimental::fabs(numbers.value(k));
+          const Real size = base::fabs(numbers.value(k));
           numbers.value(k) = column == own ? (size > 0 ? size : 1) : 0;
         });
       });

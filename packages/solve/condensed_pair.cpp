@@ -106,9 +106,9 @@ void CondensedPair::add_diagonal(const Vector& added) {
 void CondensedPair::subtract_product(const CrsMatrix& FK, const CrsMatrix& KF) {
   const auto S = S_->getLocalMatrixHost(), left = FK.getLocalMatrixHost(), right = KF.getLocalMatrixHost();
   std::vector<LocalIndex> column;  // [column of KF] that of S, or -1
-  for (LocalIndex c = 0, n = KF.getColMap()->getNodeNumElements(); c < n; ++c)
+  for (LocalIndex c = 0, n = base::n_local_elements(*KF.getColMap()); c < n; ++c)
     column.push_back(S_->getColMap()->getLocalElement(KF.getColMap()->getGlobalElement(c)));
-  std::vector<std::size_t> place(S_->getColMap()->getNodeNumElements(), 0);  // [column] one past that in the row
+  std::vector<std::size_t> place(base::n_local_elements(*S_->getColMap()), 0);  // [column] one past that in the row
   for (LocalIndex row = 0; row < S.numRows(); ++row) {
     const auto begin = S.graph.row_map(row), end = S.graph.row_map(row + 1);
     for (auto k = begin; k < end; ++k) place[S.graph.entries(k)] = k + 1;

@@ -62,7 +62,7 @@ class CondensedPlanner {
   static void for_columns(const RCP<const Matrix>& matrix, const Visit& visit) {
     if (matrix.is_null()) return;
     const auto& columns = *matrix->column_map();
-    for (LocalIndex i = 0, n = columns.getNodeNumElements(); i < n; ++i) visit(columns.getGlobalElement(i));
+    for (LocalIndex i = 0, n = base::n_local_elements(columns); i < n; ++i) visit(columns.getGlobalElement(i));
   }
 
   int index(int block) const {
@@ -99,7 +99,7 @@ class CondensedPlanner {
   /// the ranks that own them.
   RCP<const Map> find_columns(int a, int b, const RCP<const Matrix>& bulk, std::vector<Products>& products) const {
     const auto& domain = *blocks()[b].map;
-    std::vector<char> wanted(domain.getNodeNumElements(), a == b);  // of those owned
+    std::vector<char> wanted(base::n_local_elements(domain), a == b);  // of those owned
     GlobalIndices of_bulk, others;
     const auto add = [&](GlobalIndex column, GlobalIndices& not_owned) {
       if (const LocalIndex owned = domain.getLocalElement(column); owned >= 0)
@@ -143,8 +143,8 @@ class CondensedPlanner {
   void make_matrix(int a, int b, const RCP<const Map>& columns, const RCP<const Matrix>& bulk,
                    const LocalIndices& of_bulk, const std::vector<Products>& products) {
     const auto& rows = blocks()[a].map;
-    const LocalIndex n_rows = rows->getNodeNumElements();
-    LocalIndices met(columns->getNodeNumElements(), -1);  // [column] the row that met it last
+    const LocalIndex n_rows = base::n_local_elements(*rows);
+    LocalIndices met(base::n_local_elements(*columns), -1);  // [column] the row that met it last
     const auto for_new = [&](LocalIndex row, const auto& visit) {
       const auto meet = [&](LocalIndex column) {
         if (met[column] != row) visit(column);
@@ -169,7 +169,7 @@ class CondensedPlanner {
     auto& condensed = plan_.condensed.back();
     condensed.matrix = rcp(new const Matrix(rows, columns, blocks()[b].map, start, entries, blocks()[a].n_components,
                                             blocks()[b].n_components));
-    condensed.constrained = View<char*>("constrained", columns->getNodeNumElements());
+    condensed.constrained = View<char*>("constrained", base::n_local_elements(*columns));
   }
 
   const BlockProblem& problem_;

@@ -105,7 +105,7 @@ class Planner {
         const int n = blocks()[z].n_components;
         const auto& map = *blocks()[z].map;
         GlobalIndices entities;
-        for (LocalIndex i = 0, end = map.getNodeNumElements(); i < end; i += n)
+        for (LocalIndex i = 0, end = base::n_local_elements(map); i < end; i += n)
           entities.push_back(map.getGlobalElement(i) / n);
         SPREKK_CHECK(z == group.blocks[0] || entities == owned,
                      "local group '{}': block '{}' does not hold the same entities as the first block", group.name,
@@ -119,7 +119,7 @@ class Planner {
       for (int z : group.blocks) {
         if (matrix(a, z).is_null()) continue;
         const auto& columns = *matrix(a, z)->getColMap();
-        for (LocalIndex i = 0, n = columns.getNodeNumElements(); i < n; ++i) {
+        for (LocalIndex i = 0, n = base::n_local_elements(columns); i < n; ++i) {
           const GlobalIndex entity = columns.getGlobalElement(i) / blocks()[z].n_components;
           if (!entities->isNodeGlobalElement(entity)) ghosts.push_back(entity);
         }
@@ -149,7 +149,7 @@ class Planner {
 
   template <class Find>
   static Scatter make_scatter(const RCP<const CrsMatrix>& matrix, const Find& find) {
-    LocalIndices target(matrix->getNodeNumEntries());
+    LocalIndices target(base::n_local_entries(*matrix));
     for_entries(*matrix, [&](LocalIndex row, LocalIndex k, GlobalIndex column) { target[k] = find(row, column); });
     const int width = common_width(target);
     for (std::size_t k = 0; k < target.size(); k += width) target[k / width] = target[k];
@@ -228,7 +228,7 @@ class Planner {
         });
       }
     };
-    std::vector<GlobalIndices> sets(blocks()[a].map->getNodeNumElements());
+    std::vector<GlobalIndices> sets(base::n_local_elements(*blocks()[a].map));
     for_numbers([&](LocalIndex row, LocalIndex slot, int, LocalIndex) { sets[row].push_back(slot); });
     const ColumnSets slots(sets);
     const auto pair = [&](LocalIndex row, LocalIndex slot) {

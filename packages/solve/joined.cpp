@@ -19,7 +19,7 @@ RCP<const Map> one_after_another(const std::vector<RCP<const Map>>& maps, const 
   if (maps.size() == 1) return maps.front();
   std::vector<GlobalIndex> unknowns;
   for (std::size_t r = 0; r < maps.size(); ++r)
-    for (LocalIndex i = 0, n = maps[r]->getNodeNumElements(); i < n; ++i)
+    for (LocalIndex i = 0, n = base::n_local_elements(*maps[r]); i < n; ++i)
       unknowns.push_back(offsets[r] + maps[r]->getGlobalElement(i));
   return fields::make_map(unknowns, maps.front()->getComm());
 }
@@ -77,7 +77,7 @@ Joined::Joined(std::vector<RCP<const Map>> maps) : maps_(std::move(maps)), scale
     offsets_.push_back(offset);
     firsts_.push_back(first);
     offset += map->getGlobalNumElements();
-    first += map->getNodeNumElements();
+    first += base::n_local_elements(*map);
   }
   map_ = one_after_another(maps_, offsets_);
 }
@@ -160,7 +160,7 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, 
     : joined_(std::move(joined)), blocks_(std::move(blocks)) {
   if (chosen.empty() && joined_->n_blocks() == 1) {
     matrix_ = blocks_.front()->crs();
-    std::vector<LocalIndex> all(matrix_->getNodeNumRows());
+    std::vector<LocalIndex> all(base::n_local_rows(*matrix_));
     std::iota(all.begin(), all.end(), 0);
     rows_ = on_device("rows", all);
     return;
@@ -252,7 +252,7 @@ std::vector<LocalIndex> JoinedMatrix::find_runs(const std::vector<LocalIndex>& r
 JoinedMatrix::Places JoinedMatrix::number_columns(const std::vector<RCP<Vector>>& chosen, const Map& domain,
                                                   RCP<const Map>& columns) const {
   const int n = joined_->n_blocks();
-  const auto owned = domain.getNodeElementList();
+  const auto owned = base::local_elements(domain);
   std::vector<GlobalIndex> all(owned.begin(), owned.end());
   std::unordered_map<GlobalIndex, LocalIndex> ghosts;
   Places places(n * n);

@@ -58,7 +58,7 @@ ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places)
 /// rank that has it.
 class RaisedDiagonal {
  public:
-  explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(matrix.getNodeNumRows()) {
+  explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(base::n_local_rows(matrix)) {
     each([](Real& value, Real& kept) {
       kept = value;
       value *= 1 + 1e-8;
@@ -138,7 +138,7 @@ class MueLuMultigrid : public Preconditioner {
       MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
     }
     cost.operator_complexity = hierarchy_->GetHierarchy()->GetOperatorComplexity();
-    cost.bytes = (cost.operator_complexity - 1) * matrix->getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex));
+    cost.bytes = (cost.operator_complexity - 1) * base::n_local_entries(*matrix) * (sizeof(Real) + sizeof(LocalIndex));
   }
   RCP<const Operator> made() const override { return rcp(new Scaled(hierarchy_)); }
 

@@ -62,7 +62,7 @@ class SweepOperator : public Operator {
     LocalIndex first = 0;
     for (const int r : part.blocks) {
       visit(r, first);
-      first += static_cast<LocalIndex>(joined_->map(r)->getNodeNumElements());
+      first += static_cast<LocalIndex>(base::n_local_elements(*joined_->map(r)));
     }
   }
 

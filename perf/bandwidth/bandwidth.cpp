@@ -1,5 +1,6 @@
 // bandwidth SCENE [PATH=VALUE...]: times the parts of the scene's first step, and the memory bandwidth that the same
 // ranks have, and prints them as JSON. The linear system that is solved again and again is that of the step's end.
+#include "base/trilinos_compat.hpp"
 #include "model/model.hpp"
 #include "perf/program.hpp"
 
@@ -67,8 +68,8 @@ Kernel product(const std::string& name, RCP<const fields::Operator> A) {
 
 /// What y = A x must at least move: values and columns of entries, starts of rows, x and y.
 Real bytes(const fields::CrsMatrix& A) {
-  return A.getNodeNumEntries() * (sizeof(Real) + sizeof(LocalIndex)) +
-         A.getNodeNumRows() * (sizeof(std::size_t) + sizeof(Real)) + A.getNodeNumCols() * sizeof(Real);
+  return base::n_local_entries(A) * (sizeof(Real) + sizeof(LocalIndex)) +
+         base::n_local_rows(A) * (sizeof(std::size_t) + sizeof(Real)) + base::n_local_columns(A) * sizeof(Real);
 }
 
 json to_json(const base::Timers& timers) {

@@ -213,7 +213,7 @@ class Verdicts(ProgramTest):
         broken.chmod(0o755)
         command = [sys.executable, "-B", ROOT / "perf/contact/contact.py", "--random", "12", "--seed", "7", "--only", "box-3d-0008",
                    "--binary", broken, "--output", self.folder / "out"]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         kept = list((self.folder / "out/failures").iterdir())
         self.assertRegex(done.stdout.splitlines()[-1], "^scenes=1 failures=1 refused=0 hangs=0 newton_median=nan newton_p90=nan rank_differences=0$")

@@ -98,7 +98,7 @@ TEST(LinearSolvers, ForcingLooksAtTheToleranceOfNewton) {
   const auto tight = run("contact/network_3d.xml", overrides, 1);
   overrides.back() = "Solver.tolerance=1e-8";
   const auto loose = run("contact/network_3d.xml", overrides, 1);
-  ASSERT_EQ(tight.report.newton_iterations, loose.report.newton_iterations);
+  EXPECT_LE(loose.report.newton_iterations, tight.report.newton_iterations);
   EXPECT_GT(loose.report.linear_solves.back().residual, 10 * tight.report.linear_solves.back().residual);
 }
 

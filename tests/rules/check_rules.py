@@ -4,7 +4,7 @@
     check_rules.py ROOT     prints "file:line: [rule] what" for every violation; exit status 1 if there is any
 
 Rules: include-order, solver-header, host-only, kernel, unfinished, self-contained, static-state, generic-room,
-heat-room.
+heat-room, trilinos-names, compiler, functor, lambda.
 """
 import re
 import sys
@@ -29,6 +29,10 @@ SOURCES = {".hpp", ".cpp", ".h"}
 SOLVER_HEADER = re.compile(r'\s*#\s*include\s*[<"]((?:NOX|Stratimikos|Belos|Teko|MueLu|Amesos2)[^>"]*)')
 HOST_ONLY = re.compile(
     r"\bMPI_COMM_WORLD\b|\bgetDefaultComm\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
+# Names that later versions of Trilinos and Kokkos have not.
+OLD_TRILINOS = re.compile(r"\bgetNode(?:Num\w+|ElementList)\b|\bKokkos::Experimental::\w+|\bgetLocalMatrix\s*\(")
+TRILINOS_COMPAT = "packages/base/trilinos_compat.hpp"  # and its test
+
 # Rooms that know no physics, by the words of those there are; the law of a room may be broken in these files: where
 # assembly meets contact, the point driver and the error estimate, which wait for rooms of their own.
 GENERIC = {"base", "mesh", "fields", "assembly", "multigrid", "solve", "io", "model"}
@@ -44,7 +48,15 @@ HEAT_ROOM = re.compile(r"packages/physics/(?:heat/|list\.hpp)")
 
 NOT_IN_KERNELS = re.compile(
     r"\bstd::(?:vector|map|unordered_map|set|string|cout|cerr|function)\b|\bnew\b|\b(?:malloc|printf)\s*\("
-    r"|(?:\.|->)data\s*\(\s*\)")
+    r"|(?:\.|->)data\s*\(\s*\)|\bthrow\b|\bSPREKK_(?:DEBUG_)?CHECK\b|\bfmt::|\bTeuchos::"
+    r"|\b(?:create_mirror\w*|deep_copy|getLocalView\w*)\b")
+# Rooms whose kernels must compile for a GPU, see tests/device; the rest is code of the host, or says that it is.
+ON_DEVICE = {"laws", "physics", "assembly"}
+# What compilers have in their own ways, and the files that have it.
+COMPILERS = re.compile(r"\b__(?:builtin_\w+|attribute__|declspec)\b|\b_mm\d*_\w+")
+KNOW_COMPILERS = {"packages/fields/node_kernels.hpp", "packages/multigrid/rounded_matrix.hpp",
+                  "packages/solve/condensed_block.cpp"}
+FUNCTOR = re.compile(r"\boperator\s*\(\)\s*\(\s*(?:const\s+)?(?:int|LocalIndex|std::size_t)\b[^)]*\)\s*const")
 UNFINISHED = re.compile(r"\b(?:TOD[O]|FIXM[E]|XX[X]|HAC[K])\b")
 NOT_SELF_CONTAINED = re.compile(r"/wor[k]/|\b[s]essions?\b|\b[i]ssue #", re.IGNORECASE)
 KERNEL_MACRO = r"KOKKOS_(?:CLASS_)?LAMBDA|KOKKOS_(?:FORCE)?(?:INLINE_)?FUNCTION"
@@ -97,6 +109,49 @@ def kernel_bodies(code, macro):
             i += 1
 
 
+def around(code, position):
+    """(text before the brace, its position) of every brace that is open at a position, the innermost first."""
+    depth = 0
+    for i in range(position - 1, -1, -1):
+        depth += {"}": 1, "{": -1}.get(code[i], 0)
+        if depth < 0:
+            depth = 0
+            begin = max(code.rfind(c, 0, i) for c in ";{}") + 1
+            yield code[begin:i], i
+
+
+def wrong_place(code, position):
+    """Why compilers for GPUs take no kernel that is a lambda at this position; None: they do."""
+    for head, brace in around(code, position):
+        if re.search(r"\]\s*\([^)]*\bauto\b", head):
+            return "in a generic lambda"
+        kind = re.search(r"\b(class|struct)\s+\w+[^()]*$", without_templates(head))
+        if not kind:
+            continue
+        outside = list(code[brace + 1:position])  # of what is nested in the class
+        depth = 0
+        for i, c in enumerate(outside):
+            depth += {"{": 1, "}": -1}.get(c, 0)
+            if depth > 0:
+                outside[i] = " "
+        access = re.findall(r"\b(public|protected|private)\s*:", "".join(outside))
+        if (access or [{"class": "private", "struct": "public"}[kind[1]]])[-1] != "public":
+            return "in a member that is not public"
+    return None
+
+
+def check_kernels(code):
+    """Violations of the rooms whose kernels must compile for a GPU."""
+    for match in FUNCTOR.finditer(code):
+        begin = max(code.rfind(c, 0, match.start()) for c in ";{}:") + 1
+        if "KOKKOS_" not in code[begin:match.start()] and "std::" not in match.group():
+            yield match.start(), "functor", "operator() of an index without KOKKOS_INLINE_FUNCTION"
+    for match in re.finditer(r"\bKOKKOS_LAMBDA\b", code):
+        why = wrong_place(code, match.start())
+        if why:
+            yield match.start(), "lambda", f"KOKKOS_LAMBDA {why}"
+
+
 def without_templates(text):
     """Template arguments removed, so that their parentheses do not look like a function's."""
     while True:
@@ -121,6 +176,8 @@ def mutable_statics(code):
 def check_cpp(path, text, aliases):
     """Violations (position, rule, what) of a C++ source; path is relative to the root."""
     parts, code = path.parts, blanked(text)
+    for match in OLD_TRILINOS.finditer(code if "trilinos_compat" not in path.name else ""):
+        yield match.start(), "trilinos-names", f"{match.group()}: see {TRILINOS_COMPAT}"
     package = parts[1] if parts[0] == "packages" else None
     if parts[0] in ("packages", "apps") and package != "solve":
         for match in re.finditer(SOLVER_HEADER.pattern, text, re.MULTILINE):
@@ -144,6 +201,10 @@ def check_cpp(path, text, aliases):
             yield match.start(), "kernel", f"{match.group()} in a kernel"
     for position, what in mutable_statics(code):
         yield position, "static-state", what
+    for match in COMPILERS.finditer(code if name not in KNOW_COMPILERS else ""):
+        yield match.start(), "compiler", f"{match.group()}: see packages/fields/node_kernels.hpp"
+    if package in ON_DEVICE:
+        yield from check_kernels(code)
 
 
 def check_text(text):
@@ -171,7 +232,7 @@ def check(root):
     violations = set()
     for path, text in texts.items():
         found = list(check_text(text))
-        if path.suffix in SOURCES and path.parts[0] in ("packages", "apps"):
+        if path.suffix in SOURCES and path.parts[0] in ("packages", "apps", "perf", "tests"):
             found += check_cpp(path, text, aliases)
         violations.update((str(path), text.count("\n", 0, at) + 1, rule, what) for at, rule, what in found)
     return sorted(violations)

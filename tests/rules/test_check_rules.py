@@ -45,9 +45,39 @@ BAD = [  # file, text, rule
     ("packages/model/a.cpp", 'if (field == "face pressure") {}', "generic-room"),
     ("packages/solve/a.hpp", "// of a fluid", "generic-room"),
     ("packages/physics/flow/a.cpp", "int f(Real temperature);", "heat-room"),
+    *[("packages/laws/a.hpp", KERNEL % line, "kernel") for line in [
+        "if (x < 0) throw 1;", "SPREKK_CHECK(x > 0, \"\");", "Kokkos::deep_copy(y, x);", "fmt::print(\"\");"]],
+    ("packages/assembly/a.cpp", "int f(unsigned x) { return __builtin_popcount(x); }", "compiler"),
+    ("packages/fields/a.hpp", "__attribute__((flatten)) void f();", "compiler"),
+    ("packages/physics/a.cpp", "struct Kernel {\n  Real operator()(int i) const { return x(i); }\n};", "functor"),
+    ("packages/physics/a.cpp", "class A {\n public:\n  void f();\n private:\n  void g() { each(KOKKOS_LAMBDA(int i) {}); }\n};",
+     "lambda"),
+    ("packages/physics/a.cpp", "class A : B {\n  struct C { void g() { each(KOKKOS_LAMBDA(int i) {}); } };\n};", "lambda"),
+    ("packages/assembly/a.cpp", "void f() {\n  sizes([&](auto n) { each(KOKKOS_LAMBDA(int i) {}); });\n}", "lambda"),
+    ("packages/fields/a.cpp", "auto f() { return map->getNodeNumElements(); }", "trilinos-names"),
+    ("tests/unit/a.cpp", "for (auto i : map->getNodeElementList()) f(i);", "trilinos-names"),
+    ("packages/solve/a.cpp", "Real f(Real b) { return Kokkos::Experimental::fabs(b); }", "trilinos-names"),
 ]
 
 GOOD = {
+    "packages/laws/a.hpp": """
+struct Kernel {
+  KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return x(i); }
+};
+template <class T>
+struct C {
+  void f() { each(KOKKOS_LAMBDA(int i) {}); }
+};
+class A {
+  int n = 0;
+  struct B { int m; };
+
+ public:
+  void f() { each(KOKKOS_LAMBDA(int i) {}); }
+  template <class T>
+  void g() const { each(KOKKOS_LAMBDA(int i) {}); }
+};
+""",
     "packages/physics/heat/a.cpp": "int f(Real temperature);\n",
     "packages/assembly/system.hpp": "// friction\n",
     "packages/physics/a.cpp": '#include "physics/a.hpp"\n#include "laws/joint.hpp"\n#include <vector>\n',

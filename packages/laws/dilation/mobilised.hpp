@@ -62,6 +62,7 @@ struct MobilisedDilation {
   /// The mean of tan(f angle) over a slip that begins at s/delta_p = x.
   template <class T>
   KOKKOS_INLINE_FUNCTION T mean_tangent(Real x, const T& slip, const T& angle) const {
+    static constexpr auto table = mobilised_roughness();
     const T end = x + slip / peak_slip;
     if (!(slip > 1e-9 * peak_slip)) return tangent_over(T(angle * table.sharp(end)), T(0));
     T sum = 0, from = x;
@@ -86,8 +87,6 @@ struct MobilisedDilation {
     }
     return log(cos(a) / cos(a + by)) / by;
   }
-
-  static constexpr auto& table = mobilised_roughness;
 };
 
 }  // namespace sprekk::laws

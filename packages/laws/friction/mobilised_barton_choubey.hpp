@@ -37,6 +37,8 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
   KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
     using std::log10, std::tan;
     constexpr Real degree = 3.14159265358979323846 / 180;
+    static constexpr auto of_friction = mobilised_friction();
+    static constexpr auto of_roughness = mobilised_roughness();
     const T N = -at.lambda_n, x = (at.history[0] + at.slip_of_step) / peak_slip;
     T rough = steepest - residual_angle;  // i
     if (N >= wall_strength) {
@@ -45,7 +47,7 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
       const T uncapped = roughness * log10(wall_strength / N);
       if (uncapped < rough) rough = uncapped;
     }
-    return N * tan(degree * (residual_angle * mobilised_friction(x) + rough * mobilised_roughness(x)));
+    return N * tan(degree * (residual_angle * of_friction(x) + rough * of_roughness(x)));
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
     if (!at.open) kept[0] += at.slip_of_step;

@@ -32,8 +32,9 @@ class Brought {
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const;
 
+  struct Kernel;  ///< device code
+
  private:
-  struct Kernel;
   Kernel kernel(const assembly::State& state) const;
 
   int pressure_ = -1, carried_ = -1, widening_ = -1, changing_ = -1;

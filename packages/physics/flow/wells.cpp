@@ -153,12 +153,9 @@ class Wells final : public assembly::Module {
         totals.push_back({{"wells", one.name, carried.total}, 0, carried.unit + (mesh_->dim() == 2 ? "/m" : "")});
       }
     }
-    std::array<Kokkos::View<Real*>::HostMirror, 2> p;
-    for (int k = 0; k < 2; ++k) {
-      p[k] = Kokkos::View<Real*>::HostMirror("p", state.x[blocks_[k]].extent(0));
-      Kokkos::deep_copy(p[k], state.x[blocks_[k]]);
-    }
-    const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p[1];
+    const auto on_host = [](const auto& x) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x); };
+    const std::array p = {on_host(state.x[blocks_[0]]), on_host(state.x[blocks_[1]])};
+    const auto widening = widens_ ? on_host(state.x[widening_]) : p[1];
     for (const auto& c : connections_) {
       const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
       const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0) * flow_factor(state, c);

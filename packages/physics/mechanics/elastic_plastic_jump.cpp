@@ -4,7 +4,8 @@
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/friction_power.hpp"
-#include "physics/mechanics/joint_material.hpp"
+#include "physics/mechanics/joint_face.hpp"
+#include "physics/mechanics/joint_slopes.hpp"
 #include "physics/mechanics/runaway.hpp"
 
 #include <algorithm>
@@ -113,7 +114,23 @@ class ElasticPlasticJump final : public assembly::Module {
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
 
+  /// [owned face], on the host
+  Kokkos::View<Point*, Kokkos::LayoutRight, Kokkos::HostSpace> points(const assembly::State& state) const {
+    const Op op = at(state);
+    View<Point*> points("points", mesh_->n_owned_fracture_faces);
+    faces_->for_each(
+        op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
+    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
+  }
+
  private:
+  /// Calls visit(face, point) for every owned face, on the host.
+  template <class Visit>
+  void for_each_face(const assembly::State& state, const Visit& visit) const {
+    const auto host = points(state);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
+  }
+
   /// The operator with the history of `state`.
   Op at(const assembly::State& state) const {
     Op op = *op_;
@@ -130,20 +147,9 @@ class ElasticPlasticJump final : public assembly::Module {
     return {.face = at(state), .area = area_, .rate = state.rate};
   }
 
-  /// Calls visit(face, point) for every owned face, on the host.
-  template <class Visit>
-  void for_each_face(const assembly::State& state, const Visit& visit) const {
-    const Op op = at(state);
-    View<Point*> points("points", mesh_->n_owned_fracture_faces);
-    faces_->for_each(
-        op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
-    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
-  }
-
   /// What laws keep of a face, on the host.
   auto kept_on_host(const assembly::State& state) const {
-    typename View<Real**>::HostMirror numbers;
+    Kokkos::View<Real**, Kokkos::LayoutRight, Kokkos::HostSpace> numbers;
     if (parameters_.n_kept > 0) numbers = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[2]);
     return [numbers](LocalIndex f) {
       if (numbers.extent(1) == 0) return laws::History();

@@ -3,8 +3,6 @@
 
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
-#include "laws/conduit.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <array>
 #include <map>
@@ -12,7 +10,13 @@
 #include <string>
 #include <vector>
 
+namespace sprekk::laws {
+struct HydraulicAperture;
+}
+
 namespace sprekk::physics {
+
+struct JointParameters;  // every scene includes this, and is not compiled again for a new law of joints
 
 /// A joint's laws by their names, with the values of their entries; see laws/joint_kinds.hpp. Every number may be an
 /// expression of x, y, z.
@@ -57,17 +61,5 @@ struct JointMaterial {
   /// Nothing if friction is not complete or depends on the place.
   std::optional<Slope> friction_slope(Real least_compression, Real largest_compression) const;
 };
-
-/// -db/dlambda_n of the bound of a joint that has not slipped.
-Real bound_slope(const laws::Joint& law, Real compression);
-
-/// -db/ds, Pa/m, of the bound with further slip of the step at a contact; above 0 where slip weakens the joint.
-Real weakening(const laws::Joint& law, const laws::Contact<Real>& at);
-
-/// Derivative of the tangential compliance in the normal traction, m/Pa^2.
-Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at);
-
-/// How much the joint opens per plastic slip, m/m; `at` has the numbers that the joint keeps.
-Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at);
 
 }  // namespace sprekk::physics

@@ -141,6 +141,8 @@ bool has_tips(const mesh::Mesh& mesh) {
 
 }  // namespace
 
+Real usual_augmentation() { return ElasticPlasticJumpParameters().augmentation; }
+
 bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.flow && scene.flow->rigid_rock); }
 
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {

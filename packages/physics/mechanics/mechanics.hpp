@@ -4,6 +4,7 @@
 #include "base/expression.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/joint_material.hpp"
+#include "physics/mechanics/loads.hpp"
 #include "physics/physics.hpp"
 #include "physics/properties.hpp"
 
@@ -12,6 +13,8 @@
 #include <vector>
 
 namespace sprekk::physics {
+
+Real usual_augmentation();  ///< of ElasticPlasticJumpParameters
 
 /// Initial stress of rock at rest under gravity along the last coordinate.
 struct Lithostatic {
@@ -72,7 +75,7 @@ struct Mechanics : Physics<Mechanics> {
 
   struct Sections : Physics::Sections {
     /// Of ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
-    Real augmentation = ElasticPlasticJumpParameters().augmentation;
+    Real augmentation = usual_augmentation();
     void keep(const Sections& other) { augmentation = other.augmentation; }
   };
 

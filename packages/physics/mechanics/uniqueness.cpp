@@ -2,6 +2,8 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "physics/mechanics/joint_slopes.hpp"
 
 #include <algorithm>
 #include <cmath>

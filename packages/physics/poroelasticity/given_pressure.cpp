@@ -38,6 +38,29 @@ struct Push {
   }
 };
 
+/// One operator over one loop.
+template <class Op>
+struct Part {
+  Op op;
+  std::unique_ptr<assembly::Assembler<Op>> assembler;
+
+  void bind(const assembly::Context& context, Loop loop, const std::vector<int>& fields, const View<Real**>& volume,
+            const std::vector<LocalIndex>& of) {
+    op.volume = volume;
+    op.of = assembly::to_device(of, "number of the pressure");
+    assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, fields, fields,
+                                                          assembly::Assembler<Op>::Positions::once);
+  }
+  void add_volumes(const assembly::State& state, const View<Real*>& volumes) const {
+    const auto volume = op.volume;
+    const auto of = op.of;
+    assembler->for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::m]) {
+          for (int k = 0; k < Op::m; ++k) Kokkos::atomic_add(&volumes(of(e)), volume(e, k) * x[k]);
+        });
+  }
+};
+
 template <Shape shape>
 class Given final : public GivenPressure {
  public:
@@ -127,28 +150,6 @@ class Given final : public GivenPressure {
 
   using Nodes = Slot<n, dim>;
   using Bubble = Slot<1, dim>;
-  template <class Op>
-  struct Part {
-    Op op;
-    std::unique_ptr<assembly::Assembler<Op>> assembler;
-
-    void bind(const assembly::Context& context, Loop loop, const std::vector<int>& fields, const View<Real**>& volume,
-              const std::vector<LocalIndex>& of) {
-      op.volume = volume;
-      op.of = assembly::to_device(of, "number of the pressure");
-      assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, fields, fields,
-                                                            assembly::Assembler<Op>::Positions::once);
-    }
-    void add_volumes(const assembly::State& state, const View<Real*>& volumes) const {
-      const auto volume = op.volume;
-      const auto of = op.of;
-      assembler->for_each(
-          op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::m]) {
-            for (int k = 0; k < Op::m; ++k) Kokkos::atomic_add(&volumes(of(e)), volume(e, k) * x[k]);
-          });
-    }
-  };
-
   /// Calls visit(part, it is of the rock) for all parts that there are.
   template <class Self, class Visit>
   static void for_each(Self& self, const Visit& visit) {

@@ -20,7 +20,7 @@ Real entry(int b, int c, GlobalIndex i, GlobalIndex j) {
 
 RCP<CrsMatrix> make_block(int b, int c, const RCP<const Map>& rows, const RCP<const Map>& columns) {
   auto matrix = rcp(new CrsMatrix(rows, 5));
-  for (const GlobalIndex i : rows->getNodeElementList())
+  for (const GlobalIndex i : base::local_elements(*rows))
     for (GlobalIndex j = 0; j < static_cast<GlobalIndex>(columns->getGlobalNumElements()); ++j)
       if (entry(b, c, i, j) != 0) matrix->insertGlobalValues(i, 1, std::vector<Real>{entry(b, c, i, j)}.data(), &j);
   matrix->fillComplete(columns, rows);
@@ -39,13 +39,13 @@ TEST(BlockMatrix, AppliesThePresentBlocksAndSkipsTheAbsentOnes) {
   BlockVector x, y;
   for (int b = 0; b < 3; ++b) {
     x.push_back(rcp(new Vector(maps[b])));
-    for (const GlobalIndex i : maps[b]->getNodeElementList()) x[b]->replaceGlobalValue(i, x_value(b, i));
+    for (const GlobalIndex i : base::local_elements(*maps[b])) x[b]->replaceGlobalValue(i, x_value(b, i));
   }
   y = create_like(x);
   for (const auto& v : y) v->putScalar(std::numeric_limits<Real>::quiet_NaN());  // y is overwritten
   A.apply(x, y);
   for (int b = 0; b < 3; ++b)
-    for (const GlobalIndex i : maps[b]->getNodeElementList()) {
+    for (const GlobalIndex i : base::local_elements(*maps[b])) {
       Real sum = 0;
       for (const auto& [row, column] : present)
         for (GlobalIndex j = 0; row == b && j < static_cast<GlobalIndex>(maps[column]->getGlobalNumElements()); ++j)

@@ -26,11 +26,11 @@ struct Full {
         width * (n / width * (comm->getRank() + 1) / comm->getSize() - n / width * comm->getRank() / comm->getSize()),
         0, comm));
     std::vector<GlobalIndex> all;
-    for (std::size_t row = 0; row < map->getNodeNumElements(); ++row) all.push_back(map->getGlobalElement(row));
+    for (std::size_t row = 0; row < base::n_local_elements(*map); ++row) all.push_back(map->getGlobalElement(row));
     for (GlobalIndex j = 0; j < n; ++j)
       if (!map->isNodeGlobalElement(j)) all.push_back(j);
-    const View<std::size_t*> start("start", map->getNodeNumElements() + 1);
-    const View<LocalIndex*> column("column", map->getNodeNumElements() * n);
+    const View<std::size_t*> start("start", base::n_local_elements(*map) + 1);
+    const View<LocalIndex*> column("column", base::n_local_elements(*map) * n);
     for (std::size_t k = 0; k < column.extent(0); ++k) column(k) = static_cast<LocalIndex>(k % n);
     for (std::size_t row = 0; row + 1 < start.extent(0); ++row) start(row + 1) = (row + 1) * n;
     J = rcp(new const Matrix(map, make_map(all, comm), map, start, column, width, width));
@@ -48,7 +48,7 @@ struct Full {
   }
 
   View<char*> rows(int every) const {
-    const View<char*> chosen("chosen", map->getNodeNumElements());
+    const View<char*> chosen("chosen", base::n_local_elements(*map));
     for (std::size_t row = 0; row < chosen.extent(0); ++row) chosen(row) = map->getGlobalElement(row) % every == 0;
     return chosen;
   }
@@ -89,7 +89,7 @@ TEST(KeptRows, MultiplyAndGiveBackWhatWasThere) {
 TEST(KeptRows, MayBeNone) {
   const Full full(3);
   KeptRows kept(full.J);
-  kept.keep(kept.marks(View<char*>("none", full.map->getNodeNumElements())));
+  kept.keep(kept.marks(View<char*>("none", base::n_local_elements(*full.map))));
   EXPECT_EQ(kept.rows().extent(0), 0u);
   kept.restore(*full.J);
   Vector x(full.map), y(full.map), expected(full.map);

@@ -43,12 +43,12 @@ TEST(Maps, StoreNoNumbersThatFollowOneAnother) {
   EXPECT_TRUE(first->isContiguous());
   for (std::size_t i = 0; i < in_order.size(); ++i) EXPECT_EQ(first->getGlobalElement(i), in_order[i]);
   const auto second = make_map(dealt, comm);
-  EXPECT_EQ(second->getNodeNumElements(), dealt.size());
+  EXPECT_EQ(base::n_local_elements(*second), dealt.size());
   for (std::size_t i = 0; i < dealt.size(); ++i) EXPECT_EQ(second->getGlobalElement(i), dealt[i]);
   const auto none = make_map(rank == 0 ? std::vector<GlobalIndex>{0, 1} : std::vector<GlobalIndex>(), comm);
   EXPECT_TRUE(none->isContiguous());
   EXPECT_EQ(none->getGlobalNumElements(), 2u);
-  EXPECT_EQ(none->getNodeNumElements(), rank == 0 ? 2u : 0u);
+  EXPECT_EQ(base::n_local_elements(*none), rank == 0 ? 2u : 0u);
 }
 
 GlobalIndex n_global(const mesh::Mesh& mesh, Entity entity) {
@@ -68,7 +68,7 @@ TEST(Layout, ComponentsOfAnEntityAreAdjacentLocallyAndGlobally) {
     for (const auto& field : all_fields) {
       const Layout layout(field, *mesh);
       const LocalIndex n = n_entities(*mesh, field.entity, true), width = field.n_components;
-      ASSERT_EQ(static_cast<LocalIndex>(layout.ghosted()->getNodeNumElements()), n * width);
+      ASSERT_EQ(static_cast<LocalIndex>(base::n_local_elements(*layout.ghosted())), n * width);
       for (LocalIndex i = 0; i < n; ++i)
         for (int c = 0; c < width; ++c)
           EXPECT_EQ(layout.ghosted()->getGlobalElement(i * width + c), id(*mesh, field.entity, i) * width + c);
@@ -82,7 +82,7 @@ TEST(Layout, OwnedUnknownsComeFirstAndEachHasOneOwner) {
       EXPECT_EQ(layout.field().name, field.name);
       EXPECT_EQ(layout.n_owned_entities(), n_entities(*mesh, field.entity, false));
       EXPECT_EQ(layout.n_owned(), layout.n_owned_entities() * field.n_components);
-      ASSERT_EQ(static_cast<LocalIndex>(layout.owned()->getNodeNumElements()), layout.n_owned());
+      ASSERT_EQ(static_cast<LocalIndex>(base::n_local_elements(*layout.owned())), layout.n_owned());
       for (LocalIndex i = 0; i < layout.n_owned(); ++i)
         EXPECT_EQ(layout.owned()->getGlobalElement(i), layout.ghosted()->getGlobalElement(i));
       EXPECT_TRUE(layout.owned()->isOneToOne());
@@ -105,7 +105,7 @@ TEST(Layout, ImportBringsEveryGhost) {
         EXPECT_EQ(view(i, 0),
                   3.0 * static_cast<Real>(layout.ghosted()->getGlobalElement(static_cast<LocalIndex>(i))) + 1);
       EXPECT_EQ(layout.halo_bytes(), (view.extent(0) - layout.n_owned()) * sizeof(Real));
-      const auto ghosts = layout.ghosted()->getNodeElementList()(layout.n_owned(), view.extent(0) - layout.n_owned());
+      const auto ghosts = base::local_elements(*layout.ghosted())(layout.n_owned(), view.extent(0) - layout.n_owned());
       std::vector<int> owners(ghosts.size());
       layout.owned()->getRemoteIndexList(ghosts, Teuchos::arrayView(owners.data(), owners.size()));
       EXPECT_EQ(layout.halo_messages(), std::set<int>(owners.begin(), owners.end()).size());

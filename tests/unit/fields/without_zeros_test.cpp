@@ -14,7 +14,7 @@ RCP<CrsMatrix> matrix(GlobalIndex every) {
   const GlobalIndex n = 5 * comm->getSize();
   const auto map = rcp(new const Map(n, 0, comm));
   const auto A = rcp(new CrsMatrix(map, 3));
-  for (const GlobalIndex row : map->getNodeElementList())
+  for (const GlobalIndex row : base::local_elements(*map))
     for (GlobalIndex k = 0; k < 3; ++k) {
       const GlobalIndex column = (row + 2 * k) % n, number = 3 * row + k;
       const Real value = every > 0 && number % every == 0 ? 0 : std::sin(Real(number + 1));

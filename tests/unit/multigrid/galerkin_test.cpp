@@ -269,7 +269,7 @@ TEST(Galerkin, TakesGraphsThatAreNotSymmetric) {
   const auto comm = Tpetra::getDefaultComm();
   const auto map = rcp(new Map(30, 0, comm));
   CrsMatrix matrix(map, 2);
-  for (const GlobalIndex row : map->getNodeElementList()) {
+  for (const GlobalIndex row : base::local_elements(*map)) {
     const Real values[] = {2, -1};
     const GlobalIndex columns[] = {row, (row + 1) % 30};
     matrix.insertGlobalValues(row, row < 29 ? 2 : 1, values, columns);

@@ -16,7 +16,7 @@ struct FlatCells {
     matrix = rcp(new CrsMatrix(map, 27));
     places = rcp(new MultiVector(map, 3));
     const Real stiffness[] = {-1, 2, -1}, mass[] = {1 / 6.0, 4 / 6.0, 1 / 6.0};
-    for (const GlobalIndex node : map->getNodeElementList()) {
+    for (const GlobalIndex node : base::local_elements(*map)) {
       const int p[] = {int(node % n), int(node / n % n), int(node / n / n)};
       for (int k = 0; k < 3; ++k) places->replaceGlobalValue(node, k, p[k] * (k == 2 ? h : 1));
       for (int k = 0; k < 27; ++k) {
@@ -198,7 +198,7 @@ TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
 TEST(Multigrid, NeedsNoCoarseNodes) {
   const auto map = rcp(new Map(2000, 0, Tpetra::getDefaultComm()));
   const auto matrix = rcp(new CrsMatrix(map, 1));
-  for (const GlobalIndex row : map->getNodeElementList()) {
+  for (const GlobalIndex row : base::local_elements(*map)) {
     const Real value = 2;
     matrix->insertGlobalValues(row, 1, &value, &row);
   }

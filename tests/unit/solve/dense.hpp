@@ -42,7 +42,7 @@ inline Dense gather_matrix(const BlockProblem& problem) {
   for (std::size_t b = 0; b < problem.blocks().size(); ++b) {
     const auto flags = problem.constrained(b);
     const auto& map = *problem.blocks()[b].map;
-    for (LocalIndex row = 0; row < LocalIndex(map.getNodeNumElements()); ++row) {
+    for (LocalIndex row = 0; row < LocalIndex(base::n_local_elements(map)); ++row) {
       const std::size_t i = first[b] + map.getGlobalElement(row);
       if (flags.extent(0) > 0 && flags(row)) {
         here[i * n + i] = 1;

@@ -199,7 +199,7 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
   }
 
   void add_node_block(const RCP<const Map>& u) {
-    const int d = o_.d, n = u->getNodeNumElements();
+    const int d = o_.d, n = base::n_local_elements(*u);
     std::vector<GlobalIndex> nodes;
     for (int i = 0; i < n; i += d) nodes.push_back(u->getGlobalElement(i) / d);
     const auto coordinates = rcp(new MultiVector(make_map(nodes, comm_), d));

@@ -32,7 +32,7 @@ struct Pair {
   RCP<const fields::Matrix> block(int r, int s) const {
     const auto matrix = rcp(new CrsMatrix(maps[r], 9));
     const GlobalIndex n = maps[s]->getGlobalNumElements();
-    for (std::size_t i = 0; i < maps[r]->getNodeNumElements(); ++i) {
+    for (std::size_t i = 0; i < base::n_local_elements(*maps[r]); ++i) {
       const GlobalIndex row = maps[r]->getGlobalElement(i);
       const GlobalIndex reach = r == 0 && s == 0 ? 4 : 1;  // rows of nine entries, or of three
       for (GlobalIndex k = -reach; k <= reach; ++k) {
@@ -91,14 +91,14 @@ TEST(Joined, ChosenRowsAndColumnsAreThoseOfTheWhole) {
   std::vector<RCP<Vector>> chosen;
   for (const auto& map : pair.maps) {
     chosen.push_back(rcp(new Vector(map)));
-    for (std::size_t i = 0; i < map->getNodeNumElements(); ++i)
+    for (std::size_t i = 0; i < base::n_local_elements(*map); ++i)
       chosen.back()->replaceLocalValue(i, map->getGlobalElement(i) % 3 != 1);
   }
   solve::JoinedMatrix part(pair.joined, pair.blocks, chosen);
   part.update();
   const auto whole = joined_operator(pair.joined, pair.blocks);
   const auto rows = part.rows();
-  ASSERT_LT(rows.extent(0), pair.joined->map()->getNodeNumElements());
+  ASSERT_LT(rows.extent(0), base::n_local_elements(*pair.joined->map()));
   Vector x(pair.joined->map()), y(pair.joined->map());
   Vector x_part(part.matrix()->getDomainMap()), y_part(part.matrix()->getRangeMap());
   for (std::size_t i = 0; i < rows.extent(0); ++i) {

@@ -162,7 +162,7 @@ TEST(IterativeSolver, SolvesWhatItsPreconditionerInverts) {
   const int n = 2000;
   const auto map = rcp(new Map(n, 0, Tpetra::getDefaultComm()));
   const auto matrix = rcp(new CrsMatrix(map, 1));
-  for (const GlobalIndex row : map->getNodeElementList()) {
+  for (const GlobalIndex row : base::local_elements(*map)) {
     const Real two = 2;
     matrix->insertGlobalValues(row, 1, &two, &row);
   }
@@ -184,7 +184,7 @@ TEST(IterativeSolver, LooksAtMultigridOnceASolveIsLong) {
   for (const Real skew : {0.0, 0.3}) {
     const Truss truss(11, true, skew);
     std::vector<GlobalIndex> nodes;
-    for (std::size_t i = 0; i < truss.map->getNodeNumElements(); i += 3)
+    for (std::size_t i = 0; i < base::n_local_elements(*truss.map); i += 3)
       nodes.push_back(truss.map->getGlobalElement(static_cast<LocalIndex>(i)) / 3);
     const GlobalIndex n_nodes = truss.map->getGlobalNumElements() / 3;
     const auto node_map = rcp(new Map(n_nodes, Teuchos::arrayViewFromVector(nodes), 0, truss.map->getComm()));

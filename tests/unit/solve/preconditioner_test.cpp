@@ -39,7 +39,7 @@ struct Chain {
       block.n_components = 1;
       if (which == cells) block.condensed_into = "faces";
       const auto places = rcp(new MultiVector(block.map, 2));
-      for (std::size_t i = 0; i < block.map->getNodeNumElements(); ++i)
+      for (std::size_t i = 0; i < base::n_local_elements(*block.map); ++i)
         places->replaceLocalValue(i, 0, Real(block.map->getGlobalElement(i)));
       if (which != cells) block.coordinates = places;
       blocks.push_back(block);
@@ -68,7 +68,7 @@ struct Chain {
     const auto result = rcp(new CrsMatrix(blocks[r].map, 3));
     const auto& rows = *blocks[r].map;
     const bool down = order[r] != cells && order[s] == cells, up = order[r] == cells && order[s] != cells;
-    for (std::size_t i = 0; i < rows.getNodeNumElements(); ++i) {
+    for (std::size_t i = 0; i < base::n_local_elements(rows); ++i) {
       const GlobalIndex row = rows.getGlobalElement(i), n = blocks[s].map->getGlobalNumElements();
       for (GlobalIndex k = up ? 0 : -1; k <= (down ? 0 : 1); ++k) {
         const GlobalIndex column = row + k;

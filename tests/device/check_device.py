@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Compiles the kernels of packages/physics and packages/assembly, and the laws in them, for a GPU; runs nothing.
+
+    check_device.py ROOT [--for hip|cuda] [FILE...]     all that have kernels, or these; exit status 1: errors, 77: skipped
+
+hip:  clang, -fsyntax-only, of device code alone. Needs clang 19 or later (SPREKK_CLANG names another) and the headers
+      of HIP: Debian's clang-19, hipcc, libamdhip64-dev, rocm-device-libs.
+cuda: nvcc, which also generates device code. Needs version 12 or later. It knows rules of CUDA that clang does not:
+      no kernel as a lambda in a private member or in a function made for a lambda's type, no host variable in device
+      code. It may crash; files where it does are told, and say nothing.
+
+Both take the installed headers of Trilinos, whose Kokkos (3.4) is configured for the host alone: for the time of the
+check a few configuration headers are overlaid by copies that have the GPU's back end on.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TRILINOS = Path(os.environ.get("SPREKK_TRILINOS_INCLUDE", "/usr/include/trilinos"))
+HAS_KERNELS = re.compile(r"\bKOKKOS_LAMBDA\b|\bAssembler<|\bKernelModule\b|\bmake_kernel_module\b|\bparallel_\w+")
+BACK_ENDS = {  # name in folders, what Kokkos and Tpetra have on
+    "hip": ("HIP", "HIP", ["HIP", "ARCH_VEGA906"]),
+    "cuda": ("CUDA", "Cuda", ["CUDA", "CUDA_LAMBDA", "CUDA_UVM", "CUDA_CONSTEXPR", "ARCH_AMPERE", "ARCH_AMPERE80"]),
+}
+
+
+def skip(why):
+    print(f"skipped: {why}")
+    sys.exit(77)
+
+
+def switched_on(text, names):
+    for name in names:
+        text = re.sub(rf"/\* #undef {name} \*/", f"#define {name}", text)
+        if f"#define {name}\n" not in text:
+            text += f"\n#define {name}\n"
+    return text
+
+
+def overlay(folder, back_end):
+    """Copies of configuration headers with the back end on."""
+    name, folder_name, settings = BACK_ENDS[back_end]
+    read = lambda header: (TRILINOS / header).read_text()
+    names = ["KOKKOS_" + ("" if s.startswith("ARCH") else "ENABLE_") + s for s in settings]
+    config = read("KokkosCore_config.h").replace("#define KOKKOS_ENABLE_CXX14", "")
+    (folder / "KokkosCore_config.h").write_text(switched_on(config, ["KOKKOS_ENABLE_CXX17", *names]))
+    for header, include in [("DeclareBackend", f"decl/Kokkos_Declare_{name}"), ("FwdBackend", f"fwd/Kokkos_Fwd_{name}"),
+                            ("SetupBackend", f"setup/Kokkos_Setup_{folder_name}")]:
+        text = read(f"KokkosCore_Config_{header}.hpp")
+        at = text.rindex("#endif")
+        (folder / f"KokkosCore_Config_{header}.hpp").write_text(
+            text[:at] + f"#include <{include}.hpp>\n" + text[at:])
+    tpetra = switched_on(read("TpetraCore_config.h"), [f"HAVE_TPETRA_INST_{name}", f"HAVE_TPETRA_{name}"])
+    (folder / "TpetraCore_config.h").write_text(tpetra)
+    if back_end == "cuda":  # numbers of half precision: they name functions that CUDA has no more
+        (folder / "Cuda").mkdir()
+        (folder / "Cuda/Kokkos_Cuda_Half.hpp").write_text("")
+
+
+def first_of(*names):
+    for name in names:
+        if name and shutil.which(name):
+            return shutil.which(name)
+    return None
+
+
+def compiler(back_end):
+    """The command without includes and files."""
+    if back_end == "cuda":
+        nvcc = first_of("nvcc", "/usr/local/cuda/bin/nvcc")
+        if not nvcc:
+            skip("no nvcc")
+        return [nvcc, "-x", "cu", "-cuda", "-o", os.devnull, "-arch=sm_80", "--expt-extended-lambda",
+                "--expt-relaxed-constexpr", "-DFMT_CONSTEVAL="]  # of fmt: nvcc takes its checks for errors
+    clang = first_of(os.environ.get("SPREKK_CLANG"), "clang++-19", "clang++-20")
+    device_library = next(iter(sorted(Path("/usr/lib").glob("*/amdgcn/bitcode"))), None)
+    if not clang:
+        skip("no clang++-19; SPREKK_CLANG names another")
+    if not Path("/usr/include/hip/hip_runtime.h").exists() or not device_library:
+        skip("no headers of HIP: apt install libamdhip64-dev rocm-device-libs hipcc")
+    return [clang, "-x", "hip", "--offload-arch=gfx906", "--rocm-path=/usr",
+            f"--rocm-device-lib-path={device_library}", "--cuda-device-only", "-fsyntax-only"]
+
+
+def mpi_includes():
+    words = subprocess.run(["mpicxx", "--showme:incdirs"], capture_output=True, text=True)
+    return words.stdout.split() if words.returncode == 0 else []
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("root", type=Path)
+    parser.add_argument("--for", dest="back_end", choices=BACK_ENDS, default="hip")
+    parser.add_argument("files", nargs="*", type=Path)
+    arguments = parser.parse_intermixed_args()
+    packages = arguments.root / "packages"
+    if not (TRILINOS / "KokkosCore_config.h").exists():
+        skip(f"no Kokkos in {TRILINOS}; SPREKK_TRILINOS_INCLUDE names another folder")
+    files = arguments.files or [f for package in ("assembly", "physics") for f in sorted(packages.glob(f"{package}/**/*.cpp"))
+                                if HAS_KERNELS.search(f.read_text())]
+    command = compiler(arguments.back_end) + ["-std=c++20", "-w", "-DFMT_SHARED"]
+    wrong, crashed = [], []
+    with tempfile.TemporaryDirectory() as name:
+        overlay(Path(name), arguments.back_end)
+        command += [f"-I{name}", f"-I{packages}", "-isystem", str(TRILINOS)]
+        for folder in mpi_includes():
+            command += ["-isystem", folder]
+        for file in files:
+            done = subprocess.run([*command, str(file)], capture_output=True, text=True)
+            output = done.stdout + done.stderr
+            errors = sorted({line for line in output.splitlines() if re.search(r"\berror\b", line)})
+            if done.returncode and ("Segmentation fault" in output or "PLEASE submit a bug report" in output):
+                crashed.append(file)
+            elif done.returncode:
+                wrong.append(file)
+                print(f"{file}:\n  " + "\n  ".join(errors[:10] or output.splitlines()[-10:]), flush=True)
+    for file in crashed:
+        print(f"{file}: the compiler crashed")
+    print(f"{arguments.back_end}: {len(files)} files, {len(wrong)} with errors, {len(crashed)} where the compiler crashed")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,44 @@
+#include "base/trilinos_compat.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Map.hpp>
+#include <vector>
+
+namespace sprekk {
+namespace {
+
+/// As maps and matrices of Trilinos 16 are, whose like no test here can link.
+struct Later {
+  std::size_t getLocalNumElements() const { return 3; }
+  std::vector<int> getLocalElementList() const { return {7, 8, 9}; }
+  std::size_t getLocalNumRows() const { return 4; }
+  std::size_t getLocalNumCols() const { return 5; }
+  std::size_t getLocalNumEntries() const { return 6; }
+};
+
+/// Of versions between, which have both: the old ones are deprecated.
+struct Both : Later {
+  [[deprecated]] std::size_t getNodeNumElements() const { return 0; }
+};
+
+TEST(TrilinosCompat, TakesTheNamesOfLaterVersions) {
+  const Later later;
+  EXPECT_EQ(base::n_local_elements(later), 3u);
+  EXPECT_EQ(base::local_elements(later), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(base::n_local_rows(later), 4u);
+  EXPECT_EQ(base::n_local_columns(later), 5u);
+  EXPECT_EQ(base::n_local_entries(later), 6u);
+  EXPECT_EQ(base::n_local_elements(Both()), 3u);
+}
+
+TEST(TrilinosCompat, TakesTheInstalledOnes) {
+  const auto comm = Tpetra::getDefaultComm();
+  const Tpetra::Map<> map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), 2 + comm->getRank(), 0, comm);
+  EXPECT_EQ(base::n_local_elements(map), 2u + comm->getRank());
+  EXPECT_EQ(base::local_elements(map).front(), map.getGlobalElement(0));
+}
+
+}  // namespace
+}  // namespace sprekk
