@@ -50,6 +50,7 @@ struct Contact {
   Real last_plastic_jump[2] = {};  ///< u_t^p at the end of the last step, m
   int dim = 2;                     ///< of space
   bool open = false;               ///< bears no traction; known at the end of a step alone
+  Real rubs = 1;                   ///< the share of the step's slip that wears; below 1 at the end of a step alone
   History history = {};            ///< the numbers of the law that is asked
 
   /// Calls use(contact) with the numbers of a law that begin later by `offset`.

@@ -144,7 +144,7 @@ struct JointLaw {
   KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
     if (!wears()) return {};
     Contact<T> worn = at;
-    worn.wear = driver.wear(at);
+    worn.wear = at.rubs * driver.wear(at);
     return worn.after(before_bond() + laws::n_history(bond), [&](const auto& own) { return damage.left(own); });
   }
   /// How many numbers it keeps of a face.
@@ -153,7 +153,8 @@ struct JointLaw {
   }
   /// Moves the numbers of a face to the end of a step; `at` is its end, with the numbers of its beginning.
   KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& kept) const {
-    at.wear = driver.wear(at);
+    if (at.open) at.rubs = rubbed_share(at);
+    at.wear = at.rubs * driver.wear(at);
     for_each_part([&](const auto& law, int offset) {
       if (laws::n_history(law) == 0) return;
       at.after(offset, [&](const auto& own) { return laws::commit(law, own, kept.from(offset)), 0; });
@@ -176,6 +177,22 @@ struct JointLaw {
   }
 
  private:
+  /// Of the slip of a step at whose end the faces are open: the least share that wears them until they do not overlap.
+  /// 0 where they fit as they were at the beginning. That all of it does is what says that they are open.
+  KOKKOS_INLINE_FUNCTION Real rubbed_share(Contact<Real> at) const {
+    const auto gap = [&](Real share) {
+      at.rubs = share;
+      return normal_gap(at);
+    };
+    const Real fresh = gap(0), worn = gap(1), room = at.separation + worn - 1e-13 * (worn < 0 ? -worn : worn);
+    if (fresh <= room || fresh <= worn) return 0;
+    Real low = 0, high = 1;
+    for (int k = 0; k < 53; ++k) {
+      const Real middle = (low + high) / 2;
+      (gap(middle) <= room ? high : low) = middle;
+    }
+    return high;
+  }
   KOKKOS_INLINE_FUNCTION bool wears() const { return laws::n_history(damage) > 0; }
   template <class T>
   KOKKOS_INLINE_FUNCTION T unworn_friction(const Contact<T>& at) const {

@@ -10,6 +10,7 @@ ROUNDED = 0.003    # of an abscissa of Barton's table: as far around it the curv
 ROUGHNESS = (np.array([0.3, 0.6, 1, 2, 4, 10, 100]), np.array([0, 0.75, 1, 0.85, 0.7, 0.5, 0]))
 RESIDUAL = (np.array([0, 0.3]), np.array([0.0, 1.0]))
 ENDLESS = 1e300
+JUST_TOUCH = 1e-9  # of jump and slip: faces nearer than that touch
 
 
 def rounded(table, x):
@@ -181,9 +182,8 @@ class JointLaw:
         """[face] By how much the fields of histories differ from what those at the start of the step and the step say, m; loads
         over the normal stiffness. `path` has the segments (plastic jumps from, to, weight k) of all steps up to this one, or is
         None where one of them is not known."""
-        increment = np.linalg.norm(faces.plastic[:, 1:] - before.plastic[:, 1:], axis=1)
-        rubbed, wrong = np.where(faces.state > 0, increment, 0), np.zeros(len(increment))
-        told, was = faces.told, before.told
+        rubbed = self.rubbed_share(faces, before, path and path[:-1]) * _slip_of_step(faces, before)
+        wrong, told, was = np.zeros(len(rubbed)), faces.told, before.told
 
         def must_be(name, value, scale=1.0):
             nonlocal wrong
@@ -201,6 +201,25 @@ class JointLaw:
             off = np.abs(told["damage history"] - known) - told["error of damage history"] * length
             wrong = np.maximum(wrong, np.where(faces.slip > 0, off, 0))
         return wrong
+
+    def rubbed_share(self, faces, before, path):
+        """[face] The share of the slip of the step that histories count: 1, but 0 on open faces. Those that are open and just
+        touch may have rubbed for a part of it: then what the run tells says for which."""
+        closed, apart = faces.state > 0, faces.jump[:, 0] - self.closed_gap(faces)
+        touch = (~closed | (faces.normal >= 0)) & (np.abs(apart) <= JUST_TOUCH * (np.abs(faces.jump[:, 0]) + faces.slip))
+        slip = _slip_of_step(faces, before)
+        if self.kinds["dilation"] == "mobilised":
+            most, told = slip, faces.told["accumulated slip"] - before.told["accumulated slip"]
+        elif self.kinds["damage"] == "isotropic":
+            most, told = self.weight(faces) * slip, faces.told["damage history"] - before.told["damage history"]
+        elif self.kinds["damage"] == "anisotropic" and path is not None:
+            kept = history_of(path, faces)[0]
+            segment = before.plastic[:, 1:], faces.plastic[:, 1:], self.weight(faces)
+            most, told = history_of([segment], faces)[0], faces.told["damage history"] - kept
+        else:
+            return closed.astype(float)
+        share = np.clip(told / np.where(most > 0, most, 1), 0, 1)
+        return np.where(touch, share, closed)
 
     def weight(self, faces):
         """k, by which slip counts."""
@@ -224,6 +243,10 @@ class JointLaw:
             for x, weight in zip(points, weights):
                 total = total + weight * (b - a) / 2 * np.tan(angle * np.interp((a + b) / 2 + x * (b - a) / 2, *ROUGHNESS))
         return total / (end - begin)
+
+
+def _slip_of_step(faces, before):
+    return np.linalg.norm(faces.plastic[:, 1:] - before.plastic[:, 1:], axis=1)
 
 
 def history_of(path, faces):

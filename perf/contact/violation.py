@@ -210,7 +210,7 @@ def violation(step, before, scales, laws=(), path=None):
         worst[4] = _wrong_increment(step, before, shear, scales)
         for k, law in enumerate(laws):
             on = step.fracture == k
-            along = (tuple(part[on] for part in segment) for segment in path) if path else None
+            along = _path_of(path, on)
             worst[5] = max(worst[5], law.wrong_histories(step.on(on), before.on(on), along).max(initial=0) / scales.length)
     return np.maximum(worst, 0)
 
@@ -246,19 +246,25 @@ def largest(directory, results, input_):
         if number == 0:
             before = Faces.at_rest(step)
         known = number == last + 1 and results["steps"][number]["substeps"] == 1
-        path = [*path, _segment(step, before, laws)] if known and path is not None else None
+        path = [*path, _segment(step, before, laws, path)] if known and path is not None else None
         worst = np.maximum(worst, violation(step, before if known else None, scales, laws, path))
         skipped, last = skipped + (not known), number
     return steps, scales, worst, skipped
 
 
-def _segment(step, before, laws):
-    """Of the path of plastic jumps, and what a unit of it counts: nothing on faces that are open."""
+def _segment(step, before, laws, path):
+    """Of the path of plastic jumps, and what a unit of it counts: nothing on faces that are apart."""
     weight = np.zeros(len(step.state))
     for k, law in enumerate(laws):
         on = step.fracture == k
-        weight[on] = np.where(step.state[on] == OPEN, 0, law.weight(step.on(on)))
+        faces = step.on(on)
+        weight[on] = law.weight(faces) * law.rubbed_share(faces, before.on(on), _path_of(path, on))
     return before.plastic[:, 1:], step.plastic[:, 1:], weight
+
+
+def _path_of(path, on):
+    """That of some of the faces; None where the path is not known."""
+    return None if path is None else [tuple(part[on] for part in segment) for segment in path]
 
 
 def differing(one, other, scales, tolerance=1e-9):

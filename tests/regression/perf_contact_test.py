@@ -106,7 +106,9 @@ class Violation(ProgramTest):
     def test_a_wrong_history_is_seen(self):
         steps = self.steps("contact/damage_turns_3d.xml", "Time.end=20", "Time.steps=20")
         worn, before = steps[-1], steps[-2]
-        path = [violation._segment(step, start, self.input.laws) for step, start in zip(steps, [violation.Faces.at_rest(steps[0]), *steps])]
+        path = []
+        for step, start in zip(steps, [violation.Faces.at_rest(steps[0]), *steps]):
+            path.append(violation._segment(step, start, self.input.laws, path))
 
         def history(step):
             return dict(zip(violation.PARTS, violation.violation(step, before, self.scales, self.input.laws, path)))["history"]
@@ -117,6 +119,19 @@ class Violation(ProgramTest):
         worn.told["damage history"] -= 0.01
         worn.plastic[:, 1:] += 0.001  # a step that the history does not know of
         self.assertGreater(history(worn), 1e-4 / self.scales.length)
+
+    def test_open_faces_wear_only_where_they_touch(self):
+        law = self.law({"friction coefficient": 0.6, "dilation angle": 10, "residual part of dilation": 0.3,
+                        "damage length of dilation": 5e-3}, damage="isotropic")
+        before = self.faces(0, 1e-3, damage_history=1e-3)
+
+        def wrong(worn, apart):
+            face = self.faces(0, 4e-3, damage_history=worn)
+            face.state, face.traction = np.array([violation.OPEN]), np.zeros((1, 2))
+            face.jump = np.array([[law.closed_gap(face)[0] + apart, 4e-3]])
+            return law.wrong_histories(face, before, None)[0]
+        for worn, apart, expected in ((2e-3, 0, 0), (4e-3, 0, 0), (5e-3, 0, 1e-3), (2e-3, 1e-5, 1e-3), (1e-3, 1e-5, 0)):
+            self.assertAlmostEqual(wrong(worn, apart), expected, places=14, msg=(worn, apart))
 
     def test_states_that_differ(self):
         one = self.steps("contact/all_change_2d.xml")

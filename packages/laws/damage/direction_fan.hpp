@@ -95,6 +95,7 @@ class DirectionFan {
   static constexpr Real quarter = 1.57079632679489661923, turn = 4 * quarter;
   static constexpr Real same = 1e-13;  ///< angles that differ by less are one
   static constexpr int more = 6;       ///< angles that a segment adds at the most
+  static constexpr Real endless = 1e300;
 
   /// An angle, the value there, and what holds of the sector that begins there.
   struct Node {
@@ -107,7 +108,22 @@ class DirectionFan {
   struct Range {
     Real low, high;
   };
+  /// Of a sector: w, tan(w/2), sin(w), cos(w).
+  struct Width {
+    Real angle, half, sine, cosine;
 
+    Width() = default;
+    KOKKOS_INLINE_FUNCTION explicit Width(Real w) : angle(w) {
+      using std::tan;
+      half = tan(w / 2);
+      const Real secant = 1 / (1 + half * half);
+      sine = 2 * half * secant;
+      cosine = (1 - half * half) * secant;
+    }
+    KOKKOS_INLINE_FUNCTION Width operator+(const Width& other) const { return Width(angle + other.angle); }
+  };
+
+  KOKKOS_INLINE_FUNCTION int next(int j) const { return j + 1 < size_ ? j + 1 : 0; }
   KOKKOS_INLINE_FUNCTION static Real larger(Real a, Real b) { return a > b ? a : b; }
   KOKKOS_INLINE_FUNCTION static Real smaller(Real a, Real b) { return a < b ? a : b; }
   KOKKOS_INLINE_FUNCTION static int size_of(const History& kept) { return kept[0] < 4 ? 0 : static_cast<int>(kept[0]); }
@@ -151,44 +167,53 @@ class DirectionFan {
     using std::abs;
     if (size_ <= capacity) return;
     Merged without[capacity + more];
+    Width widths[capacity + more];  // of the sectors
+    for (int j = 0; j < size_; ++j)
+      widths[j] = Width(nodes_[next(j)].angle - nodes_[j].angle + (j + 1 < size_ ? 0 : turn));
     const Real rounding = 1e-13 * largest();
-    for (int j = 0; j < size_; ++j) without[j] = merged(j, rounding);
+    const auto consider = [&](int j) {
+      const bool stays = is_axis(nodes_[j].angle) || abs(nodes_[j].angle - present) <= same;
+      without[j] = stays ? Merged{0, 0, 0, endless} : merged(j, widths, rounding);
+    };
+    for (int j = 0; j < size_; ++j) consider(j);
     while (size_ > capacity) {
-      int best = -1;
-      for (int j = 0; j < size_; ++j)
-        if (!is_axis(nodes_[j].angle) && !(abs(nodes_[j].angle - present) <= same) &&
-            (best < 0 || without[j].cost < without[best].cost))
-          best = j;
-      Node& sector = nodes_[best - 1];  // the first node is an axis
+      int best = 0;  // an axis
+      for (int j = 1; j < size_; ++j)
+        if (without[j].cost < without[best].cost) best = j;
+      Node& sector = nodes_[best - 1];
       sector.curvature = without[best].curvature;
       sector.low = without[best].low;
       sector.high = without[best].high;
+      widths[best - 1] = widths[best - 1] + widths[best];
       --size_;
       for (int j = best; j < size_; ++j) {
         nodes_[j] = nodes_[j + 1];
         without[j] = without[j + 1];
+        widths[j] = widths[j + 1];
       }
-      without[best - 1] = merged(best - 1, rounding);
-      if (best < size_) without[best] = merged(best, rounding);
+      consider(best - 1);
+      if (best < size_) consider(best);
     }
   }
 
   /// Either the slope's jump at the node is spread over both sectors, or the value at the node is kept, whichever is
   /// nearer to the function so far. A node where nothing changes but by `rounding` costs nothing.
-  KOKKOS_INLINE_FUNCTION Merged merged(int j, Real rounding) const {
-    using std::abs, std::sin, std::tan;
-    const Node &at = nodes_[j], &l = nodes_[j > 0 ? j - 1 : size_ - 1], &r = nodes_[j + 1 < size_ ? j + 1 : 0];
-    const Real to_l = at.angle - l.angle + (j > 0 ? 0 : turn), to_r = r.angle - at.angle + (j + 1 < size_ ? 0 : turn);
-    const Real half_l = tan(to_l / 2), half_r = tan(to_r / 2), width = to_l + to_r;
+  KOKKOS_INLINE_FUNCTION Merged merged(int j, const Width* widths, Real rounding) const {
+    using std::abs;
+    const int previous = j > 0 ? j - 1 : size_ - 1;
+    const Node &at = nodes_[j], &l = nodes_[previous], &r = nodes_[next(j)];
+    const Width &to_l = widths[previous], &to_r = widths[j];
     // slopes of m.V on either side, and of the function
-    const Real before = (at.value - l.value) / sin(to_l) - at.value * half_l,
-               after = (r.value - at.value) / sin(to_r) + at.value * half_r;
-    const Real jump = after - before - at.curvature * half_r - l.curvature * half_l;
-    const Real rises = (before - after) * sin(to_l) * sin(to_r) / sin(width);  // above the new m.V
-    const Real spread = (l.curvature * to_l + at.curvature * to_r + jump) / width, kept = rises / bow(to_l, to_r);
+    const Real before = (at.value - l.value) / to_l.sine - at.value * to_l.half,
+               after = (r.value - at.value) / to_r.sine + at.value * to_r.half;
+    const Real jump = after - before - at.curvature * to_r.half - l.curvature * to_l.half;
+    const Real sines = to_l.sine * to_r.sine, halves = to_l.half * to_r.half;
+    const Real rises = (before - after) * sines / (to_l.sine * to_r.cosine + to_l.cosine * to_r.sine);  // above new m.V
+    const Real bow = -2 * halves / (1 - halves);
+    const Real spread = (l.curvature * to_l.angle + at.curvature * to_r.angle + jump) / (to_l.angle + to_r.angle);
     Merged best{};
-    for (const Real q : {spread, kept}) {
-      const Real d = rises - q * bow(to_l, to_r);
+    for (const Real q : {spread, rises / bow}) {
+      const Real d = rises - q * bow;
       const Range left = range(l.curvature - q, d, to_l), right = range(at.curvature - q, d, to_r);
       Merged one{q, smaller(l.low, at.low) + smaller(left.low, right.low),
                  larger(l.high, at.high) + larger(left.high, right.high), 0};
@@ -199,14 +224,14 @@ class DirectionFan {
     return best;
   }
 
-  /// The least and the largest value in [0, w] of D with D'' + D = a, D(0) = 0, D(w) = d.
-  KOKKOS_INLINE_FUNCTION static Range range(Real a, Real d, Real w) {
-    using std::atan2, std::sin, std::sqrt, std::tan;
-    const Real B = d / sin(w) - a * tan(w / 2), size = sqrt(a * a + B * B);
-    const Real top = atan2(B, -a), bottom = top < 0 ? top + 2 * quarter : top - 2 * quarter;
+  /// The least and the largest value in [0, w] of D with D'' + D = a, D(0) = 0, D(w) = d. The slope is `first` at 0 and
+  /// changes its sign once at most, for w <= pi/2.
+  KOKKOS_INLINE_FUNCTION static Range range(Real a, Real d, const Width& w) {
+    using std::sqrt;
+    const Real first = d / w.sine - a * w.half, last = a * w.sine + first * w.cosine;
     Range range{smaller(0, d), larger(0, d)};
-    if (top > 0 && top < w) range.high = larger(range.high, a + size);
-    if (bottom > 0 && bottom < w) range.low = smaller(range.low, a - size);
+    if (first > 0 && last < 0) range.high = larger(range.high, a + sqrt(a * a + first * first));
+    if (first < 0 && last > 0) range.low = smaller(range.low, a - sqrt(a * a + first * first));
     return range;
   }
 

@@ -67,7 +67,7 @@ struct IsotropicDamage : ExponentialDecay {
     return after(T(at.history[0] + at.wear * at.slip_of_step));
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    if (!at.open) kept[0] += at.wear * at.slip_of_step;
+    kept[0] += at.wear * at.slip_of_step;
   }
 };
 
@@ -102,7 +102,6 @@ struct AnisotropicDamage : ExponentialDecay {
     return between(after(history_of_side(at, 1)), after(history_of_side(at, 0)), share);
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    if (at.open) return;
     const auto &u = at.plastic_jump, &before = at.last_plastic_jump;
     if (at.dim == 3) {
       kept[0] += at.wear * at.slip_of_step;

@@ -51,11 +51,11 @@ struct MobilisedDilation {
     const T N = -at.lambda_n;
     const Real least = 1e-6 * wall_strength;  // below it the angle does not grow further
     if (N < wall_strength) angle = degree * roughness / damage * (N > least ? T(log10(wall_strength / N)) : T(6));
-    return at.history[1] + moved * mean_tangent(at.history[0] / peak_slip, at.open ? T(0) : at.slip_of_step, angle);
+    return at.history[1] + moved * mean_tangent(at.history[0] / peak_slip, T(at.rubs * at.slip_of_step), angle);
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
     kept[1] = opening(at);
-    if (!at.open) kept[0] += at.slip_of_step;
+    kept[0] += at.rubs * at.slip_of_step;
   }
 
  private:

@@ -50,7 +50,7 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
     return N * tan(degree * (residual_angle * of_friction(x) + rough * of_roughness(x)));
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    if (!at.open) kept[0] += at.slip_of_step;
+    kept[0] += at.rubs * at.slip_of_step;
   }
 };
 

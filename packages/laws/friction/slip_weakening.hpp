@@ -43,7 +43,7 @@ struct SlipWeakeningFriction {
     return -(residual + (peak - residual) * left) * at.lambda_n;
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    if (!at.open) kept[0] += at.slip_of_step;
+    kept[0] += at.rubs * at.slip_of_step;
   }
 };
 
