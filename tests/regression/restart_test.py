@@ -19,6 +19,7 @@ CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml" 
 MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
 TURNS = "contact/damage_turns_3d.xml"  # histories by direction, more of them than there is room for
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
+DOUBLET = "thm/doublet_2d.xml"  # the same, with heat
 HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
            "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
            "Materials.joint.irrecoverable part of closure=0.3"]
@@ -83,6 +84,7 @@ class Restart(ProgramTest):
                 (TURNS, 1, (", ".join(map(str, range(1, 81))), ", 81, 82"), []), (TURNS, 3, ("1, 2, 3, 4, 5, 6", ", 7, 8"), []),
                 (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),
                 (INJECTION, 2, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}", "Solver.Linear solver.type=iterative", "Time.scheme=BDF2"]),
+                (DOUBLET, 2, ("2e6, 4e6", ", 6e6"), ["Mesh.cells={20, 20}", "Heat.fluid=water", "Heat.heat of friction=true", "Heat.advection=second order"]),
                 (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),
                 (CROSSING, 3, ("2", ", 3"), multigrid)):
             with self.subTest(scene=scene, ranks=ranks, options=options):
