@@ -14,6 +14,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "krylov"))
 
+import damage  # noqa: E402
 import linear  # noqa: E402
 import ours  # noqa: E402
 import runs  # noqa: E402
@@ -210,6 +211,8 @@ def main(words):
     flow = compare_flow(options, QUICK if options.quick else len(FLOW["Sprekk"]))
     print()
     tell_equal(flow)
+    print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
+    wrong += damage.compare(options, theirs)
     write(options.output / "peer.csv", same, {**found, **flow})
     draw(same, found, options.output / "peer.png")
     missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()

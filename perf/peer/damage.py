@@ -1,0 +1,56 @@
+"""Damage of a joint at a point: the tractions of both programs on the same path of jumps, and what a step costs late."""
+import csv
+import io
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import linear  # of perf/krylov
+
+SCENE = Path(__file__).resolve().parent / "damage.xml"
+STEPS = 16
+SOME = 4          # steps at the beginning and the end, whose costs are compared
+COLUMNS = {"apart": "", "normal": ".0e", "shear": ".0e", "slip": ".0e", "first steps": ".3f", "last steps": ".3f"}
+WITHIN = 1e-9     # of the largest, that tractions and slips may be apart
+
+
+def entries(told, dim):
+    """Of the jumps of PorePy's run, with the normal component first: entries of the scene."""
+    jumps = np.array(told["path"])[[1, 0, 2][:dim]]
+    times = ", ".join(map(str, range(jumps.shape[1])))
+    sets = [f"Tables.jump{i}.{what}={{{values}}}" for i, row in enumerate(jumps)
+            for what, values in (("arguments", times), ("values", ", ".join(map(repr, row.tolist()))))]
+    return [*sets, "Point.control={" + ", ".join(["jump"] * dim) + "}", "Point.path={" + ", ".join(f"jump{i}(t)" for i in range(dim)) + "}"]
+
+
+def ours(options, dim, kind, told):
+    """{quantity: values of all steps}"""
+    sets = [f"Materials.joint.damage={kind}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *entries(told, dim)]
+    done = subprocess.run([str(options.binary), "point", str(SCENE), *(word for entry in sets for word in ("--set", entry))],
+                          capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"peer: damage: {done.stderr.strip()}")
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))[1:]
+    shear = ["t"] if dim == 2 else ["t1", "t2"]
+
+    def size(what):
+        return np.hypot.reduce([[float(row[f"{what}_{t}"]) for row in rows] for t in shear])
+    return {"normal": np.array([float(row["traction_n"]) for row in rows]), "shear": size("traction"), "slip": size("plastic_jump")}
+
+
+def compare(options, theirs):
+    """Prints a row for each kind of damage; which are further apart than they may be, in words."""
+    table, wrong = linear.Table(COLUMNS, 24), []
+    for dim in (2, 3):
+        for kind in ("isotropic", "anisotropic"):
+            told, _ = theirs(options, "damage.py", dim, kind, STEPS)
+            their, our = told["steps"], ours(options, dim, kind, told)
+            apart = {name: np.max(abs(values - [step[name] for step in their])) / np.max(abs(values)) for name, values in our.items()}
+            seconds = np.diff([0, *(step["seconds"] for step in their)])
+            solves = np.diff([0, *(step["solves"] for step in their)])
+            early, late = (np.sum(seconds[part]) / np.sum(solves[part]) for part in (slice(SOME), slice(-SOME, None)))
+            table.add([f"{dim}D, {kind}", *apart.values(), early, late])
+            wrong += [f"apart: damage, {dim}D, {kind}: {name} by {value:.1e}, {WITHIN} is allowed" for name, value in apart.items() if not value <= WITHIN]
+    return wrong
