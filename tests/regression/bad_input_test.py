@@ -365,6 +365,8 @@ class Scenes(BadInput):
         refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
         refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
+        refuse(['Heat > "fluid": needs the section "Flow"', 'Heat > "advection": needs the section "Flow"'], "Heat.fluid=water",
+               "Heat.advection=second order")
         refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
         self.refuse_set(['moved > "temperature": needs the section "Heat"'], "Boundary conditions.moved.temperature=1")
         self.refuse_set(['Heat > "fluid heat capacity": needs the section "Flow"', 'Heat > "fluid thermal expansion": needs the section "Flow"'],
@@ -383,6 +385,14 @@ class Scenes(BadInput):
                "Heat.fluid heat capacity=4e6", "Materials.granite.thermal conductivity={2.8}", north + "temperature=300", scene="poro/injection_2d.xml")
         refuse(['Heat > Wells > inyector: is "inyector", must be one of "injector", "producer"'], "Heat.Wells.inyector.temperature=300")
         refuse(['"fluid heat capacity": is -1, must be at least 0'], "Heat.fluid heat capacity=-1")
+        refuse(['Heat > "fluid": is "steam", must be one of "constant", "exponential", "water"'], "Heat.fluid=steam")
+        refuse(['Heat > "fluid thermal expansion": is known of "fluid" = "water"'], "Heat.fluid=water")
+        refuse(['Heat > "viscosity decay": is of "fluid" = "exponential"; here that is "constant"'], "Heat.viscosity decay=0.02")
+        refuse(['Wells > injector > "temperature": is 200 K, must be between 273.16 and 623.15 K'], "Heat.fluid=water",
+               "Heat.fluid thermal expansion=0", "Heat.Wells.injector.temperature=200")
+        refuse(['Time > "scheme": is "BDF2": Heat > "advection" = "second order" goes with implicit Euler'],
+               "Heat.advection=second order", "Time.scheme=BDF2")
+        refuse(['Heat > "heat of friction": needs rock that deforms'], "Heat.heat of friction=true", "Flow.rigid rock=true")
         refuse(['Materials > rough joint > "thermal conductivity": is 0, must be positive'], "Materials.rough joint.thermal conductivity=0")
         refuse(['"thermal expansion": is "t"; it may depend on x, y, z, not on t'], "Materials.granite.thermal expansion=t")
         refuse(['Boundary conditions > end: gives a "heat flux", which is one of rock, not of a "fracture"'], "Boundary conditions.end.boundary=north",
