@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "laws/contact.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "jacobian/against_plastic_jump.hpp"
 #include "model/model.hpp"
