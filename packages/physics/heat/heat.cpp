@@ -2,11 +2,10 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
-#include "physics/comparison.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/heat/fracture_heat.hpp"
+#include "physics/heat/temperatures.hpp"
 #include "physics/heat/thermal_expansion.hpp"
-#include "physics/heat/water.hpp"
 #include "physics/hybrid_diffusion.hpp"
 #include "physics/storage.hpp"
 #include "physics/tensor_entry.hpp"
@@ -31,146 +30,6 @@ Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh&
 
 SchemeEntry scheme_entry(const HeatSection& heat) {
   return {.section = "Heat", .name = heat.scheme, .property = "thermal conductivity"};
-}
-
-bool is_water(Real T) { return T >= coldest_water && T <= warmest_water; }
-
-/// Calls see(place in the scene, temperature) for all that a scene gives.
-template <class See>
-void for_each_temperature(const Scene& scene, const See& see) {
-  if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);
-  for (const auto& [name, well] : scene.heat->wells)
-    see("Heat > Wells > " + name + " > \"temperature\"", well.temperature);
-  for (const auto& [name, region] : scene.regions)
-    if (region.temperature) see("Regions > " + name + " > \"temperature\"", *region.temperature);
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (condition.temperature) see("Boundary conditions > " + name + " > \"temperature\"", *condition.temperature);
-}
-
-bool no_heat(const Comparison& c) { return !c.scene().heat && c.is_absent("Heat"); }
-
-/// What is of heat in a scene without it.
-void compare_without_heat(Comparison& c) {
-  if (!no_heat(c)) return;
-  const auto needs_heat = [&](const std::string& place) { c.fail(place, "needs the section \"Heat\""); };
-  for (const auto& [name, region] : c.scene().regions)
-    if (region.temperature) needs_heat("Regions > " + name + " > \"temperature\"");
-  for (const auto& [name, condition] : c.scene().boundary_conditions)
-    if (condition.temperature || condition.heat_flux)
-      needs_heat("Boundary conditions > " + name + (condition.temperature ? " > \"temperature\"" : " > \"heat flux\""));
-}
-
-void compare_rock(Comparison& c, const Material& rock) {
-  const std::string section = "Materials > " + c.name_of(rock), place = section + " > \"thermal conductivity\"";
-  if (!c.is_sound(section)) return;
-  if (rock.thermal_conductivity.empty()) c.fail(place, "missing; it is required with \"Heat\"");
-  if (rock.thermal_conductivity.empty() || !c.names().dim) return;
-  try {
-    if (rock.conducts_uniformly()) rock.conductivity(*c.names().dim, {});
-  } catch (const Error& error) {
-    c.fail(place, error.what());
-  }
-}
-
-/// Heat that no temperature and no capacity ties to a level has none, or any.
-void compare_level(Comparison& c) {
-  const auto& conditions = c.scene().boundary_conditions;
-  const auto& regions = c.scene().regions;
-  bool known = conditions.empty() && !c.is_absent("Boundary conditions");
-  known = known || std::any_of(conditions.begin(), conditions.end(), [](const auto& named) {
-            const auto& h = named.second.heat_transfer_coefficient;
-            return named.second.temperature && !(h && is_zero(*h));
-          });
-  known = known || std::any_of(regions.begin(), regions.end(), [](const auto& r) { return r.second.temperature; });
-  c.for_each_rock([&](const Material& rock) { known = known || !is_zero(rock.heat_capacity); });
-  if (known || !c.names().regions || !c.is_sound("Materials") || !c.is_sound("Boundary conditions")) return;
-  c.fail("Heat",
-         "nothing says how high the temperature is: give a \"temperature\" on a boundary or in a region, or "
-         "rock a \"volumetric heat capacity\"");
-}
-
-/// Whether what fills fractures stores heat.
-bool stores_in_fractures(Comparison& c) {
-  const auto& scene = c.scene();
-  if (!c.names().fractures || c.names().fractures->empty()) return false;
-  const bool fluid_does = scene.flow && scene.heat->fluid_capacity.value_or(0) > 0;
-  return std::any_of(scene.fractures.begin(), scene.fractures.end(), [&](const auto& named) {
-    const auto* joint = c.joint_of(named.second);
-    if (!joint) return false;
-    return joint->filling_heat_capacity ? !is_zero(*joint->filling_heat_capacity) : fluid_does;
-  });
-}
-
-/// The start counts where something changes with the temperature.
-void compare_start(Comparison& c) {
-  const auto& scene = c.scene();
-  if (scene.heat->initial_temperature || !c.is_sound("Heat")) return;
-  bool said = false;
-  const auto require = [&](const std::string& where) {
-    if (!std::exchange(said, true)) c.fail("Heat > \"initial temperature\"", "missing; it is required where " + where);
-  };
-  c.for_each_rock([&](const Material& rock) {
-    if (!is_zero(rock.heat_capacity))
-      require("rock has a \"volumetric heat capacity\"");
-    else if (!is_zero(rock.thermal_expansion))
-      require("rock has a \"thermal expansion\"");
-  });
-  if (stores_in_fractures(c)) require("what fills fractures has a heat capacity");
-  if (scene.flow && scene.heat->fluid_expansion > 0) require("a fluid has a \"fluid thermal expansion\"");
-  if (scene.flow && scene.heat->fluid != "constant") require("a fluid changes with the temperature");
-}
-
-/// What changes density and viscosity.
-void compare_change(Comparison& c) {
-  const auto& heat = *c.scene().heat;
-  const auto of = [&](const std::string& entry, const std::string& what) { c.fail("Heat > \"" + entry + "\"", what); };
-  if (heat.fluid != "constant" && !c.scene().flow) of("fluid", "needs the section \"Flow\"");
-  if (heat.fluid != "exponential" && heat.viscosity_decay > 0)
-    of("viscosity decay", "is of \"fluid\" = \"exponential\"; here that is \"" + heat.fluid + "\"");
-  if (heat.fluid != "water") return;
-  if (heat.fluid_expansion > 0) of("fluid thermal expansion", "is known of \"fluid\" = \"water\": leave it out");
-  const auto see = [&](const std::string& place, const base::Expression& T) {
-    if (T.is_constant() && !is_water(T({}, 0)))
-      c.fail(place, fmt::format("is {} K, must be between {} and {} K, where \"fluid\" = \"water\" is tabulated",
-                                T.text(), coldest_water, warmest_water));
-  };
-  see("Heat > \"reference temperature\"", heat.reference_temperature);
-  for_each_temperature(c.scene(), see);
-}
-
-void compare_fluid(Comparison& c) {
-  const auto& heat = *c.scene().heat;
-  if (c.scene().host_fluid) c.fail("Heat", "goes without a host_fluid, whose flow is not known");
-  if (!c.is_sound("Heat") || !c.is_sound("Flow")) return;
-  if (c.scene().flow && !heat.fluid_capacity)
-    c.fail("Heat > \"fluid heat capacity\"", "missing; it is required with \"Flow\"");
-  if (!c.scene().flow && heat.fluid_capacity)
-    c.fail("Heat > \"fluid heat capacity\"", "needs the section \"Flow\"; a joint may have a capacity of its own");
-  if (!c.scene().flow && heat.fluid_expansion > 0)
-    c.fail("Heat > \"fluid thermal expansion\"", "needs the section \"Flow\"");
-  if (!c.scene().flow && heat.advection != "upwind") c.fail("Heat > \"advection\"", "needs the section \"Flow\"");
-  compare_change(c);
-  Names wells;
-  if (c.scene().flow)
-    for (const auto& [name, well] : c.scene().flow->wells) wells.push_back(name);
-  for (const auto& [name, well] : heat.wells)
-    if (!has(wells, name)) c.check_name("Heat > Wells", "Heat > Wells > " + name, name, wells);
-}
-
-void compare_conditions(Comparison& c) {
-  for (const auto& [name, condition] : c.scene().boundary_conditions)
-    if (condition.fracture && (condition.heat_flux || condition.heat_transfer_coefficient))
-      c.fail("Boundary conditions > " + name,
-             condition.heat_flux
-                 ? "gives a \"heat flux\", which is one of rock, not of a \"fracture\""
-                 : "gives a \"heat transfer coefficient\", which is one of rock, not of a \"fracture\"");
-  for (const auto& [name, condition] : c.scene().boundary_conditions)
-    for (const auto& [second, other] : c.scene().boundary_conditions)
-      if (condition.temperature && !condition.heat_transfer_coefficient &&
-          (other.heat_flux || other.heat_transfer_coefficient) && condition.boundary == other.boundary &&
-          !condition.fracture && (!condition.region || !other.region || *condition.region == *other.region))
-        c.fail("Boundary conditions > " + second,
-               fmt::format("gives a heat flux where \"{}\" gives the temperature", name));
 }
 
 Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
@@ -403,20 +262,6 @@ std::vector<Prescribed> Heat::BoundaryCondition::prescribed() const {
 bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 
 bool Heat::has_initial_state(const Scene& scene) { return !is_in(scene) || scene.heat->initial_temperature; }
-
-void Heat::compare(Comparison& c) {
-  compare_without_heat(c);
-  if (!c.scene().heat) return;
-  c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
-  compare_level(c);
-  compare_start(c);
-  compare_fluid(c);
-  compare_conditions(c);
-  if (!c.scene().heat->of_friction) return;
-  if (!Mechanics::is_in(c.scene())) c.fail("Heat > \"heat of friction\"", "needs rock that deforms");
-  if (!c.scene().heat->initial_temperature)
-    c.fail("Heat > \"initial temperature\"", "missing; it is required with \"heat of friction\"");
-}
 
 std::string Heat::no_error_estimate(const Scene& scene) {
   return scene.heat ? "is of stress and jumps without heat; not available with \"Heat\"" : "";
