@@ -177,7 +177,10 @@ void System::declare_fields() {
   coupled_ = couples_balances();
   carried_.assign(unknowns_.size(), 0);
   for (const auto& declaration : declarations_)
-    for (const auto& name : declaration.carries) carried_[context().field(name)] = 1;
+    for (const auto& name : declaration.carries) {
+      carried_[context().field(name)] = 1;
+      blocks_[context().field(name)].advected = true;
+    }
   changing_ = coupled_ || std::find(carried_.begin(), carried_.end(), 1) != carried_.end();
   for (std::size_t b = 0; b < unknowns_.size(); ++b)
     if (!unknowns_[b].augmented_by.empty()) contact_blocks_.traction = static_cast<int>(b);

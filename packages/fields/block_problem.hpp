@@ -42,6 +42,7 @@ struct Block {
   RCP<const CrsMatrix> interpolation = {};
   std::string enriches = "";        ///< the block whose functions it adds to; multigrid on that one does without it
   std::string condensed_into = "";  ///< its own matrix is about diagonal: preconditioners eliminate it from this block
+  bool advected = false;            ///< a flow carries it: its own matrix may be far from symmetric
   bool balance = false;             ///< its rows are balances of rates: they may differ by many orders of magnitude
 };
 

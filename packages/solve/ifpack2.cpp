@@ -37,7 +37,8 @@ void check(const std::string& block, const std::string& method, const ParameterL
   const auto place = fmt::format("Sprekk > Solver > Blocks > {} > Ifpack2", block);
   const auto map = rcp(new Map(1, 0, comm));
   const auto one = rcp(new CrsMatrix(map, 1));
-  for (const GlobalIndex row : base::local_elements(*map)) one->insertGlobalValues(row, 1, std::array{1.0}.data(), &row);
+  for (const GlobalIndex row : base::local_elements(*map))
+    one->insertGlobalValues(row, 1, std::array{1.0}.data(), &row);
   one->fillComplete();
   ParameterList list(given);
   try {

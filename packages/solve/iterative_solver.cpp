@@ -1,6 +1,7 @@
 // Belos, preconditioned from the right by a solver for each block.
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -95,6 +96,8 @@ class IterativeSolver : public LinearSolver {
     parameters_.sublist("Belos").setParameters(options.belos);
     preconditioner_->describe(parameters_.sublist("Blocks"));
     parameters_.sublist("Sweep").set("type", options_.sweep.type);
+    if (!options_.sweep.order.empty())
+      parameters_.sublist("Sweep").set("order", fmt::format("{{{}}}", fmt::join(options_.sweep.order, ", ")));
   }
 
   bool reads_matrix() const override { return coarse_ != nullptr; }

@@ -125,7 +125,9 @@ class MueLuMultigrid : public Preconditioner {
     const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(matrix_.matrix());
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
-    const bool anew = hierarchy_.is_null() || (symmetric_ && !system.symmetric);
+    // of what a flow carries the values decide which unknowns are strongly coupled, those of an earlier flow do not
+    const bool anew =
+        hierarchy_.is_null() || (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
     if (anew) {
       symmetric_ = system.symmetric;
       if (by_bulk)
@@ -174,7 +176,8 @@ std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std
   const bool has_places = blocks.size() == 1 && !first.coordinates.is_null();
   auto list =
       multigrid_defaults(blocks.size() == 1 ? first.n_components : 1, first.map->getComm()->getSize(), has_places);
-  if (given.isParameter("smoother: type")) list.remove("smoother: params");
+  if (first.advected) list.set("smoother: type", "ILUT");  // Chebyshev's polynomials grow where advection dominates
+  if (first.advected || given.isParameter("smoother: type")) list.remove("smoother: params");
   list.setParameters(given);
   return std::make_unique<MueLuMultigrid>(first.name, list);
 }

@@ -121,6 +121,9 @@ std::vector<std::vector<int>> groups_of(const PreconditionerOptions& options, co
       members[b].insert(members[b].begin(), b);
     } else {
       members[first].push_back(b);
+      if (options.of(blocks[b].name).multigrid)
+        fail(blocks[b].name, "multigrid",
+             fmt::format("has no effect: the block is in the group of \"{}\"", blocks[first].name));
       if (options.of(blocks[b].name).type != "auto")
         fail(blocks[b].name, "type",
              fmt::format("cannot be chosen, for the block is in the group of \"{}\", whose type it takes",
@@ -166,6 +169,8 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
     fail(first.name, "type",
          "multigrid is for blocks whose unknowns have places, and those that go with them; "
          "MueLu, Ifpack2, Gauss-Seidel and direct are for any");
+  if (options.multigrid)
+    fail(first.name, "multigrid", "has no effect: unknowns of the block have no places, or it is in a group");
   return blocks.size() == 1 ? make_gauss_seidel(blocks) : make_direct(blocks);
 }
 
@@ -224,13 +229,14 @@ std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions&
 
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const Block& block) {
   const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
-  const bool own = Multigrid::can_solve(block.n_components, n_modes);
-  if (options.type == "MueLu" || (options.type == "auto" && !own)) return make_muelu(options.muelu, {block});
+  const bool own = Multigrid::can_solve(block.n_components, n_modes),
+             other = !own || (block.advected && !options.multigrid);
+  if (options.type == "MueLu" || (options.type == "auto" && other)) return make_muelu(options.muelu, {block});
   if (!own)
     fail(block.name, "type",
          fmt::format("multigrid is not for {} unknowns of a node and {} motions; MueLu is", block.n_components,
                      n_modes));
-  return std::make_unique<NodeMultigrid>(options.multigrid, block.name);
+  return std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), block.name);
 }
 
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {

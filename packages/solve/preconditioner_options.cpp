@@ -3,20 +3,12 @@
 #include "base/parameters.hpp"
 
 namespace sprekk::solve {
-namespace {
-
-struct Multigrid {
-  multigrid::Options options;
-
-  void describe(base::Section& section) {
-    section.entry(options.degree, "degree", "-", base::at_least(1),
-                  "of Chebyshev's polynomial, the smoother; the finest level takes a higher one in flat cells");
-    section.entry(options.coarse_size, "coarsest level", "-", base::at_least(1),
-                  "unknowns, at or below which a level is solved directly");
-  }
-};
-
-}  // namespace
+void MultigridOptions::describe(base::Section& section) {
+  section.entry(degree, "degree", "-", base::at_least(1),
+                "of Chebyshev's polynomial, the smoother; the finest level takes a higher one in flat cells");
+  section.entry(coarse_size, "coarsest level", "-", base::at_least(1),
+                "unknowns, at or below which a level is solved directly");
+}
 
 void BlockOptions::describe(base::Section& section) {
   section.choice(
@@ -24,12 +16,12 @@ void BlockOptions::describe(base::Section& section) {
       "how the block, or the group that begins with it, is preconditioned; auto: multigrid where unknowns have "
       "places, else Gauss-Seidel, and groups without a method of their own directly");
   section.entry(with, "with", "-", "the block of whose group it is a part; absent: as the fields ask for");
-  Multigrid own{multigrid};
-  section.section(own, "multigrid", "type multigrid, or auto: Sprekk's own");
-  multigrid = own.options;
+  section.section(multigrid, "multigrid", "type multigrid, or auto: Sprekk's own");
   section.passthrough(muelu, "MueLu", "type MueLu: its parameters, over the defaults");
   section.passthrough(ifpack2, "Ifpack2", "type Ifpack2: its parameters; \"type\" names the method, e.g. ILUT");
   const bool names_method = ifpack2.isType<std::string>("type");
+  if (type != "auto" && type != "multigrid" && multigrid)
+    section.fail("multigrid", "is given, but \"type\" is neither multigrid nor auto");
   if (type != "MueLu" && muelu.numParams() > 0) section.fail("MueLu", "is given, but \"type\" is not MueLu");
   if (type != "Ifpack2" && ifpack2.numParams() > 0) section.fail("Ifpack2", "is given, but \"type\" is not Ifpack2");
   if (type == "Ifpack2" && !names_method)

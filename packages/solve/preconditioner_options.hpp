@@ -3,6 +3,7 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,16 @@ class Section;
 
 namespace sprekk::solve {
 
+struct MultigridOptions : multigrid::Options {
+  void describe(base::Section& section);
+};
+
 /// Of one block, or of the group that begins with it. The lists are handed to the libraries untouched, over the
 /// defaults.
 struct BlockOptions {
   std::string type = "auto";  ///< auto | multigrid | MueLu | Ifpack2 | Gauss-Seidel | direct
   std::string with;           ///< the block of whose group this one is a part; empty: as the fields ask for
-  multigrid::Options multigrid;
+  std::optional<MultigridOptions> multigrid;  ///< of Sprekk's own; absent: the defaults
   Teuchos::ParameterList muelu{"MueLu"}, ifpack2{"Ifpack2"};
 
   void describe(base::Section& section);

@@ -90,7 +90,9 @@ Sweep::Sweep(const SweepOptions& options, const std::vector<Block>& blocks, cons
 
 LinearSystem Sweep::part(int group, const LinearSystem& system) const {
   std::vector<Real> scales;
-  LinearSystem part{joined_[group], {}, true, {}, {}, system.reproducible};
+  // symmetric blocks need not couple so
+  const bool alone = groups_[group].size() == 1;
+  LinearSystem part{joined_[group], {}, alone || system.symmetric, {}, {}, system.reproducible};
   for (const int r : groups_[group]) {
     scales.push_back(system.joined->scale(r));
     part.diagonal.push_back(system.diagonal[r]);

@@ -22,7 +22,8 @@ TEST(CoupledFlow, IsTheSameByExchangeAndInOneJacobian) {
       const int cells = dim == 2 ? 8 : 4;
       auto scene = hosts::block(dim, cells);
       scene.solver.linear_solver.type = solver;
-      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.coarse_size = 20;  // or all is direct
+      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
+          20;  // or all is direct
       hosts::Exchange exchange(dim, cells, comm, scene);
       const auto together = hosts::make_together(scene, comm), sprekk = hosts::make_sprekk(scene, comm);
       std::set<std::array<int, 3>> states;

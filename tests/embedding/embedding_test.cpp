@@ -114,7 +114,8 @@ TEST(Grout, CarriesTheColumnThenTheWallsDo) {
   for (const std::string solver : {"direct", "iterative"})
     for_each_column(solver == "direct" ? all : some, [&](model::Scene scene, const model::ModuleFactory& modules) {
       scene.solver.linear_solver.type = solver;
-      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.coarse_size = 20;  // or all is direct
+      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
+          20;  // or all is direct
       model::Model model(scene, Tpetra::getDefaultComm(), modules);
       for (Real t : {1, 3}) {
         const auto report = model.step_to(t);

@@ -48,8 +48,8 @@ struct Advection {
     for (int i = 0; i < n; ++i) {
       Real noise = 0;
       for (int k = 0; k < m; ++k) noise += rounding * magnitude(dq[i][k] * x[k]);
-      if (q[i] < noise) add(dq[i], q[i], x, i, J[0]);
-      if (q[i] > -noise) add(dq[i], q[i], x, i, J[1 + i]);
+      if (q[i] <= noise) add(dq[i], q[i], x, i, J[0]);
+      if (q[i] >= -noise) add(dq[i], q[i], x, i, J[1 + i]);
     }
   }
 

@@ -147,7 +147,9 @@ void Heat::compare(Comparison& c) {
   compare_fluid(c);
   compare_conditions(c);
   if (!c.scene().heat->of_friction) return;
-  if (!Mechanics::is_in(c.scene())) c.fail("Heat > \"heat of friction\"", "needs rock that deforms");
+  const auto& fractures = c.names().fractures;
+  if (!Mechanics::is_in(c.scene()) || (fractures && fractures->empty()))
+    c.fail("Heat > \"heat of friction\"", "needs fractures, and rock that deforms");
   if (!c.scene().heat->initial_temperature)
     c.fail("Heat > \"initial temperature\"", "missing; it is required with \"heat of friction\"");
 }

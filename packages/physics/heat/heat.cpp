@@ -189,7 +189,7 @@ void HeatSection::describe(base::Section& s) {
   s.choice(
       advection, "advection", {"upwind", "second order"},
       "how the fluid carries heat between cells, and along fractures; second order: with limited corrections once per "
-      "step, of use for steps in which it does not cross more than about a cell, with implicit Euler");
+      "step, of use for steps in which it does not cross more than about half a cell, with implicit Euler");
   s.entry(of_friction, "heat of friction", "-", "what fractures dissipate as they slide warms them");
   s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
 }
@@ -274,9 +274,11 @@ std::vector<Carried> Heat::carried(const Scene& scene) {
   energy.change = scene.heat->fluid_change();
   if (scene.heat->advection == "second order") {
     energy.stored_in_cells = [](const Setting& setting) {
-      const auto capacity = capacity_of_rock(setting.scene, setting.mesh);
       std::vector<Real> all;
-      for (LocalIndex c = 0; c < setting.mesh.n_cells(); ++c) all.push_back(capacity.of_cell(setting.mesh, c));
+      base::collectively(*setting.mesh.comm, [&] {
+        const auto capacity = capacity_of_rock(setting.scene, setting.mesh);
+        for (LocalIndex c = 0; c < setting.mesh.n_cells(); ++c) all.push_back(capacity.of_cell(setting.mesh, c));
+      });
       return all;
     };
     energy.stored_in_fractures = [](const Setting& setting) {
@@ -349,6 +351,16 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
   std::vector<std::string> all;
   const auto skew = scheme_warning(scheme_entry(*scene.heat), mesh, conductivity_of(scene, mesh));
   if (!skew.empty()) all.push_back(scene.origin + ": " + skew);
+  const auto change = scene.heat->fluid_change();
+  if (scene.flow && change && change->initial.is_constant() && Mechanics::is_in(scene)) {
+    const Real start_temperature = change->initial({}, 0), density = change->response.density(start_temperature).value;
+    if (std::abs(density - 1) > 0.01)
+      all.push_back(fmt::format(
+          "{}: Sprekk > Heat > \"reference temperature\": is {:.6g} K, where the density of the fluid is "
+          "{:.3g} times that at the \"initial temperature\", {:.6g} K; pores of rock that deforms press out "
+          "fluid of the former: give both the same",
+          scene.origin, scene.heat->reference_temperature, 1 / density, start_temperature));
+  }
   if (!scene.flow || scene.heat->fluid != "water") return all;
   const Real T = scene.heat->reference_temperature;
   const auto see = [&, &scene = scene](const std::string& entry, Real given, Real of_water, const std::string& unit) {

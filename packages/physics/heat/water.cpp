@@ -39,8 +39,8 @@ Real water_viscosity(Real T, Real density) {
 }
 
 laws::FluidResponse response_of_water(Real reference) {
-  constexpr Real step = 1, nearby = 0.01;
-  const int n = static_cast<int>((warmest_water - coldest_water) / step) + 1;
+  constexpr int n = 351;
+  constexpr Real step = (warmest_water - coldest_water) / (n - 1), nearby = 0.01;
   const auto density = [&](Real T) { return water_density(T) / water_density(reference); };
   const auto mobility = [&](Real T) { return water_viscosity(reference) / water_viscosity(T); };
   const View<Real**> knots("water", n, 4);

@@ -26,6 +26,13 @@ struct SlidingFace {
   ConstView<Real*> area;
   Real rate = 0;
 
+  template <class T>
+  static KOKKOS_INLINE_FUNCTION T length(const T (&v)[dim - 1]) {
+    T square = 0;
+    for (const T& each : v) square += each * each;
+    return square > 0 ? T(sqrt(square)) : T(0);
+  }
+
   /// p_t.
   template <class T>
   KOKKOS_INLINE_FUNCTION void plastic(int f, const T (&w)[dim], const T (&traction)[dim], T (&p)[dim - 1]) const {
@@ -48,10 +55,16 @@ struct SlidingFace {
       sum += traction[i + 1] * (p[i] - old[i]);
     }
     const auto gap = [&](const T(&jump)[dim - 1]) {
-      T square = 0;
-      for (int i = 0; i < dim - 1; ++i) square += jump[i] * jump[i];
-      const T size = square > 0 ? T(sqrt(square)) : T(0);
-      return law.normal_gap(laws::contact<dim>(traction[0], size, jump, old, face.history(f)));
+      auto at = laws::contact<dim>(traction[0], length(jump), jump, old, face.history(f));
+      T step[dim - 1], shear[dim - 1];
+      for (int i = 0; i < dim - 1; ++i) {
+        step[i] = jump[i] - old[i];
+        shear[i] = traction[i + 1];
+      }
+      at.slip_of_step = length(step);
+      for (int i = 0; i < dim - 1 && at.slip_of_step > 0; ++i) at.slip_direction[i] = step[i] / at.slip_of_step;
+      at.shear = length(shear);
+      return law.normal_gap(at);
     };
     return sum + traction[0] * (gap(p) - gap(before));
   }

@@ -322,6 +322,8 @@ TEST(Preconditioner, ErrorsNameTheEntry) {
               o.sweep.order = {"faces", "faces"};
             }),
             "Sprekk > Solver > Sweep > \"order\": is faces, faces, must name each of \"nodes\", \"faces\" once");
+  EXPECT_EQ(error_of([](auto& o) { o.blocks["cells"].multigrid.emplace(); }),
+            blocks + "cells > \"multigrid\": has no effect: the block is in the group of \"faces\"");
   const auto of_ifpack2 = [&](const std::string& method, const std::string& entry) {
     return error_of([&](auto& o) {
       o.blocks["nodes"].type = "Ifpack2";

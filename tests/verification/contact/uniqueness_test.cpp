@@ -1,4 +1,5 @@
 // Where dilation makes more than one state possible, and that a scene is told so from there on.
+#include "laws/joint_kinds.hpp"
 #include "physics/mechanics/uniqueness.hpp"
 #include "verification/scenes.hpp"
 

@@ -42,6 +42,8 @@ TEST(Water, IsThatOfItsTables) {
     EXPECT_NEAR(d.slope, (response.density(T + 1e-4).value - response.density(T - 1e-4).value) / 2e-4, 1e-10) << T;
     EXPECT_NEAR(m.slope, (response.mobility(T + 1e-4).value - response.mobility(T - 1e-4).value) / 2e-4, 1e-9) << T;
   }
+  for (const Real T : {622.9, physics::warmest_water})
+    EXPECT_NEAR(response.density(T).value, physics::water_density(T) / physics::water_density(293.15), 1e-7) << T;
   EXPECT_EQ(response.density(700).value, response.density(physics::warmest_water).value);
   EXPECT_EQ(response.density(700).slope, 0);
 }
