@@ -1,5 +1,8 @@
 // Where dilation makes more than one state possible, and that a scene is told so from there on.
-#include "laws/joint_kinds.hpp"
+#include "laws/shear/linear.hpp"
+#include "laws/friction/coulomb.hpp"
+#include "laws/dilation/constant_angle.hpp"
+#include "laws/joint.hpp"
 #include "physics/mechanics/uniqueness.hpp"
 #include "verification/scenes.hpp"
 
