@@ -7,6 +7,7 @@ import csv
 import math
 import re
 import sys
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,13 +16,14 @@ sys.path[:0] = [str(ROOT / "apps/plot")]
 
 import cases  # noqa: E402
 import flow_cases  # noqa: E402
+import heat_cases  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
 import poro_cases  # noqa: E402
 import poro_fractures  # noqa: E402
 import style  # noqa: E402
 
-CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES
+CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES + heat_cases.CASES
 ESTIMATES = ("jump", "stress")
 ESTIMATE = ("Output.error estimate=true",)
 WITHIN = 2  # a factor by which an estimate may be off
@@ -184,8 +186,10 @@ def write(rows, file):
 
 def arguments(words):
     names = [make.__name__ for make in CASES]
+    groups = [word for word, n in Counter(name.split("_")[0] for name in names).items() if n > 1 and word not in names]
     parser = argparse.ArgumentParser(prog="sprekk perf verification", description=__doc__)
-    parser.add_argument("--only", metavar="CASE", action="append", choices=names, help=f"one of {', '.join(names)}; may be repeated")
+    parser.add_argument("--only", metavar="CASE", action="append", choices=names + groups,
+                        help=f"one of {', '.join(names)}, or what several begin with ({', '.join(groups)}); may be repeated")
     parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="run on N ranks")
     parser.add_argument("--output", type=Path, default=Path("output/perf/verification"), metavar="DIR")
@@ -198,7 +202,7 @@ def main(words):
     options.output = options.output.resolve()
     above, lines = [], []
     for make in CASES:
-        if options.only and make.__name__ not in options.only:
+        if options.only and not {make.__name__, make.__name__.split("_")[0]} & set(options.only):
             continue
         case = make()
         print(f"{case.name}: {case.title}")

@@ -392,7 +392,7 @@ class Scenes(BadInput):
                "Heat.fluid thermal expansion=0", "Heat.Wells.injector.temperature=200")
         refuse(['Time > "scheme": is "BDF2": Heat > "advection" = "second order" goes with implicit Euler'],
                "Heat.advection=second order", "Time.scheme=BDF2")
-        refuse(['Heat > "heat of friction": needs rock that deforms'], "Heat.heat of friction=true", "Flow.rigid rock=true")
+        refuse(['Heat > "heat of friction": needs fractures, and rock that deforms'], "Heat.heat of friction=true", "Flow.rigid rock=true")
         refuse(['Materials > rough joint > "thermal conductivity": is 0, must be positive'], "Materials.rough joint.thermal conductivity=0")
         refuse(['"thermal expansion": is "t"; it may depend on x, y, z, not on t'], "Materials.granite.thermal expansion=t")
         refuse(['Boundary conditions > end: gives a "heat flux", which is one of rock, not of a "fracture"'], "Boundary conditions.end.boundary=north",
