@@ -84,7 +84,7 @@ class Restart(ProgramTest):
                 (TURNS, 1, (", ".join(map(str, range(1, 81))), ", 81, 82"), []), (TURNS, 3, ("1, 2, 3, 4, 5, 6", ", 7, 8"), []),
                 (INJECTION, 1, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}"]),
                 (INJECTION, 2, ("4000, 8000", ", 12000"), ["Mesh.cells={20, 20}", "Solver.Linear solver.type=iterative", "Time.scheme=BDF2"]),
-                (DOUBLET, 2, ("2e6, 4e6", ", 6e6"), ["Mesh.cells={20, 20}", "Heat.fluid=water", "Heat.heat of friction=true", "Heat.advection=second order"]),
+                (DOUBLET, 2, ("2e6, 4e6", ", 6e6"), ["Mesh.cells={20, 20}", "Heat.fluid=exponential", "Heat.viscosity decay=0.015", "Heat.heat of friction=true", "Heat.advection=second order"]),
                 (CROSSING, 1, ("2", ", 3"), multigrid), (CROSSING, 2, ("2", ", 3"), multigrid),
                 (CROSSING, 3, ("2", ", 3"), multigrid)):
             with self.subTest(scene=scene, ranks=ranks, options=options):
