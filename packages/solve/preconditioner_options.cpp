@@ -14,7 +14,7 @@ void BlockOptions::describe(base::Section& section) {
   section.choice(
       type, "type", {"auto", "multigrid", "MueLu", "Ifpack2", "Gauss-Seidel", "direct"},
       "how the block, or the group that begins with it, is preconditioned; auto: multigrid where unknowns have "
-      "places, else Gauss-Seidel, and groups without a method of their own directly");
+      "places, MueLu where a flow carries them, else Gauss-Seidel, and groups without a method of their own directly");
   section.entry(with, "with", "-", "the block of whose group it is a part; absent: as the fields ask for");
   section.section(multigrid, "multigrid", "type multigrid, or auto: Sprekk's own");
   section.passthrough(muelu, "MueLu", "type MueLu: its parameters, over the defaults");

@@ -25,9 +25,8 @@ struct Advection {
   Real capacity;
 
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1 + n], Real (&r)[1 + n]) const {
-    Real drivers[m], q[n];
-    for (int k = 0; k < m; ++k) drivers[k] = x[k];
-    flow.flow(e, drivers, q);
+    Real q[n], dq[n][m];
+    find_flow(e, x, q, dq);
     r[0] = 0;
     for (int i = 0; i < n; ++i) {
       const Real rise = capacity * q[i] * (x[m + 1 + i] - x[m]);  // along the outward flow
@@ -36,32 +35,34 @@ struct Advection {
     }
   }
 
-  /// Where rounding decides which way the fluid flows, as through a closed end, the derivatives of both directions
-  /// stand in their rows: by them the rounding of what drives the flow is told from what is out of balance.
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[m + 1 + n], Real (&J)[1 + n][m + 1 + n]) const {
-    Real drivers[m], q[n], dq[n][m];
-    for (int k = 0; k < m; ++k) drivers[k] = x[k];
-    flow.flow(e, drivers, q);
-    flow.dflow(e, drivers, dq);
+    Real q[n], dq[n][m];
+    find_flow(e, x, q, dq);
     for (auto& row : J)
       for (Real& value : row) value = 0;
     for (int i = 0; i < n; ++i) {
-      Real noise = 0;
-      for (int k = 0; k < m; ++k) noise += rounding * magnitude(dq[i][k] * x[k]);
-      if (q[i] <= noise) add(dq[i], q[i], x, i, J[0]);
-      if (q[i] >= -noise) add(dq[i], q[i], x, i, J[1 + i]);
+      if (q[i] == 0) continue;
+      Real(&row)[m + 1 + n] = J[q[i] > 0 ? 1 + i : 0];
+      for (int k = 0; k < m; ++k) row[k] += capacity * dq[i][k] * (x[m + 1 + i] - x[m]);
+      row[m] -= capacity * q[i];
+      row[m + 1 + i] += capacity * q[i];
     }
   }
 
  private:
-  static constexpr Real rounding = 64 * 2.2e-16;
-  static KOKKOS_INLINE_FUNCTION Real magnitude(Real value) { return value < 0 ? -value : value; }
-
-  KOKKOS_INLINE_FUNCTION void add(const Real (&dq)[m], Real q, const Real (&x)[m + 1 + n], int i,
-                                  Real (&row)[m + 1 + n]) const {
-    for (int k = 0; k < m; ++k) row[k] += capacity * dq[k] * (x[m + 1 + i] - x[m]);
-    row[m] -= capacity * q;
-    row[m + 1 + i] += capacity * q;
+  /// What rounding leaves of a flow, as through a closed end, is none: it would carry what is on one side or on
+  /// the other, from iterate to iterate.
+  KOKKOS_INLINE_FUNCTION void find_flow(int e, const Real (&x)[m + 1 + n], Real (&q)[n], Real (&dq)[n][m]) const {
+    constexpr Real rounding = 64 * 2.2e-16;
+    Real drivers[m];
+    for (int k = 0; k < m; ++k) drivers[k] = x[k];
+    flow.flow(e, drivers, q);
+    flow.dflow(e, drivers, dq);
+    for (int i = 0; i < n; ++i) {
+      Real sum = 0;
+      for (int k = 0; k < m; ++k) sum += dq[i][k] * x[k] < 0 ? -dq[i][k] * x[k] : dq[i][k] * x[k];
+      if ((q[i] < 0 ? -q[i] : q[i]) <= rounding * sum) q[i] = 0;
+    }
   }
 };
 
