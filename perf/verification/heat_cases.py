@@ -34,17 +34,18 @@ def heat_half_space():
 
 
 def heat_front():
-    """What enters at x = 0 at 1 K, by flow and conduction (Ogata and Banks 1961)."""
+    """What enters at x = 0 at 1 K, by flow and conduction (Ogata and Banks 1961). With cells of 0.75 m, n = 40, errors of space and
+    time happen to cancel."""
     def exact(x):
         width = 2 * math.sqrt(DIFFUSIVITY * DAY)
         return 0.5 * (erfc((x - VELOCITY * DAY) / width) + np.exp(np.minimum(VELOCITY * x / DIFFUSIVITY, 600)) * erfc((x + VELOCITY * DAY) / width))
 
     def errors(run, _):
         return temperature_error(run, exact)
-    series = [Series(f"{cell} {scheme}", [(f"n={n}", (f"Mesh.cells={numbers([n] + [1] * (d - 1))}", f"Time.steps={n * n // 20}")) for n in (40, 80, 160)],
+    series = [Series(f"{cell} {scheme}", [(f"n={n}", (f"Mesh.cells={numbers([n] + [1] * (d - 1))}", f"Time.steps={n * n // 20}")) for n in (80, 160, 240)],
                      f"verification/front_{d}d.xml", (f"Mesh.cell={cell}", f"Heat.advection={scheme}"), None, 2, None, 1)
               for d, cell in ((2, "quadrilateral"), (3, "hexahedron")) for scheme in ("upwind", "second order")]
-    bounds = [Order("upwind", "temperature", 0.8), Order("second order", "temperature", 1.2)]
+    bounds = [Order("upwind", "temperature", 0.8), Order("second order", "temperature", 1.5)]
     bounds += [Bound(one.name, "n=160", "temperature", 5e-4 if "second" in one.name else 0.02) for one in series]
     return case("heat-front", "a front that is carried", series, errors, ("quadrilateral second order", "n=160", "temperature"), bounds)
 
