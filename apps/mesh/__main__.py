@@ -13,6 +13,8 @@ from pathlib import Path
 from progress import doing
 from shapes import NetworkError
 
+MOST_DRAWN = 0.2  # of the fractures at random may be drawn again: more are too dense to be what was asked for
+
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk mesh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -55,19 +57,10 @@ def is_made(mesh, report, print_of_input):
         return False
 
 
-def make(options):
-    from description import Network
-    text = description(options)
-    with doing("reading and generating fractures"):
-        network = Network(text)
-    report_file = options.output.with_suffix(options.output.suffix + ".json")
-    print_of_input = fingerprint(text, network.files)
-    if is_made(options.output, report_file, print_of_input) and not options.picture:
-        return None
+def made(network):
+    """Plan, sizes and mesh."""
     import checks
     import mesher
-    import msh_file
-    import report
     from plan import Plan
     from sizes import Sizes
     with doing(f"finding where {len(network.fractures)} fractures meet"):
@@ -77,8 +70,41 @@ def make(options):
     with doing(f"finding how short cells must be at {len(plan.edges)} edges of fractures"):
         sizes = Sizes(plan)
     with doing(f"making a mesh of about {sum(sizes.expected_cells().values()):.1g} cells"):
-        mesh = mesher.make_mesh(plan, sizes)
-        groups = msh_file.groups_of(mesh, plan)
+        return plan, sizes, mesher.make_mesh(plan, sizes)
+
+
+def made_of(text, network):
+    """The same. Fractures at random that cannot be meshed with others are drawn again, the last one of those in each other's way."""
+    from description import Network
+    again = {}
+    while True:
+        try:
+            plan, *rest = made(network)
+            plan.repairs[:0] = [f"drawn again{f' {times} times' if times > 1 else ''}, for it could not be meshed with others: {name}"
+                                for name, times in again.items()]
+            return plan, *rest
+        except NetworkError as error:
+            drawn = {name: k for k, name in enumerate(network.at_random)}
+            last = {max((name for name in names if name in drawn), key=drawn.get, default=None) for names in error.features}
+            if not last or None in last or sum(again.values()) > MOST_DRAWN * len(drawn):
+                raise
+        again.update({name: again.get(name, 0) + 1 for name in last})
+        network = Network(text, again)
+
+
+def make(options):
+    from description import Network
+    text = description(options)
+    with doing("reading and generating fractures"):
+        network = Network(text)
+    report_file = options.output.with_suffix(options.output.suffix + ".json")
+    print_of_input = fingerprint(text, network.files)
+    if is_made(options.output, report_file, print_of_input) and not options.picture:
+        return None
+    import msh_file
+    import report
+    plan, sizes, mesh = made_of(text, network)
+    groups = msh_file.groups_of(mesh, plan)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
     try:

@@ -147,4 +147,4 @@ def check(plan):
     first = {}
     for pair, line in found:
         first.setdefault(frozenset(pair), line)
-    Errors(first.values()).throw()
+    Errors(first.values(), [tuple(sorted(pair)) for pair in first]).throw()

@@ -42,7 +42,9 @@ def opened(ring):
 class Network:
     """What a mesh is to be made of."""
 
-    def __init__(self, text):
+    def __init__(self, text, again=None):
+        """`again` {name of a fracture at random: how often it is drawn again}."""
+        self.again, self.at_random = again or {}, []
         self.entries = as_dictionary(xml.fromstring(text))
         self.files = []  # that it was read from
         self.tables = {(kind, name): self.table(content) for kind in ("fractures", "constraints")
@@ -103,8 +105,11 @@ class Network:
             if number > MOST_FRACTURES:
                 raise NetworkError(f"{path}: brings the network to {number} {kind}s, at most {MOST_FRACTURES} are meshed")
             if "random" in content:
-                found += [Feature(kind, name, f'{kind} {k + 1} at random of "{name}"', x, f"{name} {k + 1}")
-                          for k, x in enumerate(at_random(content["random"], self.domain))]
+                names = [f'{kind} {k + 1} at random of "{name}"' for k in range(content["random"]["number"])]
+                again = {k: self.again[one] for k, one in enumerate(names) if one in self.again}
+                found += [Feature(kind, name, one, x, f"{name} {k + 1}")
+                          for k, (one, x) in enumerate(zip(names, at_random(content["random"], self.domain, again)))]
+                self.at_random += names
         for feature in found if self.dim == 3 else ():
             feature.points = opened(feature.points)
         return found

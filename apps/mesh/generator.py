@@ -39,9 +39,19 @@ def centres(random, domain, n):
     return found[:n]
 
 
-def at_random(entries, domain):
-    """Arrays of points: lines in 2D, regular polygons in 3D whose corners lie on a circle of the diameter."""
-    random, n = np.random.Generator(np.random.PCG64(entries["seed"])), entries["number"]
+def at_random(entries, domain, again={}):
+    """Arrays of points: lines in 2D, regular polygons in 3D whose corners lie on a circle of the diameter. `again` {number of a
+    fracture, from 0: how often it is drawn again}: the others stay as they are."""
+    def drawn(seed, n):
+        return draw(np.random.Generator(np.random.PCG64(seed)), n, entries, domain)
+
+    found = drawn(entries["seed"], entries["number"])
+    for k, times in again.items():
+        found[k] = drawn([entries["seed"], k, times], 1)[0]
+    return found
+
+
+def draw(random, n, entries, domain):
     centre = centres(random, domain, n)
     length = power_law(random.random(n), entries["shortest"], entries["longest"], entries["exponent"])
     uniform = random.random((n, 3))

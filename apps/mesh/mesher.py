@@ -33,7 +33,7 @@ def make_mesh(plan, sizes):
             gmsh.model.mesh.generate(plan.dim)
         except Exception as error:  # what gmsh throws has no type of its own
             said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
-            raise NetworkError(model.failure(said or [str(error)])) from None
+            raise model.failure(said or [str(error)]) from None
         return model.mesh(sizes)
     finally:
         gmsh.finalize()
@@ -72,11 +72,12 @@ class Model:
         return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
 
     def failure(self, said):
-        """What gmsh says of a mesh that it could not make, with the names of the features that it numbers."""
+        """An error with what gmsh says of a mesh that it could not make, and the names of the features that it numbers."""
         owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
         names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
         where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
-        return f"gmsh could not make the mesh{where}: {said[0]}; a larger \"tolerance\" joins what is too close, smaller sizes resolve it"
+        return NetworkError(f"gmsh could not make the mesh{where}: {said[0]}; a larger \"tolerance\" joins what is too close, smaller sizes "
+                            "resolve it", features=[tuple(names)] if names else [])
 
     def mesh(self, sizes):
         dim = self.plan.dim

@@ -181,7 +181,8 @@ class Plan:
         are_fractures = one.feature.kind == other.feature.kind == "fracture"
         if are_level(one, other, tolerance):
             if are_fractures and overlap(one, other, tolerance):
-                raise NetworkError(f"{one.feature.name} and {other.feature.name} lie on each other; leave one out or make them one")
+                raise NetworkError(f"{one.feature.name} and {other.feature.name} lie on each other; leave one out or make them one",
+                                   features=[(one.feature.name, other.feature.name)])
             return []
         if np.linalg.norm(np.cross(one.plane.normal, other.plane.normal)) < 1e-8:
             return []
@@ -229,6 +230,7 @@ def check_same(fractures, tolerance):
         key = tuple(sorted(map(tuple, grid)))
         if key in seen:
             errors.lines.append(f"{seen[key].name} and {fracture.name} are the same")
+            errors.features.append((seen[key].name, fracture.name))
         seen[key] = fracture
     errors.throw()
 

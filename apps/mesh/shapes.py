@@ -8,11 +8,12 @@ from shapely.validation import explain_validity
 
 
 class NetworkError(Exception):
-    """What is wrong with a network: a line for each thing; `files` open lines about themselves."""
+    """What is wrong with a network: a line for each thing; `files` open lines about themselves. `features` has the names of those
+    that stand in each other's way, a tuple for each line; empty where the fault is not theirs."""
 
-    def __init__(self, what, files=()):
+    def __init__(self, what, files=(), features=()):
         super().__init__(what)
-        self.files = files
+        self.files, self.features = files, list(features)
 
 
 class Errors:
@@ -20,8 +21,8 @@ class Errors:
 
     MOST = 20
 
-    def __init__(self, lines=()):
-        self.lines = list(lines)
+    def __init__(self, lines=(), features=()):
+        self.lines, self.features = list(lines), list(features)
 
     @contextmanager
     def of_one(self):
@@ -29,11 +30,12 @@ class Errors:
             yield
         except NetworkError as error:
             self.lines.append(str(error))
+            self.features += error.features
 
     def throw(self, files=()):
         if self.lines:
             more = [f"and {len(self.lines) - self.MOST} more"] if len(self.lines) > self.MOST else []
-            raise NetworkError("\n".join(self.lines[:self.MOST] + more), [*files, "and "])
+            raise NetworkError("\n".join(self.lines[:self.MOST] + more), [*files, "and "], self.features)
 
 
 @dataclass
@@ -48,7 +50,7 @@ class Feature:
 
 
 def refuse(feature, what):
-    raise NetworkError(f"{feature.name}: {what}")
+    raise NetworkError(f"{feature.name}: {what}", features=[(feature.name,)])
 
 
 class Plane:

@@ -153,4 +153,5 @@ def check_angles(one, other, found, minimum):
             continue
         angle = angle_between(one, other, 0.5 * (begin + end), (end - begin) / np.linalg.norm(end - begin))
         if angle < minimum:
-            raise NetworkError(f"{one.feature.name} and {other.feature.name} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}")
+            raise NetworkError(f"{one.feature.name} and {other.feature.name} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}",
+                               features=[(one.feature.name, other.feature.name)])

@@ -18,6 +18,8 @@ std::vector<LocalIndex> Halo::sent_nodes() const {
   return {nodes.begin(), nodes.end()};
 }
 
+std::size_t Halo::n_messages() const { return import_.is_null() ? 0 : import_->getDistributor().getNumReceives(); }
+
 template <class T>
 void Halo::exchange(const View<T*>& x, int width) const {
   static_assert(sizeof(T) <= sizeof(Real));

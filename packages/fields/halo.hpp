@@ -20,6 +20,9 @@ class Halo {
   const RCP<const Map>& all() const { return all_; }
   std::vector<LocalIndex> sent_nodes() const;  ///< owned ones that are ghosts of other ranks, perhaps several times
 
+  /// Of an exchange, that this rank receives. Stored data.
+  std::size_t n_messages() const;
+
   /// Takes the `width` values of each ghost, x(width * node) ..., from its owner.
   template <class T>
   void exchange(const View<T*>& x, int width) const;

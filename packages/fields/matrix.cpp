@@ -58,6 +58,14 @@ Matrix::Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const 
   numbers_ = {height, width, start_of_node, node, numbers_.value};
 }
 
+Matrix::Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain,
+               NodeRows numbers)
+    : rows_(rows),
+      columns_(columns),
+      domain_(domain),
+      import_(import_of(domain, columns)),
+      numbers_(std::move(numbers)) {}
+
 Matrix::Matrix(const RCP<const CrsMatrix>& A)
     : rows_(A->getRowMap()),
       columns_(A->getColMap()),

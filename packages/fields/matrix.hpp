@@ -86,6 +86,8 @@ class Matrix : public Operator {
   /// blocks, neither of them is more than 3, and nodes have the unknowns width * n ... of `columns`, too. Collective.
   Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain,
          const View<std::size_t*>& start, const View<LocalIndex*>& column, int height, int width);
+  /// Of these rows, on nodes as `columns` and `rows` number them. Stored data.
+  Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain, NodeRows numbers);
   /// A itself: it shares the numbers. Stored data.
   explicit Matrix(const RCP<const CrsMatrix>& A);
 

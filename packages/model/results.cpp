@@ -379,7 +379,16 @@ void Results::write_json() {
                      {"peak_bytes_all_ranks", base::sum_over_ranks(comm, here)}};
   auto& parts = json_["solver"]["parts"] = json::array();
   for (const auto& cost : model_.newton().linear().solver().solver->costs()) {
-    const auto most = base::max_over_ranks(comm, std::array<Real, 2>{cost.setup_seconds, cost.application_seconds});
+    const auto most = base::max_over_ranks(
+        comm, std::array<Real, 5>{cost.setup_seconds, cost.application_seconds, static_cast<Real>(cost.cycle_bytes),
+                                  static_cast<Real>(cost.messages), static_cast<Real>(cost.message_bytes)});
+    json of_levels = json::object();
+    if (cost.n_levels > 0)
+      of_levels = {{"levels", cost.n_levels},
+                   {"unknowns_of_last_level", cost.n_last},
+                   {"cycle_bytes_largest_rank", most[2]},
+                   {"messages_largest_rank", most[3]},
+                   {"message_bytes_largest_rank", most[4]}};
     parts.push_back({{"name", cost.name},
                      {"setups", cost.n_setups},
                      {"applications", cost.n_applications},
@@ -387,6 +396,7 @@ void Results::write_json() {
                      {"application_seconds", most[1]},
                      {"operator_complexity", cost.operator_complexity},
                      {"bytes", base::sum_over_ranks(comm, static_cast<Real>(cost.bytes))}});
+    parts.back().update(of_levels);
   }
   json_["timing"] = json::object();
   for (const auto& phase : model_.timers().phases())

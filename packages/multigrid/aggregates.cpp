@@ -117,6 +117,15 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
   return nodes;
 }
 
+void Nodes::add_smoothed(std::size_t n) {
+  const std::size_t before = free.size();
+  if (n == before) return;
+  if (before > 0) motion.resize(motion.size() / before * n, 0);
+  free.resize(n, false);
+  if (!place.empty()) place.resize(n);
+  neighbours.start.resize(n + 1, neighbours.node.size());
+}
+
 std::vector<Real> reach(const Nodes& nodes) {
   std::vector<Real> result(nodes.free.size(), std::numeric_limits<Real>::infinity());
   for (std::size_t i = 0; i < nodes.place.size(); ++i)

@@ -22,6 +22,10 @@ struct Nodes {
   int n_modes = 0;
   std::vector<std::array<Real, 3>> place;  ///< [node] m; empty: not known
   std::vector<bool> weak;  ///< [entry of the graph] a coupling to do without, besides those that are far; empty: none
+
+  /// Adds nodes until there are n: not free, so they are left to smoothing, and their couplings are none of a
+  /// neighbour. Stored data.
+  void add_smoothed(std::size_t n);
 };
 
 /// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],

@@ -9,9 +9,9 @@
 
 namespace sprekk::multigrid {
 
-/// By factors, for multigrid's last level and the rows around crack tips: those of MUMPS on the first ranks, as many as
-/// gain from it; of few unknowns, for which calls of MUMPS take longer than the work, dense ones on every rank. The
-/// graph must stay as it is.
+/// By factors, for multigrid's last level and blocks that are solved directly: those of MUMPS on the first ranks, as
+/// many as gain from it; of few unknowns, for which calls of MUMPS take longer than the work, dense ones on every rank.
+/// The graph must stay as it is.
 class DirectInverse : public fields::Operator {
  public:
   static constexpr int most_dense = 300;        ///< unknowns

@@ -24,14 +24,18 @@ constexpr Real least_coarsening = 0.8;
 /// Nodes of an aggregate of the finest level. In space a coarse node has six unknowns; nodes with few neighbours, as in
 /// tetrahedra, would make so many coarse ones that the levels below took half of the memory and time of the finest one.
 /// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Collective.
-std::size_t enough_for(const Nodes& nodes, const NodeGraph& graph) {
+std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   constexpr int modes_in_space = 6;
   constexpr std::size_t long_row = 27, enough = 36;
   constexpr GlobalIndex share = 20;
   if (nodes.n_modes != modes_in_space) return 0;
-  std::array<GlobalIndex, 2> here{0, graph.n_rows()};
-  for (LocalIndex i = 0; i < graph.n_rows(); ++i) here[0] += graph.start(i + 1) - graph.start(i) >= long_row;
-  const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
+  const auto& start = nodes.neighbours.start;
+  std::array<GlobalIndex, 2> here{};
+  for (std::size_t i = 0; i < nodes.free.size(); ++i) {
+    here[0] += start[i + 1] - start[i] + 1 >= long_row;
+    here[1] += nodes.free[i];
+  }
+  const auto all = base::sum_over_ranks(comm, here);
   return share * all[0] < all[1] ? enough : 0;
 }
 
@@ -65,10 +69,11 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     : map_(matrix->row_map()), finest_(matrix), size_(n_components), options_(options) {
   add_level(node_matrix(*matrix, size_));
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
-  degree_ = modes.is_null() ? options.degree : degree_for(flatness(nodes, *map_->getComm()), options.degree);
+  degree_ = std::max(options.degree, options.finest_degree);
+  flat_degree_ = modes.is_null() ? degree_ : degree_for(flatness(nodes, *map_->getComm()), degree_);
   while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
     const auto& A = levels_.back().A;
-    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, A.graph) : 0);
+    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, *map_->getComm()) : 0);
     Nodes coarse;
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
     auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
@@ -112,7 +117,8 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
   for (auto& level : levels_) {
     if (!level.to_coarse) continue;
     const bool finest = &level == &levels_.front();
-    level.smoother->update(level.A, finest && symmetric ? degree_ : options_.degree);
+    const int degree = symmetric ? flat_degree_ : degree_;
+    level.smoother->update(level.A, finest ? degree : options_.degree);
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);
@@ -197,6 +203,25 @@ double Multigrid::bytes() const {
   }
   return sum;
 }
+
+/// On each level exchanges for two residuals, for products of the smoother, for restriction, and for prolongation those
+/// of the next one.
+Multigrid::Traffic Multigrid::traffic() const {
+  Traffic all;
+  const auto add = [&](int times, const NodeGraph& graph, int width) {
+    const auto& halo = *graph.columns;
+    all.messages += times * static_cast<double>(halo.n_messages());
+    all.bytes += times * width * sizeof(Real) * static_cast<double>(halo.n_all() - halo.n_owned());
+  };
+  for (const auto& level : levels_) {
+    if (!level.to_coarse) continue;
+    add(2 * level.smoother->degree() + 1, level.A.graph, level.A.width);
+    add(1, level.to_coarse->prolongation().graph, level.to_coarse->prolongation().width);
+  }
+  return all;
+}
+
+GlobalIndex Multigrid::n_last() const { return n_nodes(levels_.back().A) * levels_.back().A.height; }
 
 /// Of each level: its matrix twice for residuals, its copy for the smoother, interpolation and restriction.
 double Multigrid::cycle_bytes() const {

@@ -33,12 +33,18 @@ class Multigrid : public fields::Operator {
   RCP<const Map> getRangeMap() const override { return map_; }
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override;
 
-  /// Whether cells are so flat that the smoother of the finest level has a higher degree.
-  bool flat() const { return degree_ > options_.degree; }
   /// Entries of the matrices of all levels over those of the finest.
   double operator_complexity() const { return operator_complexity_; }
   double bytes() const;        ///< that this rank has stored
   double cycle_bytes() const;  ///< of matrices that this rank reads in a V-cycle
+  /// What this rank receives in a V-cycle, without the solve on the last level.
+  struct Traffic {
+    double messages = 0, bytes = 0;
+  };
+  Traffic traffic() const;
+  int n_levels() const { return static_cast<int>(levels_.size()); }
+  /// Of the last level. Collective.
+  GlobalIndex n_last() const;
 
  private:
   struct Level {
@@ -58,7 +64,7 @@ class Multigrid : public fields::Operator {
   RCP<const Matrix> finest_;
   int size_;
   Options options_;
-  int degree_;  // of the smoother on the finest level, of a symmetric matrix
+  int degree_, flat_degree_;  // of the smoother on the finest level; of a symmetric matrix
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
   std::vector<Level> levels_;

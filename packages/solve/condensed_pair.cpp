@@ -59,7 +59,7 @@ CondensedPair::CondensedPair(const BlockOptions& options, const std::vector<Bloc
     : Preconditioner("condensation", pair[0].name),
       first_(pair[0]),
       second_(pair[1].name),
-      multigrid_(make_multigrid(options, pair[0])) {}
+      multigrid_(make_multigrid(options, {pair[0]})) {}
 
 void CondensedPair::describe(Teuchos::ParameterList& blocks) const {
   multigrid_->describe(blocks);

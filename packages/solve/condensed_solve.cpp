@@ -37,7 +37,7 @@ std::vector<Real> CondensedSolve::scales() const {
 RCP<const CrsMatrix> CondensedSolve::joined_matrix() {
   if (!matrix_) matrix_ = std::make_unique<JoinedMatrix>(joined_, blocks_);
   matrix_->update();
-  return matrix_->matrix();
+  return matrix_->matrix()->crs();
 }
 
 LinearSystem CondensedSolve::system() {

@@ -67,50 +67,13 @@ RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
   return S;
 }
 
-/// Flags also the unknowns whose rows have a column that is flagged. Collective.
-void add_neighbours(const Matrix& A, Vector& flags) {
-  Vector of_columns(A.column_map());
-  A.spread(flags, of_columns);
-  const auto numbers = A.numbers();
-  const auto column_flag = of_columns.getLocalViewHost(Tpetra::Access::ReadOnly);
-  const auto flag = flags.getLocalViewHost(Tpetra::Access::ReadWrite);
-  for (LocalIndex row = 0, n = numbers.n_rows(); row < n; ++row)
-    numbers.for_row(row, [&](LocalIndex column, std::size_t) {
-      if (column_flag(column, 0) != 0) flag(row, 0) = 1;
-    });
-}
-
-/// Flags of the unknowns of blocks that enrich the first, and of those that couple to them [r]; in flat cells, where
-/// the rows around them are hard for multigrid, of their neighbours, too. Empty, for all, of a block of order 2.
-std::vector<RCP<Vector>> smoothed_unknowns(const LinearSystem& system, bool flat) {
-  if (!system.diagonal.front().block.interpolation.is_null()) return {};
-  const int n = system.joined->n_blocks();
-  std::vector<RCP<Vector>> chosen;
-  for (int r = 0; r < n; ++r) {
-    chosen.push_back(rcp(new Vector(system.joined->map(r))));
-    chosen[r]->putScalar(r > 0 ? 1 : 0);
-  }
-  for (int s = 1; s < n; ++s) {
-    if (system.blocks[s].is_null()) continue;  // the first block's rows, the enriching one's columns
-    const auto numbers = system.blocks[s]->numbers();
-    const auto flags = chosen[0]->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < flags.extent(0); ++i)
-      if (numbers.length(static_cast<LocalIndex>(i)) > 0) flags(i, 0) = 1;
-  }
-  if (flat) add_neighbours(*system.blocks[0], *chosen[0]);
-  return chosen;
-}
-
 }  // namespace
 
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, std::shared_ptr<const JoinedRows> rows, RCP<const Operator> smoother, bool exact,
-        RCP<const Operator> order_one)
+  Cycle(const LinearSystem& system, RCP<const Operator> smoother, RCP<const Operator> order_one)
       : A_(system.joined_operator()),
-        rows_of_A_(std::move(rows)),
         smoother_(smoother),
-        exact_(exact),
         order_one_(order_one),
         P_(system.diagonal.front().block.interpolation),
         map_(system.joined->map(0)),
@@ -119,54 +82,17 @@ class Cycle : public Operator {
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
-    if (alpha == 1 && beta == 0) return cycle(b, y);
-    MultiVector x(b.getMap(), b.getNumVectors());
-    cycle(b, x);
-    y.update(alpha, x, beta);
-  }
-
-  /// x <- S b where that is exact, else 0.
-  void start(const Vector& b, Vector& x) const {
-    x.putScalar(0);
-    if (exact_) smooth(b, x);
+    MultiVector x(b.getMap(), b.getNumVectors()), z(b.getMap(), b.getNumVectors()), r(b, Teuchos::Copy);
+    smoother_->apply(b, x);
+    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    correct(r, x);
+    Tpetra::deep_copy(r, b);
+    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    smoother_->apply(r, z);  // Ifpack2 adds to nothing
+    y.update(alpha, x, alpha, z, beta);
   }
 
  private:
-  void cycle(const MultiVector& b, MultiVector& x) const {
-    x.putScalar(0);
-    if (exact_) {
-      correct(b, x);
-    } else {
-      MultiVector r(b, Teuchos::Copy);
-      smooth(b, x);
-      A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
-      correct(r, x);
-    }
-    smooth(b, x, true);
-  }
-
-  /// x += S (b - A x), of which S reads its rows only; `moved`: x is not zero.
-  void smooth(const MultiVector& b, MultiVector& x, bool moved = false) const {
-    using Policy = Kokkos::MDRangePolicy<Execution, Kokkos::Rank<2>>;
-    const auto rows = rows_of_A_->rows();
-    const auto n = static_cast<LocalIndex>(rows.extent(0)), n_vectors = static_cast<LocalIndex>(b.getNumVectors());
-    MultiVector r(smoother_->getDomainMap(), n_vectors), z(smoother_->getRangeMap(), n_vectors);
-    {
-      const auto all = b.getLocalViewDevice(Tpetra::Access::ReadOnly);
-      const auto some = r.getLocalViewDevice(Tpetra::Access::OverwriteAll);
-      Kokkos::parallel_for(
-          "restrict", Policy({0, 0}, {n, n_vectors}),
-          KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { some(i, v) = all(rows(i), v); });
-    }
-    if (moved) rows_of_A_->subtract_product(x, r);
-    smoother_->apply(r, z);
-    const auto some = z.getLocalViewDevice(Tpetra::Access::ReadOnly);
-    const auto all = x.getLocalViewDevice(Tpetra::Access::ReadWrite);
-    Kokkos::parallel_for(
-        "add", Policy({0, 0}, {n, n_vectors}),
-        KOKKOS_LAMBDA(LocalIndex i, LocalIndex v) { all(rows(i), v) += some(i, v); });
-  }
-
   /// x += P K P^T r in the first block; the system has scale^2 times the matrix that K is about the inverse of.
   void correct(const MultiVector& r, MultiVector& x) const {
     const auto from = r.offsetView(map_, 0);
@@ -183,24 +109,20 @@ class Cycle : public Operator {
   }
 
   RCP<const Operator> A_;
-  std::shared_ptr<const JoinedRows> rows_of_A_;  // those of S
   RCP<const Operator> smoother_;
-  bool exact_;  // the smoother leaves no residual in its rows
   RCP<const Operator> order_one_;
   RCP<const CrsMatrix> P_;
   RCP<const Map> map_;
   Real scale_;
 };
 
-bool have_fine_level(const std::vector<Block>& blocks) {
+bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
-  const bool enriched =
-      std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) { return block.enriches == first.name; });
-  return !first.coordinates.is_null() && enriched && (blocks.size() > 1 || !first.interpolation.is_null());
+  return !first.interpolation.is_null() || (blocks.size() > 1 && takes_muelu(options, first));
 }
 
 FineLevel::FineLevel(const BlockOptions& options, const std::vector<Block>& blocks)
-    : Preconditioner("fine level", blocks.front().name), order_one_(make_multigrid(options, blocks.front())) {
+    : Preconditioner("fine level", blocks.front().name), order_one_(make_multigrid(options, {blocks.front()})) {
   for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
 }
 
@@ -238,32 +160,11 @@ void FineLevel::prepare(const LinearSystem& system, SolverCost&) {
 }
 
 bool FineLevel::renew(const LinearSystem& system) {
-  if (!smoothed_) {
-    const auto chosen = smoothed_unknowns(system, order_one_->is_flat());
-    smoothed_ = std::make_shared<JoinedMatrix>(system.joined, system.blocks, chosen);
-    rows_ = std::make_shared<JoinedRows>(system.joined, system.blocks, smoothed_->rows());
-  }
-  smoothed_->update();
-  const auto& P = system.diagonal.front().block.interpolation;
-  RCP<const Operator> smoother;
-  if (P.is_null()) {
-    const int most_ranks = system.reproducible ? 1 : system.joined->map()->getComm()->getSize();
-    if (direct_.is_null())
-      direct_ = rcp(new multigrid::DirectInverse(smoothed_->matrix(), "around crack tips", most_ranks));
-    direct_->setup(system.symmetric);
-    smoother = direct_;
-  } else {
-    smoother = gauss_seidel(smoothed_->matrix());
-  }
-  cycle_ = rcp(new Cycle(system, rows_, smoother, P.is_null(), order_one_->inverse()));
+  matrix_.update(system);
+  cycle_ = rcp(new Cycle(system, gauss_seidel(matrix_.crs()), order_one_->inverse()));
   return true;
 }
 
 RCP<const Operator> FineLevel::made() const { return cycle_; }
-
-bool FineLevel::start(const Vector& b, Vector& x) const {
-  cycle_->start(b, x);
-  return true;
-}
 
 }  // namespace sprekk::solve

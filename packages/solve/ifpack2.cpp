@@ -69,10 +69,10 @@ class Ifpack2Method : public Preconditioner {
  private:
   void prepare(const LinearSystem& system, SolverCost&) override {
     matrix_.update(system);
-    SPREKK_CHECK(type_ != "Gauss-Seidel" || !has_zero_on_diagonal(*matrix_.matrix()),
+    SPREKK_CHECK(type_ != "Gauss-Seidel" || !has_zero_on_diagonal(*matrix_.crs()),
                  "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
     if (made_.is_null()) {
-      made_ = create(method_, parameters_, matrix_.matrix());
+      made_ = create(method_, parameters_, matrix_.crs());
       made_->initialize();
     }
     made_->compute();

@@ -258,8 +258,7 @@ class IterativeSolver : public LinearSolver {
   /// singular. Then it solves for what is left, as long as that helps.
   void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
     const bool begins = report.iterations == 0;
-    const bool at_zero = begins && !preconditioner_->start(b, x);
-    report.residual = at_zero ? 1 : residual_of(b, x);
+    report.residual = begins ? 1 : residual_of(b, x);
     bool ended = report.residual > tolerance;
     if (begins && ended) {
       ended = krylov(b, x, tolerance, most, report.iterations);

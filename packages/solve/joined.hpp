@@ -46,56 +46,30 @@ using Blocks = std::vector<RCP<const fields::Matrix>>;
 /// S A S without storing it; of a single block, A itself.
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks);
 
-/// Some rows of S A S, read where they are stored. All members are collective.
-class JoinedRows {
- public:
-  /// `rows`: places of owned unknowns in joined vectors, ascending.
-  JoinedRows(std::shared_ptr<const Joined> joined, Blocks blocks, const View<LocalIndex*>& rows);
-
-  const View<LocalIndex*>& rows() const { return rows_; }
-
-  /// y -= (S A S x) in these rows; y [row].
-  void subtract_product(const fields::MultiVector& x, fields::MultiVector& y) const;
-
- private:
-  std::shared_ptr<const Joined> joined_;
-  Blocks blocks_;
-  View<LocalIndex*> rows_;
-  std::vector<LocalIndex> first_row_;                      // [r], and one more: which rows are those of a block
-  mutable std::vector<RCP<fields::MultiVector>> columns_;  // [r * n + s] x with ghosts; null: there are none
-};
-
-/// S A S as one matrix, or the part of it that rows and columns of chosen unknowns make; of a single block, all chosen,
-/// A itself. Collective.
+/// S A S as one matrix, of nodes where all blocks have nodes of one size; of a single block, A itself. Collective.
 class JoinedMatrix {
  public:
-  /// `chosen` [r](owned unknown of the block): 1 for those to take, else 0; empty: all.
-  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks, std::vector<RCP<fields::Vector>> chosen = {});
+  JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks);
 
   /// Takes over the present values of the blocks, and the scales.
   void update();
 
-  const RCP<const fields::CrsMatrix>& matrix() const { return matrix_; }
-  /// The place of each row in joined vectors on this rank. [owned row]
-  const View<LocalIndex*>& rows() const { return rows_; }
+  const RCP<const fields::Matrix>& matrix() const { return matrix_; }
 
  private:
-  void create(const std::vector<RCP<fields::Vector>>& chosen);
-  using Places = std::vector<std::vector<LocalIndex>>;  // [r * n + s][column of the block]
-  Places number_columns(const std::vector<RCP<fields::Vector>>& chosen, const fields::Map& domain,
-                        RCP<const fields::Map>& columns) const;
-  std::vector<LocalIndex> find_runs(const std::vector<LocalIndex>& rows, const Places& places,
-                                    std::vector<std::size_t>& start);
+  using Nodes = std::vector<std::vector<LocalIndex>>;  // [r * n + s][column node of the block] that of the matrix
+  Nodes number_columns(RCP<const fields::Map>& columns) const;
+  void find_runs(const Nodes& nodes);
 
   std::shared_ptr<const Joined> joined_;
   Blocks blocks_;
-  struct Runs {  // of numbers that follow one another in the block and in the matrix
-    View<LocalIndex*> from, to, length;
+  int size_ = 1;  // of nodes
+  struct Runs {   // of entries that follow one another in a row node of the block and of the matrix
+    View<LocalIndex*> row, from, to, length;
   };
-  std::vector<Runs> runs_;  // [r * n + s]
-  View<LocalIndex*> rows_;
-  RCP<fields::CrsMatrix> own_;  // null for A itself
-  RCP<const fields::CrsMatrix> matrix_;
+  std::vector<Runs> runs_;    // [r * n + s]
+  fields::NodeRows numbers_;  // of the matrix
+  RCP<const fields::Matrix> matrix_;
 };
 
 }  // namespace sprekk::solve

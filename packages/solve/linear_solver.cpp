@@ -50,8 +50,8 @@ void LinearSolverOptions::describe(base::Section& section) {
   section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
   section.entry(
       reproducible, "reproducible", "-",
-      "factor on rank 0 alone, with the iterative solver around crack tips; on several, MUMPS adds what comes "
-      "first, and the last bits vary; absent: true if checkpoints are asked for");
+      "factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary; absent: true if "
+      "checkpoints are asked for");
   section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
   section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
   section.hint({"MueLu"},

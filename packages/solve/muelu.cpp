@@ -121,8 +121,7 @@ class MueLuMultigrid : public Preconditioner {
 
   void prepare(const LinearSystem& system, SolverCost& cost) override {
     matrix_.update(system);
-    // MueLu takes matrices that may change; only RaisedDiagonal changes this one
-    const auto matrix = Teuchos::rcp_const_cast<CrsMatrix>(matrix_.matrix());
+    const auto matrix = matrix_.crs();  // which only RaisedDiagonal changes
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
     // of what a flow carries the values decide which unknowns are strongly coupled, those of an earlier flow do not

@@ -17,14 +17,20 @@ using fields::Operator;
 using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
-/// Multigrid on blocks of nodes.
+/// The least degree of Chebyshev's polynomial where enriching functions are smoothed with the others.
+constexpr int degree_with_enrichment = 6;
+
+/// Multigrid on nodes: those of a block, and of blocks that enrich it, which take part in smoothing on the finest
+/// level.
 class NodeMultigrid : public Preconditioner {
  public:
-  NodeMultigrid(const multigrid::Options& options, const std::string& block)
-      : Preconditioner("multigrid", block), options_(options) {}
+  NodeMultigrid(const multigrid::Options& options, const std::vector<Block>& blocks)
+      : Preconditioner("multigrid", blocks.front().name), options_(options) {
+    for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
+    if (!enriching_.empty()) options_.finest_degree = degree_with_enrichment;
+  }
 
   bool has_cycles() const override { return true; }
-  bool is_flat() const override { return !multigrid_.is_null() && multigrid_->flat(); }
   int coarse_size() const override { return options_.coarse_size; }
   void describe(ParameterList& blocks) const override {
     auto& list = blocks.sublist(block());
@@ -32,30 +38,42 @@ class NodeMultigrid : public Preconditioner {
     list.sublist("multigrid")
         .set("degree", options_.degree, "of Chebyshev's polynomial")
         .set("coarsest level", options_.coarse_size, "unknowns at most");
+    for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
   }
 
  private:
   void prepare(const LinearSystem& system, SolverCost& cost) override {
-    const auto& diagonal = system.diagonal.front();
-    if (multigrid_.is_null()) {
-      const int n = diagonal.block.n_components;
-      const auto modes = diagonal.block.near_null_space.make();
-      const auto& places = diagonal.block.coordinates;
-      multigrid::Nodes nodes;
-      const auto look = [&](const RCP<const Matrix>& bulk) {
-        nodes = multigrid::nodes_of(multigrid::node_matrix(*bulk, n), modes, places);
-      };
-      diagonal.bulk ? diagonal.bulk(look) : look(diagonal.matrix);
-      multigrid_ = rcp(new Multigrid(diagonal.matrix, std::move(nodes), n, modes, options_));
-    }
-    multigrid_->setup(diagonal.matrix, diagonal.symmetric, diagonal.careful);
+    const auto& first = system.diagonal.front();
+    matrix_.update(system);
+    if (multigrid_.is_null()) multigrid_ = made_of(system);
+    multigrid_->setup(matrix_.matrix(), first.symmetric, first.careful);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();
     cost.cycle_bytes = multigrid_->cycle_bytes();
+    cost.n_levels = multigrid_->n_levels();
+    cost.n_last = multigrid_->n_last();
+    const auto traffic = multigrid_->traffic();
+    cost.messages = traffic.messages;
+    cost.message_bytes = traffic.bytes;
   }
   RCP<const Operator> made() const override { return multigrid_; }
 
+  RCP<Multigrid> made_of(const LinearSystem& system) const {
+    const auto& first = system.diagonal.front();
+    const int n = first.block.n_components;
+    const auto modes = first.block.near_null_space.make();
+    multigrid::Nodes nodes;
+    const auto look = [&](const RCP<const Matrix>& bulk) {
+      nodes = multigrid::nodes_of(multigrid::node_matrix(*bulk, n), modes, first.block.coordinates);
+    };
+    first.bulk ? first.bulk(look) : look(first.matrix);
+    nodes.add_smoothed(base::n_local_elements(*system.joined->map()) / n);
+    return rcp(new Multigrid(matrix_.matrix(), std::move(nodes), n, modes, options_));
+  }
+
   multigrid::Options options_;
+  std::vector<std::string> enriching_;  // blocks
+  WholeMatrix matrix_;
   RCP<Multigrid> multigrid_;
 };
 
@@ -70,7 +88,7 @@ class Direct : public Preconditioner {
     matrix_.update(system);
     const int n_ranks = system.joined->map()->getComm()->getSize();
     if (direct_.is_null())
-      direct_ = rcp(new multigrid::DirectInverse(matrix_.matrix(), "its matrix", system.reproducible ? 1 : n_ranks));
+      direct_ = rcp(new multigrid::DirectInverse(matrix_.crs(), "its matrix", system.reproducible ? 1 : n_ranks));
     direct_->setup(system.symmetric);
   }
   RCP<const Operator> made() const override { return direct_; }
@@ -155,15 +173,22 @@ bool is_condensed_pair(const std::vector<Block>& blocks) {
   return blocks.size() == 2 && blocks[1].condensed_into == blocks[0].name && !blocks[0].coordinates.is_null();
 }
 
+/// Whether all blocks but the first enrich it.
+bool enrich_first(const std::vector<Block>& blocks) {
+  return std::all_of(blocks.begin() + 1, blocks.end(),
+                     [&](const Block& block) { return block.enriches == blocks.front().name; });
+}
+
 std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
   const auto& options = all.of(first.name);
   if (options.type == "direct") return make_direct(blocks);
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
-  if (have_fine_level(blocks)) return std::make_unique<FineLevel>(options, blocks);
+  if (!first.coordinates.is_null() && enrich_first(blocks))
+    return needs_fine_level(options, blocks) ? std::make_unique<FineLevel>(options, blocks)
+                                             : make_multigrid(options, blocks);
   if (is_condensed_pair(blocks)) return std::make_unique<CondensedPair>(options, blocks);
-  if (blocks.size() == 1 && !first.coordinates.is_null()) return make_multigrid(options, first);
   if (options.type == "MueLu") return make_muelu(options.muelu, blocks);
   if (options.type == "multigrid")
     fail(first.name, "type",
@@ -205,7 +230,7 @@ LinearSystem alone(const DiagonalBlock& block) {
 void WholeMatrix::update(const LinearSystem& system) {
   SPREKK_CHECK(!system.blocks.front().is_null(), "it has no matrix of its own; solve directly");
   if (system.joined->n_blocks() == 1) {
-    matrix_ = system.blocks.front()->crs();
+    matrix_ = system.blocks.front();
     return;
   }
   if (!joined_) joined_ = std::make_unique<JoinedMatrix>(system.joined, system.blocks);
@@ -227,16 +252,21 @@ std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions&
   return std::make_unique<Sweep>(options.sweep, blocks, groups, std::move(parts));
 }
 
-std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const Block& block) {
+bool takes_muelu(const BlockOptions& options, const Block& block) {
   const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
   const bool own = Multigrid::can_solve(block.n_components, n_modes),
              other = !own || (block.advected && !options.multigrid);
-  if (options.type == "MueLu" || (options.type == "auto" && other)) return make_muelu(options.muelu, {block});
+  if (options.type == "MueLu" || (options.type == "auto" && other)) return true;
   if (!own)
     fail(block.name, "type",
          fmt::format("multigrid is not for {} unknowns of a node and {} motions; MueLu is", block.n_components,
                      n_modes));
-  return std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), block.name);
+  return false;
+}
+
+std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks) {
+  if (takes_muelu(options, blocks.front())) return make_muelu(options.muelu, blocks);
+  return std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), blocks);
 }
 
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {

@@ -21,8 +21,6 @@ class Preconditioner {
   void setup(const LinearSystem& system, bool keeps = false);
   /// About (S A S)^-1 of the last set-up, S the scales of its blocks. The object may change at every set-up.
   RCP<const fields::Operator> inverse() const { return counted(made()); }
-  /// x <- where Krylov's method has to start from; false: from 0, which x is.
-  virtual bool start(const Vector& b, Vector& x) const { return false; }
 
   /// Whether it is symmetric for symmetric systems.
   virtual bool is_symmetric() const { return true; }
@@ -30,8 +28,6 @@ class Preconditioner {
   virtual bool can_be_kept() const { return true; }
   /// Whether it is cycles of Sprekk's own multigrid, which can be tried at a set-up.
   virtual bool has_cycles() const { return false; }
-  /// Whether cells are so flat that smoothing has to be better than elsewhere. Known after the first set-up.
-  virtual bool is_flat() const { return false; }
   /// As many unknowns or fewer are for a direct solver; 0: none.
   virtual int coarse_size() const { return 0; }
   /// Its own and those of what it uses.
@@ -59,9 +55,10 @@ class Preconditioner {
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
                                                     const std::vector<Block>& blocks);
 
-/// Multigrid on what a block's coordinates and near null space belong to: Sprekk's own, or MueLu's where it is asked
-/// for or there is no other.
-std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const Block& block);
+/// Multigrid on what the first block's coordinates and near null space belong to, and on blocks that enrich it:
+/// Sprekk's own, or MueLu's where it is asked for or there is no other; MueLu's is for one block.
+bool takes_muelu(const BlockOptions& options, const Block& first);
+std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Methods for the matrix of one block or of several joined.
 std::unique_ptr<Preconditioner> make_muelu(const Teuchos::ParameterList& given, const std::vector<Block>& blocks);
@@ -74,11 +71,12 @@ class WholeMatrix {
  public:
   /// Takes over the present values. Throws where there is no matrix. Collective.
   void update(const LinearSystem& system);
-  const RCP<const CrsMatrix>& matrix() const { return matrix_; }
+  const RCP<const Matrix>& matrix() const { return matrix_; }
+  RCP<CrsMatrix> crs() const { return matrix_->crs(); }
 
  private:
   std::unique_ptr<JoinedMatrix> joined_;  // of several blocks
-  RCP<const CrsMatrix> matrix_;
+  RCP<const Matrix> matrix_;
 };
 
 /// Of the text of a library's exception: what went wrong, without the place in its sources.

@@ -49,7 +49,6 @@ class Measured:
                 ("assembly of the bulk", assembly["count"], assembly["seconds"], None, None, "assembly_spmv"),
                 ("structure of the matrices", None, phases["structure of the matrices"]["seconds"], None, None, None),
                 ("V-cycle", None, cycle["seconds"], self.share(cycle["bytes"], cycle["seconds"]), None, None),
-                ("V-cycle and crack tips", None, found["medians"]["preconditioner"], None, None, None),
                 ("elimination", None, self.first["local elimination"]["seconds"], None, None, None),
                 ("first set-up", None, self.first_setup, None, None, None),
                 ("elimination and set-up, kept", None, found["elimination and set-up"], None, None, None),

@@ -16,6 +16,7 @@ import numpy as np  # noqa: E402
 import balance  # noqa: E402
 import contact  # noqa: E402
 import linear  # noqa: E402
+import scale  # noqa: E402
 
 TIME_LIMIT = 3600  # seconds of the processor, of one run
 STEPS = 11           # of the scenes: one compresses, ten shear
@@ -150,8 +151,13 @@ def main(arguments):
     parser = linear.parser("networks", __doc__)
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="also run on N ranks, and compare (2)")
+    parser.add_argument("--scale", action="store_true", help="instead: networks of 50 to 2000 fractures, what an unknown costs, beside blocks")
+    parser.add_argument("--seed", type=int, default=1, help="of --scale")
     options = parser.parse_args(arguments)
     options.output = options.output.resolve()
+    if options.scale:
+        options.output.mkdir(parents=True, exist_ok=True)
+        return scale.measure(options, lambda of, sets: made(options, Network(of.name, of.file, sets)), options.seed)
     chosen = linear.matching(options, [n for n in networks() if n.quick or not options.quick], lambda network: network.name)
     options.output.mkdir(parents=True, exist_ok=True)
     table = linear.Table(COLUMNS, width=24)

@@ -345,11 +345,11 @@ class Directions(unittest.TestCase):
 
 
 class Random(unittest.TestCase):
-    def random(self, domain, **entries):
+    def random(self, domain, again={}, **entries):
         from domain import Body
         from generator import at_random
         given = {"number": 4000, "seed": 3, "shortest": 1.0, "longest": 10.0, "exponent": 2.5, "strike": 30.0, "dip": 60.0, "concentration": 20.0, "corners": 8}
-        return np.array(at_random({**given, **entries}, Body("domain", domain, "boundary")))
+        return np.array(at_random({**given, **entries}, Body("domain", domain, "boundary"), again))
 
     def test_lengths_follow_the_power_law(self):
         x = self.random(SQUARE)
@@ -392,6 +392,12 @@ class Random(unittest.TestCase):
     def test_the_seed_fixes_them(self):
         self.assertTrue((self.random(CUBE, number=5) == self.random(CUBE, number=5)).all())
         self.assertFalse((self.random(CUBE, number=5) == self.random(CUBE, number=5, seed=4)).any())
+
+    def test_one_that_is_drawn_again_leaves_the_others(self):
+        first, again, twice = (self.random(CUBE, number=5, again=again) for again in ({}, {2: 1}, {2: 2}))
+        same = [(other == first).all(axis=(1, 2)).tolist() for other in (again, twice)]
+        self.assertEqual(same, [[True, True, False, True, True]] * 2)
+        self.assertFalse((again[2] == twice[2]).any())
 
 
 if __name__ == "__main__":

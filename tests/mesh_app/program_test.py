@@ -325,6 +325,18 @@ class Runs(MeshTest):
             ratio = sum(sizes.expected_cells().values()) / len(make_mesh(plan, sizes).cells)
             self.assertTrue(0.4 < ratio < 2.5, ratio)
 
+    def test_fractures_at_random_that_cannot_be_meshed_are_drawn_again(self):
+        """The others stay where they are; those of a file are no one's to draw."""
+        random = {"number": 30, "seed": 1, "shortest": 0.1, "longest": 0.5}
+        dense = {"tolerance": 1e-6, "minimum_distance": 0.003}
+        self.mesh(self.scene(fractures={"set": {"random": random}}, **dense))
+        told = [line for line in self.report()["repairs"] if "drawn again" in line]
+        self.assertGreater(len(told), 0)
+        self.assertEqual(self.report()["sets"]["set"]["fractures"], 30)
+        self.mesh(self.scene(fractures={"set": {"random": {**random, "number": 300}}}, **dense), expect=1)
+        self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.501,0.8,0.501")
+        self.assertIn("apart", self.mesh(self.scene(fractures={"set": {"file": "net.csv", "random": random}}, **dense), expect=1))
+
     def test_report(self):
         self.mesh(self.simple())
         report, info = self.report(), self.call("mesh-info", "net.msh", "--fractures", "set")[0]

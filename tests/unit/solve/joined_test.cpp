@@ -1,10 +1,10 @@
-// Blocks as one: the operator, the matrix, and a matrix of chosen unknowns all say the same.
+// Blocks as one: the operator and the matrix say the same.
 #include "solve/joined.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -13,36 +13,48 @@ namespace {
 
 using fields::CrsMatrix;
 using fields::Map;
-using fields::MultiVector;
 using fields::Vector;
 using fields::wrapped;
 
-/// Two blocks of 9 and 4 unknowns per rank that couple, within and across ranks.
+/// Two blocks of 9 and 4 unknowns per rank, or others, that couple, within and across ranks; in nodes of one size.
 struct Pair {
-  Pair() {
+  explicit Pair(std::array<GlobalIndex, 2> n_unknowns = {9, 4}, int size = 1) {
     const auto comm = Tpetra::getDefaultComm();
-    const GlobalIndex ranks = comm->getSize();
-    maps = {rcp(new Map(9 * ranks, 0, comm)), rcp(new Map(4 * ranks, 0, comm))};
+    for (const GlobalIndex n : n_unknowns) maps.push_back(rcp(new Map(n * comm->getSize(), 0, comm)));
     for (int r = 0; r < 2; ++r)
-      for (int s = 0; s < 2; ++s) blocks.push_back(block(r, s));
+      for (int s = 0; s < 2; ++s)
+        blocks.push_back(size > 1 ? in_nodes(*block(r, s, size), size) : wrapped(block(r, s, 1)));
     joined = std::make_shared<solve::Joined>(maps);
     joined->set_scales({2, 0.25});
   }
 
-  RCP<const fields::Matrix> block(int r, int s) const {
-    const auto matrix = rcp(new CrsMatrix(maps[r], 9));
-    const GlobalIndex n = maps[s]->getGlobalNumElements();
+  RCP<const CrsMatrix> block(int r, int s, int size) const {
+    const auto matrix = rcp(new CrsMatrix(maps[r], 9 * size));
+    const GlobalIndex n = maps[s]->getGlobalNumElements() / size;
     for (std::size_t i = 0; i < base::n_local_elements(*maps[r]); ++i) {
-      const GlobalIndex row = maps[r]->getGlobalElement(i);
-      const GlobalIndex reach = r == 0 && s == 0 ? 4 : 1;  // rows of nine entries, or of three
-      for (GlobalIndex k = -reach; k <= reach; ++k) {
-        const GlobalIndex column = (row + (reach > 1 ? 1 : 3) * k + 3 * n) % n;
-        const Real value = std::cos(1.0 + row + 7 * column + 100 * r + 1000 * s);
-        matrix->insertGlobalValues(row, 1, &value, &column);
-      }
+      const GlobalIndex unknown = maps[r]->getGlobalElement(i), row = unknown / size;
+      const GlobalIndex reach = size == 1 && r == 0 && s == 0 ? 4 : 1;  // rows of nine entries, or of three nodes
+      for (GlobalIndex k = -reach; k <= reach; ++k)
+        for (int c = 0; c < size; ++c) {
+          const GlobalIndex column = (row + (reach > 1 || size > 1 ? 1 : 3) * k + 3 * n) % n * size + c;
+          const Real value = std::cos(1.0 + unknown + 7 * column + 100 * r + 1000 * s);
+          matrix->insertGlobalValues(unknown, 1, &value, &column);
+        }
     }
     matrix->fillComplete(maps[s], maps[r]);
-    return wrapped(matrix);
+    return matrix;
+  }
+
+  static RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, int size) {
+    const auto local = A.getLocalMatrixHost();
+    const View<std::size_t*> start("start", local.numRows() + 1);
+    const View<LocalIndex*> column("column", local.nnz());
+    Kokkos::deep_copy(start, local.graph.row_map);
+    Kokkos::deep_copy(column, local.graph.entries);
+    const auto matrix =
+        rcp(new fields::Matrix(A.getRowMap(), A.getColMap(), A.getDomainMap(), start, column, size, size));
+    Kokkos::deep_copy(matrix->numbers().value, local.values);
+    return matrix;
   }
 
   std::vector<RCP<const Map>> maps;
@@ -86,55 +98,21 @@ TEST(Joined, MatrixIsTheOperator) {
   EXPECT_LT(s_as.normInf(), 1e-14);
 }
 
-TEST(Joined, ChosenRowsAndColumnsAreThoseOfTheWhole) {
-  const Pair pair;
-  std::vector<RCP<Vector>> chosen;
-  for (const auto& map : pair.maps) {
-    chosen.push_back(rcp(new Vector(map)));
-    for (std::size_t i = 0; i < base::n_local_elements(*map); ++i)
-      chosen.back()->replaceLocalValue(i, map->getGlobalElement(i) % 3 != 1);
-  }
-  solve::JoinedMatrix part(pair.joined, pair.blocks, chosen);
-  part.update();
+/// In blocks of 3 x 3, its rows are those of the operator, too; each node has one index.
+TEST(Joined, OfNodesAlikeIsAMatrixOfNodes) {
+  const Pair pair({9, 6}, 3);
+  ASSERT_EQ(pair.blocks[1]->numbers().width, 3);
+  solve::JoinedMatrix matrix(pair.joined, pair.blocks);
+  matrix.update();
+  const auto numbers = matrix.matrix()->numbers();
+  EXPECT_EQ(numbers.height, 3);
+  EXPECT_EQ(numbers.value.extent(0), 9 * numbers.column.extent(0));
+  Vector x(pair.joined->map());
+  for (std::size_t i = 0; i < x.getLocalLength(); ++i)
+    x.replaceLocalValue(i, std::sin(1 + x.getMap()->getGlobalElement(i)));
   const auto whole = joined_operator(pair.joined, pair.blocks);
-  const auto rows = part.rows();
-  ASSERT_LT(rows.extent(0), base::n_local_elements(*pair.joined->map()));
-  Vector x(pair.joined->map()), y(pair.joined->map());
-  Vector x_part(part.matrix()->getDomainMap()), y_part(part.matrix()->getRangeMap());
-  for (std::size_t i = 0; i < rows.extent(0); ++i) {
-    const Real value = std::sin(1 + x.getMap()->getGlobalElement(rows(i)));
-    x.replaceLocalValue(rows(i), value);
-    x_part.replaceLocalValue(i, value);
-  }
-  whole->apply(x, y);
-  part.matrix()->apply(x_part, y_part);
-  const auto all = y.getLocalViewHost(Tpetra::Access::ReadOnly),
-             some = y_part.getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (std::size_t i = 0; i < rows.extent(0); ++i) EXPECT_NEAR(some(i, 0), all(rows(i), 0), 1e-14);
-}
-
-/// In rows of both blocks, which also name columns of other ranks.
-TEST(Joined, ChosenRowsHaveTheSumsOfTheWhole) {
-  const Pair pair;
-  std::vector<LocalIndex> chosen = {0, 1, 8, 10, 12};
-  const View<LocalIndex*> rows("rows", chosen.size());
-  std::copy(chosen.begin(), chosen.end(), rows.data());
-  const solve::JoinedRows some(pair.joined, pair.blocks, rows);
-  const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  const auto map = rcp(new Map(invalid, chosen.size(), 0, pair.joined->map()->getComm()));
-  for (const std::size_t n_vectors : {1, 2}) {
-    MultiVector x(pair.joined->map(), n_vectors), y(pair.joined->map(), n_vectors), part(map, n_vectors);
-    for (std::size_t v = 0; v < n_vectors; ++v)
-      for (std::size_t i = 0; i < x.getLocalLength(); ++i)
-        x.replaceLocalValue(i, v, std::sin(1 + v + x.getMap()->getGlobalElement(i)));
-    part.putScalar(3);
-    joined_operator(pair.joined, pair.blocks)->apply(x, y);
-    some.subtract_product(x, part);
-    const auto all = y.getLocalViewHost(Tpetra::Access::ReadOnly),
-               of_rows = part.getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (std::size_t v = 0; v < n_vectors; ++v)
-      for (std::size_t i = 0; i < chosen.size(); ++i) EXPECT_NEAR(of_rows(i, v), 3 - all(chosen[i], v), 1e-14);
-  }
+  EXPECT_LT(apply_both_and_compare(*matrix.matrix(), *whole, x), 1e-13);
+  EXPECT_LT(apply_both_and_compare(*matrix.matrix()->crs(), *whole, x), 1e-13);
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+"""Networks at random beside blocks of equal size: what an unknown costs where crack tips are everywhere."""
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+import krylov
+import linear
+
+STEPS = 4     # of the scene: one compresses, the others shear
+AS_DRAWN = {3: (300, 20), 2: (100, 10)}  # fractures and side of the domain of the scenes
+SCENES = {3: "random_3d_300.xml", 2: "random_2d_100.xml"}
+SETS = {3: ("steep", "flat"), 2: ("main", "cross")}
+FLOW = ("Materials.granite.type=elastic", "Materials.granite.Young's modulus=50 GPa", "Materials.granite.Poisson's ratio=0.25",
+        "Materials.granite.permeability={1e-17}", "Materials.granite.porosity=0.01", "Materials.granite.Biot coefficient=0.7",
+        "Materials.joint.initial aperture=0.1 mm", "Flow.compressibility=4.5e-10", "Flow.initial pressure=0",
+        "Boundary conditions.inlet.boundary=north", "Boundary conditions.inlet.pressure=1e6",
+        "Boundary conditions.outlet.boundary=south", "Boundary conditions.outlet.pressure=0")
+BOUNDS = {"krylov_max": 30, "newton_median": 6, "newton_max": 12, "seconds_over_blocks": 1.5, "bytes_over_blocks": 1.4, "exponent": 1.1}
+QUICK_BOUNDS = {name: BOUNDS[name] for name in ("krylov_max", "newton_median", "newton_max")}
+COLUMNS = {"scene": "", "fractures": "d", "unknowns": "d", "of tips": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".3g", "most": "d",
+           "cuts": "d", "solves": "d", "mean": ".1f", "max": ".4g", "residual": ".0e", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f",
+           "us": ".1f", "kB": ".1f"}
+
+
+@dataclass
+class Scale:
+    """A network of so many fractures as dense as that of its scene."""
+    fractures: int
+    dim: int
+    flow: bool = False
+    quick: bool = False
+
+    @property
+    def name(self):
+        return f"{self.fractures} fractures {self.dim}D{', flow' if self.flow else ''}"
+
+    @property
+    def file(self):
+        return SCENES[self.dim]
+
+    def sets(self, seed):
+        n, side = AS_DRAWN[self.dim]
+        wider = (self.fractures / n) ** (1 / self.dim)
+        corner = ", ".join([f"{side * wider:.6g}"] * self.dim)
+        first = round(0.6 * self.fractures)
+        numbers = [f"Mesh file.network.fractures.{name}.random.{entry}={value}" for name, number, own in
+                   zip(SETS[self.dim], (first, self.fractures - first), (seed, seed + 1)) for entry, value in (("number", number), ("seed", own))]
+        moved = [f"Tables.{table}.values={{{values}}}" for table, values in
+                 (("settlement", ", ".join(f"{x * wider:.6g}" for x in (0, 4e-4 * side, 4e-4 * side))),
+                  ("shear", ", ".join(f"{x * wider:.6g}" for x in (0, 0, 8e-4 * side))))]
+        return (f"Mesh file.network.domain.upper corner={{{corner}}}", *numbers, *moved)
+
+
+def scales():
+    yield Scale(50, 3, quick=True)
+    yield Scale(300, 3)
+    yield Scale(1000, 3)
+    yield Scale(50, 3, flow=True)
+    yield Scale(2000, 2)
+    yield Scale(2000, 2, flow=True)
+
+
+@dataclass
+class Row:
+    name: str
+    fractures: int
+    run: linear.Run
+
+    @property
+    def newton(self):
+        return [step["newton_iterations"] for step in self.run.steps]
+
+    @property
+    def tips(self):
+        fields = self.run.results.get("blocks", {}).get("fields", [])
+        return sum(f["unknowns"] for f in fields if f["name"] == "tip displacement")
+
+    @property
+    def seconds(self):
+        """Of a Newton iteration."""
+        return sum(self.run.seconds(what) for what in linear.TIMERS) / max(1, sum(self.newton))
+
+    @property
+    def cost(self):
+        """(seconds of a Newton iteration, bytes) per displacement unknown."""
+        n = max(1, self.run.unknowns)
+        return self.seconds / n, self.run.bytes[0] / n
+
+    def values(self):
+        run, (seconds, size) = self.run, self.cost
+        return [self.name, self.fractures, run.unknowns, self.tips, *(run.fraction(state) for state in linear.STATES), float(np.median(self.newton)),
+                max(self.newton), run.cuts, len(run.krylov), run.mean, run.most_used, run.residual,
+                *(run.seconds(what) for what in linear.TIMERS), 1e6 * seconds, size / 1e3]
+
+
+def blocks(options, unknowns):
+    """Tetrahedra of perf krylov, in all states, with about as many unknowns."""
+    edge = round((unknowns / 3) ** (1 / 3)) - 1
+    edge = 6 * max(2, round(edge / 6))  # so that cells end at the fractures
+    run = linear.run(options, (*linear.cells(edge), "Mesh.cell=tetrahedron", *krylov.STATES["mixed"]), f"blocks_{edge}")
+    return Row(f"blocks, {edge} cells", 9, run)
+
+
+def measure(options, made, seed):
+    """Prints the table and the last line; returns the exit status. `made` makes the mesh of a network."""
+    chosen = linear.matching(options, [s for s in scales() if s.quick or not options.quick], lambda scale: scale.name)
+    table, failed, networks, beside = linear.Table(COLUMNS, 26), [], [], {}
+
+    def show(row):
+        if row.run.failure:
+            failed.append(f"failed: {row.name}: {row.run.failure}")
+        if row.run.steps:
+            table.add(row.values(), failed[-1:] if row.run.failure else ())
+
+    for scale in chosen:
+        mesh, fractures = made(scale, scale.sets(seed))
+        entries = (*scale.sets(seed), f"Mesh file.path={mesh}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *(FLOW if scale.flow else ()))
+        row = Row(scale.name, fractures, linear.run(options, entries, "run_" + scale.name.replace(" ", "_").replace(",", ""), scene=f"networks/{scale.file}"))
+        show(row)
+        networks.append((scale, row))
+        if scale.dim == 3 and not scale.flow and row.run.unknowns:
+            beside[scale.name] = blocks(options, row.run.unknowns)
+            show(beside[scale.name])
+    table.write(options.output / "scale.csv")
+    found = summary([(scale, row) for scale, row in networks if not row.run.failure], beside)
+    missed = linear.missed(found, QUICK_BOUNDS if options.quick else BOUNDS)
+    print("\n".join(["", *failed, *missed, " ".join(f"{name}={value:.3g}" for name, value in found.items()) + f" failures={len(failed)}"]))
+    return 1 if failed or (options.quick and missed) else 0
+
+
+def summary(networks, beside):
+    newton = [n for _, row in networks for n in row.newton]
+    both = [(row, beside[scale.name]) for scale, row in networks if scale.name in beside and not beside[scale.name].run.failure]
+    ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in (0, 1)]
+    of_size = [(math.log(row.fractures), math.log(row.seconds)) for row, _ in both]
+    return {"krylov_max": max((row.run.most_used for _, row in networks), default=math.nan), "newton_median": float(np.median(newton or [math.nan])),
+            "newton_max": max(newton, default=math.nan), "seconds_over_blocks": ratio[0], "bytes_over_blocks": ratio[1],
+            "exponent": float(np.polyfit(*zip(*of_size), 1)[0]) if len(of_size) > 1 else math.nan}
