@@ -1,7 +1,6 @@
 // Belos, preconditioned from the right by a solver for each block.
-#include <BelosSolverFactory.hpp>
-#include <BelosTpetraAdapter.hpp>
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
+#include "solve/krylov.hpp"
 #include "solve/preconditioner.hpp"
 #include "solve/reuse.hpp"
 
@@ -18,32 +18,6 @@ namespace {
 using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
-
-ParameterList krylov_defaults() {
-  ParameterList list("Belos");
-  list.set("Maximum Iterations", 500);
-  list.set("Num Blocks", 60, "basis of GMRES");
-  list.set("Implicit Residual Scaling", "Norm of RHS");
-  list.set("Explicit Residual Scaling", "Norm of RHS");
-  return list;
-}
-
-/// What the Krylov methods that are used here, or the one that is asked for, know.
-std::vector<ParameterList> belos_parameters(const ParameterList& given) {
-  std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};
-  if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
-  std::vector<ParameterList> lists(1);
-  lists[0].set("Solver Type", "");
-  Belos::SolverFactory<Real, MultiVector, Operator> factory;
-  for (const auto& method : methods) {
-    try {
-      lists.push_back(*factory.create(method, Teuchos::parameterList())->getValidParameters());
-    } catch (const std::exception&) {
-      throw Error(fmt::format("Belos has no solver \"{}\"", method));
-    }
-  }
-  return lists;
-}
 
 /// y = S A S x, S diagonal.
 class ScaledOperator : public Operator {
@@ -82,7 +56,7 @@ class IterativeSolver : public LinearSolver {
         blocks_(blocks),
         reproducible_(options.reproducible.value_or(false)),
         parameters_("iterative") {
-    check_names(ParameterList(options.belos).setName("Belos"), belos_parameters(options.belos));
+    check_krylov(options.belos);
     preconditioner_ = make_preconditioner(options_, blocks_);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
@@ -237,6 +211,7 @@ class IterativeSolver : public LinearSolver {
     try {
       preconditioner_->setup(system_, keeps);
       inverse_ = preconditioner_->inverse();
+      if (const auto made = preconditioner_->matrix(); scale_.is_null() && !made.is_null()) matrix_ = made;
     } catch (const Error& error) {
       failure_ = error.what();
       preconditioner_ = make_preconditioner(options_, blocks_);  // what the libraries left may differ among ranks
@@ -297,24 +272,11 @@ class IterativeSolver : public LinearSolver {
   /// Starts from x. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are
   /// too many.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
-    using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
-    const auto problem =
-        rcp(new Problem(matrix_, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
-    const auto unscaled = [&]() -> RCP<const Operator> { return rcp(new ScaledOperator(inverse_, unscale_)); };
-    problem->setRightPrec(scale_.is_null() ? inverse_ : unscaled());
-    problem->setProblem();
-    const auto list = rcp(new ParameterList(parameters_.sublist("Belos")));
-    const std::string method = list->get("Solver Type", usual_method());
-    list->remove("Solver Type");
-    if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
-    list->get("Convergence Tolerance", tolerance);
-    if (most > 0) list->set("Maximum Iterations", std::min(most, list->get<int>("Maximum Iterations")));
-    Belos::SolverFactory<Real, MultiVector, Operator> factory;
-    const auto solver = factory.create(method, list);
-    solver->setProblem(problem);
-    const bool converged = solver->solve() == Belos::Converged;
-    iterations += solver->getNumIters();
-    return converged || solver->isLOADetected();
+    RCP<const Operator> M = inverse_;
+    if (!scale_.is_null()) M = rcp(new ScaledOperator(inverse_, unscale_));
+    const auto end = solve::krylov(matrix_, M, parameters_.sublist("Belos"), usual_method(), b, x, tolerance, most);
+    iterations += end.iterations;
+    return end.ended;
   }
 
   PreconditionerOptions options_;

@@ -30,6 +30,7 @@ class NodeMultigrid : public Preconditioner {
     if (!enriching_.empty()) options_.finest_degree = degree_with_enrichment;
   }
 
+  RCP<const Operator> matrix() const override { return matrix_.matrix(); }
   bool has_cycles() const override { return true; }
   int coarse_size() const override { return options_.coarse_size; }
   void describe(ParameterList& blocks) const override {
@@ -55,6 +56,10 @@ class NodeMultigrid : public Preconditioner {
     const auto traffic = multigrid_->traffic();
     cost.messages = traffic.messages;
     cost.message_bytes = traffic.bytes;
+  }
+  bool renew(const LinearSystem& system) override {
+    matrix_.update(system);
+    return false;
   }
   RCP<const Operator> made() const override { return multigrid_; }
 

@@ -22,6 +22,9 @@ class Preconditioner {
   /// About (S A S)^-1 of the last set-up, S the scales of its blocks. The object may change at every set-up.
   RCP<const fields::Operator> inverse() const { return counted(made()); }
 
+  /// The matrix S A S of the last set-up where it has made one; or null.
+  virtual RCP<const fields::Operator> matrix() const { return Teuchos::null; }
+
   /// Whether it is symmetric for symmetric systems.
   virtual bool is_symmetric() const { return true; }
   /// Whether the one of an earlier system serves as long as little has changed.

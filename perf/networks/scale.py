@@ -83,12 +83,12 @@ class Row:
 
     @property
     def cost(self):
-        """(seconds of a Newton iteration, bytes) per displacement unknown."""
+        """Seconds of a Newton iteration and bytes per displacement unknown, and the former per unknown of these and of tips."""
         n = max(1, self.run.unknowns)
-        return self.seconds / n, self.run.bytes[0] / n
+        return self.seconds / n, self.run.bytes[0] / n, self.seconds / (n + self.tips)
 
     def values(self):
-        run, (seconds, size) = self.run, self.cost
+        run, (seconds, size, _) = self.run, self.cost
         return [self.name, self.fractures, run.unknowns, self.tips, *(run.fraction(state) for state in linear.STATES), float(np.median(self.newton)),
                 max(self.newton), run.cuts, len(run.krylov), run.mean, run.most_used, run.residual,
                 *(run.seconds(what) for what in linear.TIMERS), 1e6 * seconds, size / 1e3]
@@ -132,8 +132,9 @@ def measure(options, made, seed):
 def summary(networks, beside):
     newton = [n for _, row in networks for n in row.newton]
     both = [(row, beside[scale.name]) for scale, row in networks if scale.name in beside and not beside[scale.name].run.failure]
-    ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in (0, 1)]
+    ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in range(3)]
     of_size = [(math.log(row.fractures), math.log(row.seconds)) for row, _ in both]
     return {"krylov_max": max((row.run.most_used for _, row in networks), default=math.nan), "newton_median": float(np.median(newton or [math.nan])),
             "newton_max": max(newton, default=math.nan), "seconds_over_blocks": ratio[0], "bytes_over_blocks": ratio[1],
+            "with_tips": ratio[2],
             "exponent": float(np.polyfit(*zip(*of_size), 1)[0]) if len(of_size) > 1 else math.nan}

@@ -1,0 +1,63 @@
+#include "solve/krylov.hpp"
+
+#include <BelosSolverFactory.hpp>
+#include <BelosTpetraAdapter.hpp>
+
+#include <algorithm>
+
+#include "base/check.hpp"
+#include "solve/preconditioner.hpp"
+
+namespace sprekk::solve {
+
+using fields::MultiVector;
+using fields::Operator;
+using Teuchos::ParameterList;
+
+ParameterList krylov_defaults() {
+  ParameterList list("Belos");
+  list.set("Maximum Iterations", 500);
+  list.set("Num Blocks", 60, "basis of GMRES");
+  list.set("Implicit Residual Scaling", "Norm of RHS");
+  list.set("Explicit Residual Scaling", "Norm of RHS");
+  return list;
+}
+
+/// By what the methods that are used here, or the one that is asked for, know.
+void check_krylov(const ParameterList& given) {
+  std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};
+  if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
+  std::vector<ParameterList> lists(1);
+  lists[0].set("Solver Type", "");
+  Belos::SolverFactory<Real, MultiVector, Operator> factory;
+  for (const auto& method : methods) {
+    try {
+      lists.push_back(*factory.create(method, Teuchos::parameterList())->getValidParameters());
+    } catch (const std::exception&) {
+      throw Error(fmt::format("Belos has no solver \"{}\"", method));
+    }
+  }
+  check_names(ParameterList(given).setName("Belos"), lists);
+}
+
+KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, const ParameterList& parameters,
+                 const std::string& usual, const Vector& b, Vector& x, Real tolerance, int most) {
+  using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
+  const auto problem =
+      rcp(new Problem(A, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
+  problem->setRightPrec(M);
+  problem->setProblem();
+  const auto list = rcp(new ParameterList(parameters));
+  const std::string method = list->get("Solver Type", usual);
+  list->remove("Solver Type");
+  if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
+  list->get("Convergence Tolerance", tolerance);
+  if (most > 0) list->set("Maximum Iterations", std::min(most, list->get<int>("Maximum Iterations")));
+  Belos::SolverFactory<Real, MultiVector, Operator> factory;
+  const auto solver = factory.create(method, list);
+  solver->setProblem(problem);
+  const bool converged = solver->solve() == Belos::Converged;
+  return {converged || solver->isLOADetected(), solver->getNumIters()};
+}
+
+}  // namespace sprekk::solve

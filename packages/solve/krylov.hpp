@@ -1,0 +1,28 @@
+// Krylov methods of Belos.
+#pragma once
+
+#include <string>
+
+#include "fields/types.hpp"
+
+namespace sprekk::solve {
+
+/// What Belos is handed unless a scene says otherwise. Stored data.
+Teuchos::ParameterList krylov_defaults();
+
+/// Throws an Error that names the entry where Belos has no such solver, or the solver no such parameter. Stored data.
+void check_krylov(const Teuchos::ParameterList& given);
+
+struct KrylovEnd {
+  bool ended;  ///< by itself: converged, or stopped where rounding leaves no more to gain; false: too many iterations
+  int iterations;
+};
+
+/// Solves A x = b from x on, M about A^-1 from the right, by the "Solver Type" of the parameters, or by `usual`, to the
+/// relative residual `tolerance` unless they have one, with at most `most` iterations, or theirs where it is 0. Throws
+/// what Belos throws. Collective.
+KrylovEnd krylov(const RCP<const fields::Operator>& A, const RCP<const fields::Operator>& M,
+                 const Teuchos::ParameterList& parameters, const std::string& usual, const fields::Vector& b,
+                 fields::Vector& x, Real tolerance, int most = 0);
+
+}  // namespace sprekk::solve
