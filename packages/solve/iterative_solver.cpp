@@ -265,18 +265,30 @@ class IterativeSolver : public LinearSolver {
   /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end. A sweep over
   /// groups is dear, and may have others in it.
   const char* usual_method() const {
-    if (symmetric_) return "Pseudo Block CG";
+    if (symmetric_ && definite_) return "Pseudo Block CG";
     return preconditioner_->has_cycles() ? "Block GMRES" : "Flexible GMRES";
   }
 
-  /// Starts from x. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there are
-  /// too many.
+  /// Starts from x = 0. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there
+  /// are too many. Where conjugate gradients meet a direction of negative energy, as rules of integration leave of some
+  /// functions at crack tips in hexahedra, GMRES takes over for good.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
+    const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
     if (!scale_.is_null()) M = rcp(new ScaledOperator(inverse_, unscale_));
-    const auto end = solve::krylov(matrix_, M, parameters_.sublist("Belos"), usual_method(), b, x, tolerance, most);
-    iterations += end.iterations;
-    return end.ended;
+    const auto solve_once = [&] {
+      const auto end = solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most);
+      iterations += end.iterations;
+      return end.ended;
+    };
+    if (!symmetric_ || !definite_ || parameters.isParameter("Solver Type")) return solve_once();
+    try {
+      return solve_once();
+    } catch (const std::exception&) {  // the same on all ranks: Belos decides by sums over them
+      definite_ = false;
+      x.putScalar(0);
+      return solve_once();
+    }
   }
 
   PreconditionerOptions options_;
@@ -294,7 +306,7 @@ class IterativeSolver : public LinearSolver {
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   LinearSystem system_;
   RCP<const Vector> diagonal_;  // when multigrid was made
-  bool symmetric_ = false;
+  bool symmetric_ = false, definite_ = true;
   Reuse reuse_;
   std::string failure_ = "the matrix was not set up";
 };
