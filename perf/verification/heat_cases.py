@@ -77,8 +77,7 @@ def sliding(d, kind, cell, *grids, advection="upwind", quick=0):
 def heat_sliding(d, series, fine):
     """`fine`: errors of temperature and jump on the last mesh, by series. What flows makes all orders those of upwind flow in the end; so they
     are asked of temperatures alone where heat is carried."""
-    bounds = [Order("conducted", name, 2) for name in ("pressure", "u", "in fracture", "temperature", "T in")]
-    bounds += [Order("conducted", name, 1.75) for name in ("jump", "centre")]  # 2 on finer meshes
+    bounds = [Order("conducted", name, 1.75) for name in ("temperature", "T in", "in fracture", "jump", "centre")]  # 2 on finer meshes
     bounds += [Order(one.name, name, 1) for one in series for name in ("flow", "traction")]
     bounds += [Order(one.name, name, 2) for one in series for name in ("pressure", "u")]
     bounds += [Order("carried", "temperature", 1), Order("second order", "temperature", 1.5)]
