@@ -77,15 +77,18 @@ Answer answer(const model::Scene& scene, const Units& u) {
                                    {"fracture pressure", u.stress},
                                    {"slip", u.length},
                                    {"opening", u.length},
-                                   {"thermal stress", u.stress}})
-    for (const Real value : model.output(name).values) found.values[name].push_back(value * unit);
+                                   {"thermal stress", u.stress}}) {
+    auto& values = found.values[name];  // also of ranks that own none
+    for (const Real value : model.output(name).values) values.push_back(value * unit);
+  }
   const auto traction = model.output("traction local").values;
   const int dim = model.mesh().dim();
+  auto &normal = found.values["normal traction"], &shear = found.values["shear traction"];
   for (std::size_t f = 0; f * dim < traction.size(); ++f) {
-    found.values["normal traction"].push_back(traction[f * dim] * u.stress);
+    normal.push_back(traction[f * dim] * u.stress);
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += std::pow(traction[f * dim + i] * u.stress, 2);
-    found.values["shear traction"].push_back(std::sqrt(square));
+    shear.push_back(std::sqrt(square));
   }
   return found;
 }
