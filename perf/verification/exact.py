@@ -124,8 +124,12 @@ class Manufactured:
         c = [(shear[i] - self.G * (gradient[-1][i] + gradient[i][-1])) / self.G for i in range(d - 1)]
         c.append((-N - bulk) / (self.lam + 2 * self.G))
         slope = [-jumps[i][-1] for i in range(d - 1)]
-        slope.append(-self.lam / (self.lam + 2 * self.G) * sum(jumps[i][i] for i in range(d - 1)))
+        slope.append(-(self.lam * sum(jumps[i][i] for i in range(d - 1)) + self.more(s).real) / (self.lam + 2 * self.G))
         return (self.smooth(x).real + h * np.array(c) + np.where(h > 0, jump + h * np.array(slope), 0)).T
+
+    def more(self, s):
+        """By how much side + is pressed more than side -, if other fields than the displacement differ there."""
+        return np.zeros(())
 
     def jump(self, points):
         return np.asarray(self.law(points[:, :self.dimension - 1].T.astype(complex))[3]).real.T

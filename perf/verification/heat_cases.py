@@ -4,8 +4,11 @@ import math
 import numpy as np
 
 import flow_measure
+import heat_exact
+import measure
 from cases import Bound, Case, Order, Series
-from poro_cases import numbers
+from poro_cases import SCHEMES, SHAPES, numbers
+from poro_fractures import opened_errors
 
 CALLED = ("temperature", "")
 VELOCITY, DIFFUSIVITY, DAY = 8e-6, 3e-6, 1e6  # m/s, m^2/s, s: of the front
@@ -16,10 +19,14 @@ def case(name, title, series, errors, headline, bounds):
     return Case(name, title, "", series, errors, None, headline, None, ("temperature", ""), None, bounds, called=CALLED)
 
 
-def temperature_error(run, exact):
-    """Relative L2 error of the mean temperatures of cells, over that of a scale."""
+def mean_temperatures(run, exact):
+    """Relative L2 error of the mean temperatures of cells."""
     T = flow_measure.array(run, "temperature")[:, None]
-    return {"temperature": flow_measure.mean_error(T, lambda x: exact(x[:, 0])[:, None], *flow_measure.cell_points(run))}
+    return flow_measure.mean_error(T, lambda x: exact(x)[:, None], *flow_measure.cell_points(run))
+
+
+def temperature_error(run, exact):
+    return {"temperature": mean_temperatures(run, lambda x: exact(x[:, 0]))}
 
 
 def heat_half_space():
@@ -50,4 +57,69 @@ def heat_front():
     return case("heat-front", "a front that is carried", series, errors, ("quadrilateral second order", "n=160", "temperature"), bounds)
 
 
-CASES = (heat_half_space, heat_front)
+# A fracture that slides and opens
+
+def sliding_errors(run, known):
+    points, weights = measure.face_points(run.corners())
+    warm = flow_measure.mean_error(run.data("fracture temperature")[:, None], lambda x: known.temperature_in(x)[:, None], points, weights)
+    traction, centre = measure.traction_errors(run, known, np.eye(run.dimension)[:-1])
+    return {**opened_errors(run, known), "temperature": mean_temperatures(run, known.temperature), "T in": warm, "traction": traction, "centre": centre}
+
+
+def sliding(d, kind, cell, *grids, advection="upwind", quick=0):
+    """`grids` are pairs of the cells along each edge and steps."""
+    meshes = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}", f"Time.steps={steps}")) for n, steps in grids]
+    name = f"{cell} {kind}" if advection == "upwind" else f"{cell} {advection}"
+    return Series(name, meshes, f"verification/manufactured_heat_{kind}_{d}d.xml", (f"Mesh.cell={cell}", f"Heat.advection={advection}"),
+                  heat_exact.Sliding(d, int(kind == "carried")), quick)
+
+
+def heat_sliding(d, series, fine):
+    """`fine`: errors of temperature and jump on the last mesh, by series. What flows makes all orders those of upwind flow in the end; so they
+    are asked of temperatures alone where heat is carried."""
+    bounds = [Order("conducted", name, 1.75) for name in ("temperature", "T in", "in fracture", "jump", "centre")]  # 2 on finer meshes
+    bounds += [Order(one.name, name, 1) for one in series for name in ("flow", "traction")]
+    bounds += [Order(one.name, name, 2) for one in series for name in ("pressure", "u")]
+    bounds += [Order("carried", "temperature", 1), Order("second order", "temperature", 1.5)]
+    bounds += [Bound(one.name, one.meshes[-1][0], *bound) for one in series for bound in zip(("temperature", "jump"), fine[one.name])]
+    headline = next(one for one in series if one.quick)
+    return Case(f"heat-mms{d}d", f"manufactured solution of heat in a fracture that slides and opens in {d}D", "", series, sliding_errors, None,
+                (headline.name, headline.meshes[-1][0], "temperature"), None, ("temperature", "u"), None, bounds, called=("temperature", "u"))
+
+
+def heat_mms2d():
+    """In steps as the square of the size of cells; of second order in such that nothing is carried over more than a cell."""
+    grids = ((8, 1), (16, 4), (32, 16))
+    series = [sliding(2, kind, cell, *grids, quick=2 * (cell == "triangle")) for kind in ("conducted", "carried") for cell in SHAPES[2]]
+    series.append(sliding(2, "carried", "quadrilateral", (6, 24), (12, 48), (24, 96), advection="second order"))
+    return heat_sliding(2, series, {one.name: (2e-3, 5e-4) for one in series})
+
+
+def heat_mms3d():
+    grids = {"hexahedron": ((4, 1), (8, 4), (12, 9)), "tetrahedron": ((4, 1), (8, 4))}
+    series = [sliding(3, kind, cell, *grids[cell], quick=2 * (cell == "hexahedron" and kind == "conducted")) for kind in ("conducted", "carried") for cell in SHAPES[3]]
+    return heat_sliding(3, series, {one.name: (5e-3, 5e-3) for one in series})
+
+
+def sliding_time_errors(run, known):
+    """The worst of all cells and faces."""
+    def worst(name, values, exact):
+        return {name: np.abs(values / exact - 1).max()}
+    return {**worst("pressure", flow_measure.array(run, "pressure"), known.pressure), **worst("in fracture", run.data("fracture pressure"), known.pressure),
+            **worst("temperature", flow_measure.array(run, "temperature") - known.start, known.warmth),
+            **worst("T in", run.data("fracture temperature") - known.start, known.warmth), **worst("opening", run.data("opening"), known.opening)}
+
+
+def heat_time():
+    """A solution that is the same everywhere: the errors are those of steps. What fills a fracture has the capacity of the start of a step,
+    which costs it the second order while it widens."""
+    steps = [(f"{n} steps", (f"Time.steps={n}",)) for n in (20, 40, 80)]
+    series = [Series(f"{cell} {scheme}", steps, f"verification/heat_time_{d}d.xml", (f"Mesh.cell={cell}", *entries), heat_exact.SlidingInTime(), 2 * (d == 2))
+              for scheme, (_, entries) in SCHEMES.items() for d, cell in ((2, "quadrilateral"), (3, "tetrahedron"))]
+    bounds = [Order(scheme, name, order) for scheme, (order, _) in SCHEMES.items() for name in ("pressure", "in fracture", "temperature")]
+    bounds += [Order(scheme, name, 1) for scheme in SCHEMES for name in ("T in", "opening")]
+    return Case("heat-time", "heat and length of time steps", "", series, sliding_time_errors, None, ("quadrilateral Euler", "80 steps", "temperature"), None,
+                ("temperature", "pressure"), None, bounds, called=("temperature", "pressure"))
+
+
+CASES = (heat_half_space, heat_front, heat_mms2d, heat_mms3d, heat_time)

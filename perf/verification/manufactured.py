@@ -13,16 +13,16 @@ def stress(u, x):
     return G * (gradient + gradient.T) + LAM * gradient.trace() * sp.eye(len(x))
 
 
-def displacements(dimension, N, shear, tangential, normal):
-    """Of side - and of side +, for a traction N, shear and a jump on the fracture."""
+def displacements(dimension, N, shear, tangential, normal, more=0, size=1):
+    """Of side - and of side +, for a traction N, on side + N + more, shear and a jump on the fracture."""
     x, half = COORDINATES[:dimension], sp.Rational(1, 2)
     s, last, y = x[:-1], x[-1], x[1] if dimension == 3 else 0
     h = last - half
-    smooth = [w / 10 for w in (sp.sin(2 * x[0] + last + y), sp.cos(x[0] - 2 * last + y), sp.sin(x[0] + y - last))][:dimension]
+    smooth = [size * w / 10 for w in (sp.sin(2 * x[0] + last + y), sp.cos(x[0] - 2 * last + y), sp.sin(x[0] + y - last))][:dimension]
     on = stress(smooth, x)[:, -1].subs(last, half)
     c = [(t - on[i]) / G for i, t in enumerate(shear)] + [(-N - on[dimension - 1]) / (LAM + 2 * G)]
     minus = [w + h * k for w, k in zip(smooth, c)]
-    slope = [-sp.diff(normal, k) for k in s] + [-LAM / (LAM + 2 * G) * sum(sp.diff(t, k) for t, k in zip(tangential, s))]
+    slope = [-sp.diff(normal, k) for k in s] + [-(LAM * sum(sp.diff(t, k) for t, k in zip(tangential, s)) + more) / (LAM + 2 * G)]
     return minus, [u + j + h * k for u, j, k in zip(minus, tangential + [normal], slope)]
 
 
@@ -43,15 +43,19 @@ def sides(dimension, ratio, slip, uniform=False):
     return found
 
 
-def pressures(dimension, resists):
+def beside(dimension, on, leaves, conductivity, side):
+    """What is `on` the fracture's side, and of which so much leaves the rock there."""
+    h = COORDINATES[dimension - 1] - sp.Rational(1, 2)
+    return on * sp.cos(2 * h) + (1 if side == "above" else -1) * leaves / (2 * conductivity) * sp.sin(2 * h)
+
+
+def pressures(dimension, resists, least=sp.Rational(1, 2), most=sp.Rational(-3, 10)):
     """Of flow_exact.Manufactured: in the fracture, on both sides by name, and what enters the fracture from them."""
-    x, quarter = COORDINATES[:dimension], sp.Integer(1) / 4
-    h, first, y = x[-1] - sp.Rational(1, 2), x[0], x[1] if dimension == 3 else 0
+    first, y = COORDINATES[0], COORDINATES[1] if dimension == 3 else 0
     f, C = 1 + sp.sin(2 * first + y), 4 + 2 * first
-    entering = {"below": sp.Rational(1, 2) + sp.cos(first + 2 * y), "above": sp.sin(3 * first - y) - sp.Rational(3, 10)}
-    sides = {side: (f + g / C * resists) * sp.cos(2 * h) + (1 if side == "above" else -1) * g * quarter * sp.sin(2 * h)
-             for side, g in entering.items()}
-    return f, sides, sum(entering.values())
+    entering = {"below": least + sp.cos(first + 2 * y), "above": most + sp.sin(3 * first - y)}
+    sides = {side: beside(dimension, f + g / C * resists, g, 2, side) for side, g in entering.items()}
+    return f, sides, entering
 
 
 def leaving(p, mobility, x):
@@ -63,7 +67,7 @@ def flow(dimension, resists):
     """Texts by name, of what flow_exact.Manufactured states: pressures and sources below and above, and of the fracture."""
     x = COORDINATES[:dimension]
     f, sides, entering = pressures(dimension, resists)
-    found = {"fracture": f, "fracture source": leaving(f, 2 + x[0], x[:-1]) - entering}
+    found = {"fracture": f, "fracture source": leaving(f, 2 + x[0], x[:-1]) - sum(entering.values())}
     for side, p in sides.items():
         found[side], found[f"{side} source"] = p, -2 * sum(sp.diff(p, k, 2) for k in x)
     return {name: text(expression) for name, expression in found.items()}
@@ -80,13 +84,54 @@ def opened(dimension):
     x, alpha = COORDINATES[:dimension], ROCK["alpha"]
     f, sides, entering = pressures(dimension, 0)
     tangential, normal = opening(dimension)
-    source = normal + TIME * leaving(f, (1 + TIME * normal)**3 / 6, x[:-1]) - TIME * entering
+    source = normal + TIME * leaving(f, (1 + TIME * normal)**3 / 6, x[:-1]) - TIME * sum(entering.values())
     found = {"fracture": text(TIME * f), "fracture source": text(source)}
     for (side, p), u in zip(sides.items(), displacements(dimension, (1 - alpha) * f, [0] * (dimension - 1), tangential, normal)):
         stored = alpha * sum(sp.diff(a, k) for a, k in zip(u, x)) + ROCK["growth"] * p
         found[side], found[f"{side} source"] = text(TIME * p), text(stored + TIME * leaving(p, 2, x))
         found[f"{side} displacement"], found[f"{side} force"] = ([text(TIME * a) for a in of] for of in (u, body_force(u, x, p)))
     return found
+
+
+HEAT = {"conductivity": 3, "capacity": 2, "of filling": 1, "in fracture": 2, "expansion": sp.Rational(1, 20), "of fluid expansion": sp.Rational(1, 10),
+        "start": 3, "dilation": sp.Rational(1, 5)}
+
+
+def warmed(dimension, carried):
+    """Texts by name, of heat_exact.Sliding: as of opened(), and temperatures of both sides and of the fracture, and sources of heat."""
+    x, half, y, t = COORDINATES[:dimension], sp.Rational(1, 2), COORDINATES[1] if dimension == 3 else 0, TIME
+    s, c, conducts = x[:-1], carried, 2 * HEAT["in fracture"]  # of one half of the fracture, per area
+    alpha, beta, stiffness = ROCK["alpha"], HEAT["expansion"], 3 * LAM + 2 * G
+    N, slip = t * (3 + sp.sin(2 * x[0] + y)) / 5, t * (4 + sp.cos(2 * x[0] + y)) / 5
+    angle = half + x[0] - y / sp.Integer(2)
+    along = [sp.cos(angle), sp.sin(angle)] if dimension == 3 else [1]
+    shear = [FRICTION * N * m for m in along]
+    jump = [slip * m + T / STIFFNESS for m, T in zip(along, shear)]
+    aperture = 1 + HEAT["dilation"] * slip
+    f, sides, entering = pressures(dimension, 0, sp.Rational(3, 2), sp.Integer(-2))
+    warm, excess = t * (2 + sp.sin(2 * x[0] - y)), {"below": t * (1 + x[0]) / 2}
+    carries = {"below": conducts + c * t * entering["below"], "above": conducts}  # into the fracture, by excess
+    leaves = leaving(t * f, aperture**3 / 6, s)
+    flow = [-aperture**3 / 6 * t * sp.diff(f, k) for k in s]
+    power = (FRICTION - HEAT["dilation"]) * N * sp.diff(slip, t)
+    needs = (HEAT["of filling"] * aperture * sp.diff(warm, t) + c * sum(q * sp.diff(warm, k) for q, k in zip(flow, s))
+             + leaving(warm, HEAT["in fracture"], s))
+    excess["above"] = sp.expand((needs - power - carries["below"] * excess["below"]) / carries["above"])
+    by_rock = {"below": conducts, "above": conducts - c * t * entering["above"]}
+    T = {side: beside(dimension, warm + e, by_rock[side] * e, HEAT["conductivity"], side) for side, e in excess.items()}
+    found = {"fracture": t * f, "fracture temperature": HEAT["start"] + warm,
+             "fracture source": sp.diff(aperture, t) - HEAT["of fluid expansion"] * aperture * sp.diff(warm, t) + leaves - t * sum(entering.values())}
+    push = N + (1 - alpha) * t * f - stiffness * beta * (warm + excess["below"])
+    us = displacements(dimension, push, shear, jump, aperture - 1, stiffness * beta * (excess["below"] - excess["above"]), t)
+    pores = ROCK["porosity"] * HEAT["of fluid expansion"] + (alpha - ROCK["porosity"]) * 3 * beta
+    for side, u in zip(sides, us):
+        p, theta = t * sides[side], T[side]
+        grows = alpha * sum(sp.diff(a, k, t) for a, k in zip(u, x)) + ROCK["growth"] * sp.diff(p, t) - pores * sp.diff(theta, t)
+        taken = -2 * c * sum(sp.diff(p, k) * sp.diff(theta, k) for k in x)
+        found.update({side: p, f"{side} source": grows + leaving(p, 2, x), f"{side} temperature": HEAT["start"] + theta,
+                      f"{side} heat": HEAT["capacity"] * sp.diff(theta, t) + taken + leaving(theta, HEAT["conductivity"], x)})
+        found[f"{side} displacement"], found[f"{side} force"] = u, body_force(u, x, p + stiffness * beta / alpha * theta)
+    return {name: [text(a) for a in of] if isinstance(of, list) else text(of) for name, of in found.items()}
 
 
 ROCK = {"alpha": sp.Rational(1, 2), "porosity": sp.Rational(1, 10), "growth": sp.Rational(3, 25), "compressibility": sp.Rational(1, 50)}

@@ -78,29 +78,37 @@ def manufactured_solutions():
               {"end": 1.0, "steps": 2})
 
 
+def halved_block(d, known, rock, joint, flow, heat=None):
+    """The unit square or cube with a fracture between its halves `below` and `above`, and exact values of `known` on its boundary: by half
+    its displacement, body force, pressure and source; with heat a temperature and the heat put in; of the fracture likewise."""
+    sides, low, high, last = flow_scenes.sides(d), [0.0] * (d - 1), [1.0] * (d - 1), "xyz"[d - 1]
+    halves = {"below": ([0.0] * d, [*high, 0.5]), "above": ([*low, 0.5], [1.0] * d)}
+    mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, halves)
+    mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [*low, 1.0]
+
+    def given(place):
+        return {"pressure": known[place], **({"temperature": known[f"{place} temperature"]} if heat else {})}
+
+    def by_half(above, below):
+        return f"{last}>0.5 ? ({above}) : ({below})"
+    conditions = {f"{half} {side}": {"boundary": side, "region": half, "displacement": known[f"{half} displacement"], **given(half)}
+                  for half, end in zip(halves, sides[-2:]) for side in [*sides[:-2], end]}
+    conditions.update({f"fracture {side}": {"boundary": side, "fracture": "fracture", **given("fracture")} for side in sides[:-2]})
+    force = [by_half(*both) for both in zip(known["above force"], known["below force"])]
+    warm = {"Heat": {**heat, "source": by_half(known["above heat"], known["below heat"])}} if heat else {}
+    return {**mesh, "Materials": {"rock": rock, "joint": {"type": "joint", **joint}}, "Bulk": {"material": "rock", "body force": force},
+            "Regions": {half: {"material": "rock"} for half in halves},
+            "Fractures": {"fracture": {"material": "joint", "source": known["fracture source"]}},
+            "Flow": {**flow, "source": by_half(known["above source"], known["below source"])}, **warm, "Boundary conditions": conditions}
+
+
 def opened_fractures():
+    growth, alpha = (float(manufactured.ROCK[name]) for name in ("growth", "alpha"))
+    rock = unit_rock(1.0, compressibility_of_pores=growth, Biot_coefficient=alpha)
+    joint = {"friction coefficient": 0.5, "initial gap": -0.1, "initial aperture": 1.0}
     for d in (2, 3):
-        known, sides = manufactured.opened(d), flow_scenes.sides(d)
-        low, high = [0.0] * (d - 1), [1.0] * (d - 1)
-        halves = {"below": ([0.0] * d, [*high, 0.5]), "above": ([*low, 0.5], [1.0] * d)}
-        mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, halves)
-        mesh["Mesh"]["fractures"]["fracture"]["reference normal"] = [*low, 1.0]
-        exact = {half: {"region": half, "displacement": known[f"{half} displacement"], "pressure": known[half]} for half in halves}
-        conditions = {f"{half} {side}": {"boundary": side, **exact[half]}
-                      for half, end in zip(halves, sides[-2:]) for side in [*sides[:-2], end]}
-        conditions.update({f"fracture {side}": {"boundary": side, "fracture": "fracture", "pressure": known["fracture"]}
-                           for side in sides[:-2]})
-        force = [f"{'xyz'[d - 1]}>0.5 ? ({a}) : ({b})" for a, b in zip(known["above force"], known["below force"])]
-        source = f"{'xyz'[d - 1]}>0.5 ? ({known['above source']}) : ({known['below source']})"
-        growth, alpha = (float(manufactured.ROCK[name]) for name in ("growth", "alpha"))
-        rock = unit_rock(1.0, compressibility_of_pores=growth, Biot_coefficient=alpha)
-        joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -0.1, "initial aperture": 1.0}
-        comment = "A manufactured solution of rock and of a fracture that a fluid opens. See perf/verification/poro_exact.py."
-        store(f"manufactured_opening_{d}d", comment,
-              {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock", "body force": force},
-               "Regions": {half: {"material": "rock"} for half in halves},
-               "Fractures": {"fracture": {"material": "joint", "source": known["fracture source"]}},
-               "Flow": {"viscosity": 0.5, "source": source}, "Boundary conditions": conditions}, {"end": 1.0, "steps": 2})
+        store(f"manufactured_opening_{d}d", "A manufactured solution of rock and of a fracture that a fluid opens. See perf/verification/poro_exact.py.",
+              halved_block(d, manufactured.opened(d), rock, joint, {"viscosity": 0.5}), {"end": 1.0, "steps": 2})
 
 
 def joint_of(known):

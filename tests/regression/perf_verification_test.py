@@ -17,6 +17,7 @@ try:
     import exact
     import flow_exact
     import flow_measure
+    import heat_exact
     import measure
     import poro_exact
 except ImportError as error:
@@ -169,6 +170,53 @@ class Exact(ProgramTest):
             stored = (mass(1 + h) - mass(1 - h)) / (2 * h) + rock["alpha"] * grows
             self.assertTrue(np.allclose(of(source), leaves + stored, atol=1e-4))
 
+    def test_manufactured_heat_is_in_balance(self):
+        """In rock and in the fracture, at t = 0.8, by differences of what the scenes say; and they say what the exact solution does."""
+        try:
+            import manufactured
+        except ImportError as error:
+            self.skipTest(str(error))
+        functions, h, t = {name: getattr(np, name) for name in ("sin", "cos")}, 1e-4, 0.8
+        for d, carried in ((2, 1), (3, 1), (3, 0)):
+            made, known, up = manufactured.warmed(d, carried), heat_exact.Sliding(d, carried), np.eye(d)[-1]
+            heat = {name: float(value) for name, value in manufactured.HEAT.items()}
+            code = {name: [compile(text.replace("^", "**"), name, "eval") for text in (of if isinstance(of, list) else [of])] for name, of in made.items()}
+
+            def of(name, x, t=t):
+                values = [eval(each, {**functions, "t": t, **dict(zip("xyz", x.T))}) for each in code[name]]
+                return np.stack(values, axis=1) if len(values) > 1 else values[0] + 0 * x[:, 0]
+
+            def slopes(name, x, along=range(d)):
+                return np.stack([(of(name, x + h * np.eye(d)[k]) - of(name, x - h * np.eye(d)[k])) / (2 * h) for k in along], axis=-1)
+
+            def curved(name, x, along=range(d)):
+                return sum(of(name, x + 1e-3 * np.eye(d)[k]) - 2 * of(name, x) + of(name, x - 1e-3 * np.eye(d)[k]) for k in along) / 1e-6
+            x = np.random.default_rng(5).uniform(0.1, 0.4, (10, d))
+            on = x * (1 - up) + 0.5 * up
+            jump = of("above displacement", on) - of("below displacement", on)
+            aperture = 1 + jump[:, -1]
+            warms = (of("fracture temperature", on, t + h) - of("fracture temperature", on, t - h)) / (2 * h)
+            gains = 0
+            for side, outward in (("below", 1), ("above", -1)):
+                rock, T = x + (up / 2 if side == "above" else 0), f"{side} temperature"
+                for name, exact_value in ((T, known.temperature), (side, known.pressure), (f"{side} displacement", known.displacement)):
+                    self.assertTrue(np.allclose(of(name, rock, 1), exact_value(rock)), name)
+                stored = heat["capacity"] * (of(T, rock, t + h) - of(T, rock, t - h)) / (2 * h)
+                flow = -2 * slopes(side, rock)
+                right = stored + carried * (flow * slopes(T, rock)).sum(axis=1) - heat["conductivity"] * curved(T, rock)
+                self.assertTrue(np.allclose(of(f"{side} heat", rock), right, atol=1e-4), side)
+                excess, enters = of(T, on) - of("fracture temperature", on), -2 * outward * slopes(side, on, [d - 1])[:, 0]
+                conducts = 2 * heat["in fracture"] * excess
+                gains = gains + conducts + carried * np.maximum(enters, 0) * excess
+                leaves = -heat["conductivity"] * outward * slopes(T, on, [d - 1])[:, 0]
+                self.assertTrue(np.allclose(leaves, conducts + carried * np.maximum(-enters, 0) * excess, atol=1e-5), side)
+            along = -aperture[:, None]**3 / 6 * slopes("fracture", on, range(d - 1))
+            needs = (heat["of filling"] * aperture * warms + carried * (along * slopes("fracture temperature", on, range(d - 1))).sum(axis=1)
+                     - heat["in fracture"] * curved("fracture temperature", on, range(d - 1)))
+            N, slips = t * known.contact(on.T[:-1])[0], known.slip(on.T[:-1])
+            self.assertTrue(np.allclose(gains + (known.friction - heat["dilation"]) * N * slips, needs, atol=1e-4))
+            self.assertTrue(np.allclose(aperture, 1 + heat["dilation"] * t * slips))
+
 
 class Scenes(ProgramTest):
     def run_case(self, make, name):
@@ -252,6 +300,7 @@ class Scenes(ProgramTest):
     def test_scenes_are_those_that_the_script_writes(self):
         try:
             import flow_scenes
+            import heat_scenes
             import make_scenes
             import poro_scenes
         except ImportError as error:
@@ -261,7 +310,8 @@ class Scenes(ProgramTest):
         flow_scenes.manufactured_solutions()
         flow_scenes.regular()
         for write in (poro_scenes.manufactured_solutions, poro_scenes.opened_fractures, poro_scenes.joined_blocks,
-                      poro_scenes.filled_cracks, poro_scenes.rock_in_time, poro_scenes.fracture_in_time):
+                      poro_scenes.filled_cracks, poro_scenes.rock_in_time, poro_scenes.fracture_in_time,
+                      heat_scenes.sliding_fractures, heat_scenes.sliding_in_time):
             write()
         for file in self.folder.glob("*.xml"):
             self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)

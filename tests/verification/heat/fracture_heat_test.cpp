@@ -107,63 +107,100 @@ TEST(HeatInFractures, NothingChangesWhereAllIsEquallyWarm) {
   EXPECT_LT(error(model, "fracture temperature", same), 1e-9);
 }
 
-/// A joint between rocks that a fluid does not enter is pulled apart, tenfold and back to half: warmer fluid streams in
-/// from both ends, and out again. What comes in as heat is what rock and fluid gain, step by step.
+/// A joint between rocks that a fluid does not enter, its lid moved by `lid` m: warmer fluid streams in from both ends,
+/// and out again.
+model::Scene pulled_joint(const std::string& cell, int n, Real rock_capacity, Real fluid_capacity,
+                          const std::string& lid) {
+  auto scene = closed_box(cell, false, n);
+  scene.flow->rigid_rock = false;
+  auto& rock = scene.materials.at("rock");
+  rock.E = Expression(1e9);
+  rock.nu = Expression(0.2);
+  rock.biot = 0;
+  rock.compressibility.reset();
+  rock.porosity = 0;
+  rock.permeability = {Expression(1e-18)};
+  auto& joint = scene.materials.at("joint");
+  joint.friction_coefficient = Expression(0.6);
+  joint.tangential_stiffness = Expression(1e9);
+  warm(scene, 10, 2.5, rock_capacity, fluid_capacity);
+  auto &below = scene.boundary_conditions["floor"], &above = scene.boundary_conditions["lid"];
+  below.boundary = "south";
+  below.displacement.assign(is_flat(cell) ? 2 : 3, Expression(0));
+  above.boundary = "north";
+  above.displacement = below.displacement;
+  above.displacement[1] = Expression(lid);
+  for (const std::string side : {"west", "east"}) {
+    hold(scene, side, "0");
+    scene.boundary_conditions[side].temperature = Expression("50 + t");
+  }
+  return scene;
+}
+
+/// Heat in rock and fluid, over that at 0 K. Collective.
+Real heat_content(model::Model& model, Real rock_capacity, Real fluid_capacity) {
+  const auto& mesh = model.mesh();
+  const auto T = model.output("temperature").values, T_f = model.output("fracture temperature").values,
+             a = model.output("aperture").values;
+  Real here = 0, all = 0;
+  for (LocalIndex k = 0; k < mesh.n_owned_cells; ++k)
+    here += rock_capacity * T[k] / static_cast<Real>(mesh.n_global_cells);
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    here += fluid_capacity * a[f] * T_f[f] * mesh.fracture_faces[f].area;
+  Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
+  return all;
+}
+
+/// What comes in through the ends in the step that ends at t: conducted, or warmer than the end, and with the fluid.
+Real heat_that_enters(model::Model& model, Real t, Real dt, Real fluid_capacity) {
+  Real sum = 0;
+  for (const auto& reaction : model.system().reactions(model.state())) {
+    if (reaction.field == "face temperature") sum += dt * reaction.force.at(0);
+    if (reaction.field == "face pressure") sum += dt * fluid_capacity * (50 + t) * reaction.force.at(0);
+  }
+  return sum;
+}
+
+/// The joint is pulled apart, tenfold and back to half. What comes in as heat is what rock and fluid gain, step by
+/// step.
 TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
   constexpr Real c = 4.2e6, rc = 2.2e6;
   for (const std::string cell : {"quadrilateral", "tetrahedron"}) {
-    const bool flat = is_flat(cell);
-    auto scene = closed_box(cell, false, 4);
-    scene.flow->rigid_rock = false;
-    auto& rock = scene.materials.at("rock");
-    rock.E = Expression(1e9);
-    rock.nu = Expression(0.2);
-    rock.biot = 0;
-    rock.compressibility.reset();
-    rock.porosity = 0;
-    rock.permeability = {Expression(1e-18)};
-    auto& joint = scene.materials.at("joint");
-    joint.friction_coefficient = Expression(0.6);
-    joint.tangential_stiffness = Expression(1e9);
-    warm(scene, 10, 2.5, rc, c);
-    const int dim = flat ? 2 : 3;
-    auto &floor = scene.boundary_conditions["floor"], &lid = scene.boundary_conditions["lid"];
-    floor.boundary = "south";
-    floor.displacement.assign(dim, Expression(0));
-    lid.boundary = "north";
-    lid.displacement = floor.displacement;
-    lid.displacement[1] = Expression("t < 4 ? 9e-3*t/4 : 9e-3*(1 - (t - 4)/5)");
-    for (const std::string side : {"west", "east"}) {
-      hold(scene, side, "0");
-      scene.boundary_conditions[side].temperature = Expression("50 + t");
-    }
-    model::Model model(scene, Tpetra::getDefaultComm());
-    const auto content = [&] {
-      const auto& mesh = model.mesh();
-      const auto T = model.output("temperature").values, T_f = model.output("fracture temperature").values,
-                 a = model.output("aperture").values;
-      Real here = 0, all = 0;
-      for (LocalIndex k = 0; k < mesh.n_owned_cells; ++k) here += rc * T[k] / static_cast<Real>(mesh.n_global_cells);
-      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-        here += c * a[f] * T_f[f] * mesh.fracture_faces[f].area;
-      Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-      return all;
-    };
+    model::Model model(pulled_joint(cell, 4, rc, c, "t < 4 ? 9e-3*t/4 : 9e-3*(1 - (t - 4)/5)"),
+                       Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(0.5).converged) << cell;
-    Real before = content(), most = 0;
+    Real before = heat_content(model, rc, c), most = 0;
     for (int step = 2; step <= 14; ++step) {
       ASSERT_TRUE(model.step_to(0.5 * step).converged) << cell;
-      Real inflow = 0;
-      for (const auto& reaction : model.system().reactions(model.state())) {
-        if (reaction.field == "face temperature") inflow += 0.5 * reaction.force.at(0);
-        if (reaction.field == "face pressure") inflow += 0.5 * c * (50 + 0.5 * step) * reaction.force.at(0);
-      }
-      const Real after = content();
+      const Real inflow = heat_that_enters(model, 0.5 * step, 0.5, c), after = heat_content(model, rc, c);
       most = std::max(most, std::abs(inflow));
       EXPECT_NEAR(after - before, inflow, 1e-11 * after) << cell << " " << step;
       before = after;
     }
     EXPECT_GT(most, 1e4) << cell;
+  }
+}
+
+/// It breathes a hundred times in a thousand steps: nothing adds up. What is in it at the end is what was there and
+/// has come in, to 1e-12 of all that has come in or gone out.
+TEST(HeatInFractures, IsInBalanceOverAThousandSteps) {
+  constexpr Real c = 4.2e6, rc = 2.2e4, dt = 0.01;
+  for (const auto& [cell, advection] :
+       {std::pair("quadrilateral", "upwind"), {"quadrilateral", "second order"}, {"tetrahedron", "second order"}}) {
+    auto scene = pulled_joint(cell, 2, rc, c, "4e-3*sin(10*pi*t)^2");
+    scene.heat->advection = advection;
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(dt).converged) << cell;
+    const Real start = heat_content(model, rc, c);
+    Real gained = 0, passed = 0;
+    for (int step = 2; step <= 1001; ++step) {
+      ASSERT_TRUE(model.step_to(dt * step).converged) << cell << " " << step;
+      const Real inflow = heat_that_enters(model, dt * step, dt, c);
+      gained += inflow;
+      passed += std::abs(inflow);
+    }
+    EXPECT_NEAR(heat_content(model, rc, c) - start, gained, 1e-12 * passed) << cell << " " << advection;
+    EXPECT_GT(passed, 20 * start) << cell << " " << advection;
   }
 }
 

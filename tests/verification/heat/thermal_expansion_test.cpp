@@ -273,7 +273,7 @@ TEST(ThermoPoroelasticity, ScenesTellWhatTheySay) {
     Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_MAX, 1, &here, &all);
     return all;
   };
-  const auto fault = read_scene("thm/fault_2d.xml", {"Mesh.cells={16, 16}", "Time.steps=10"});
+  const auto fault = read_scene("thm/cooling_2d.xml", {"Mesh.cells={16, 16}", "Time.steps=10"});
   model::Model slides(fault, Tpetra::getDefaultComm());
   for (const Real t : fault.time.times()) {
     ASSERT_TRUE(slides.step_to(t).converged) << t;
