@@ -18,12 +18,13 @@ import flow_measure  # noqa: E402
 import measure  # noqa: E402
 import meshes  # noqa: E402
 import read  # noqa: E402
-from runs import FUNCTIONALS, Run  # noqa: E402
+from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
 
 COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # phases that follow each other
 MEAN = "mean pressure"
 REPEATED = 3  # short runs: the median counts
-TILTED = Path(__file__).resolve().parent / "tilted.xml"
+TILTED, THM = (Path(__file__).resolve().parent / scene for scene in ("tilted.xml", "thm.xml"))
+HEAT_OF_WATER, HOT, COLD = 4.2e6, 420, 360  # of THM: J/(m^3 K), K
 MODES = {"opening": ("sneddon", exact.Crack(1, 1e-3, 1, 0.25)), "sliding": ("sneddon_shear", exact.Crack(2, 1e-3, 1, 0.25))}
 
 
@@ -46,7 +47,7 @@ def run(options, scene, sets, name):
 def made(results, seconds, **more):
     eliminated = {block for group in results["blocks"].get("local_groups", []) for block in group["blocks"]}
     unknowns = sum(field["unknowns"] for field in results["blocks"]["fields"] if field["name"] not in eliminated)
-    return Run("Sprekk", results["mesh"]["cells"], unknowns, results["steps"][-1]["newton_iterations"], seconds,
+    return Run("Sprekk", results["mesh"]["cells"], unknowns, sum(step["newton_iterations"] for step in results["steps"]), seconds,
                results["memory"]["peak_bytes_largest_rank"], **more)
 
 
@@ -58,6 +59,16 @@ def tilted(options, file, name, *sets):
     values = (crack["max_slip"], crack["mean_slip"], traction["local"][0], *(crack["area"] * traction["global"][i] for i in (0, 2)),
               jump[0], jump[2], force[0], force[2])
     return made(results, seconds, values=dict(zip(FUNCTIONALS, values)))
+
+
+def thm(options, file, name):
+    _, results, seconds = run(options, THM, (f"Mesh file.path={file.resolve()}",), name)
+    step = results["steps"][-1]
+    crack, force, leaves = step["fractures"]["crack"], step["reactions"]["top"], -step["inflows"]["east"]
+    heat = HEAT_OF_WATER * (HOT - COLD) * leaves - step["heat_inflows"]["east"]  # heat_inflows: beyond what it carries at HOT
+    values = (1e3 * crack["max_slip"], 1e3 * crack["mean_slip"], 1e3 * crack["mean_opening"], 1e-6 * crack["mean_traction"]["local"][0],
+              1e-6 * crack["mean_fracture_pressure"], crack["mean_fracture_temperature"], 1e-3 * heat, 1e-9 * force[0], 1e-9 * force[2])
+    return made(results, seconds, values=dict(zip(THERMAL, values)))
 
 
 def crack(options, mode, file, name, *sets):

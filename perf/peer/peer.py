@@ -19,18 +19,24 @@ import linear  # noqa: E402
 import ours  # noqa: E402
 import runs  # noqa: E402
 from ours import meshes  # noqa: E402
-from runs import FUNCTIONALS, Run  # noqa: E402
+from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
 
 TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of cells, those on the fracture
+HEAT = ((23.0, 14.5), (13.5, 8.7), (9.4, 6.0))  # the same of thm.xml
 FINE = ((0.5, 0.1, 0.5), (0.4, 0.06, 0.5), (0.3, 0.04, 0.5), (0.25, 0.025, 0.5), (0.2, 0.015, 0.4))  # ours alone: meshes of ours.tilted_mesh
 CRACK = (0.1, 0.05, 0.025, 0.0125, 0.00625)      # sizes on the crack, theirs
 GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # as `graded` of perf/verification, order 2
 FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
+SIDES = (("west", "east"), ("south", "north"), ("bottom", "top"))
+PARTS = ("contact", "heat", "flow", "damage")
+RATIOS = {"tilted": "ratio", "heat": "ratio_thm"}
 QUICK = 2  # meshes of each
-ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_equal_error": 50}  # 4, 11 thousand tetrahedra: how many gmsh makes depends on the machine
+ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_thm_4k": 50, "ratio_equal_error": 50}  # 4, 11 thousand tetrahedra: how many gmsh makes depends on the machine
 SLIP = "slip mean"
-COLUMNS = {"mesh, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f", **{name: ".4f" for name in FUNCTIONALS}}
-ERRORS = {"error, code": "", "cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f", "rel. error": ".2e"}
+COSTS = {"cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f"}
+COLUMNS = {"mesh, code": "", **COSTS, **{name: ".4f" for name in FUNCTIONALS}}
+OF_HEAT = {"mesh, code": "", **COSTS, **{name: ".4g" for name in THERMAL}}
+ERRORS = {"error, code": "", **COSTS, "rel. error": ".2e"}
 WHY = """peer: nothing to compare with: POREPY is to name a checkout of PorePy, of November 2025 if possible:
   git clone https://github.com/pmgbergen/porepy && git -C porepy checkout 614c076c && POREPY=$PWD/porepy ./sprekk perf peer"""
 
@@ -59,7 +65,7 @@ def flat(functionals):
 
 
 def named(source, target):
-    """The mesh that PorePy made, with names of ours for the fracture and for the sides z = 0 and z = 1."""
+    """The mesh that PorePy made, with names of ours for the fracture and for the sides of the block, which has a corner at 0."""
     text = source.read_text()
     entities = text[text.index("$Entities"):text.index("$EndEntities")].splitlines()[1:]
     points, curves, surfaces, _ = map(int, entities[0].split())
@@ -67,9 +73,10 @@ def named(source, target):
     tags = dict((int(tag), name) for dim, tag, name in re.findall(r'^(\d) (\d+) "(.*)"$', text, re.M) if dim == "2")
     for line in entities[1 + points + curves:1 + points + curves + surfaces]:
         words = line.split()
-        low, high, group = float(words[3]), float(words[6]), int(words[8]) if int(words[7]) else 0
-        if low == high and low in (0, 1):
-            names[tags[group]] = "top" if low else "bottom"
+        group = int(words[8]) if int(words[7]) else 0
+        for low, high, sides in zip(map(float, words[1:4]), map(float, words[4:7]), SIDES):
+            if low == high:
+                names[tags[group]] = sides[low > 0]
     for old, new in names.items():
         text = text.replace(f'"{old}"', f'"{new}"')
     target.write_text(text)
@@ -93,6 +100,19 @@ def compare_tilted(options, count):
         for code, of in found.items():
             table.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(1e3 * of[-1].values[name] for name in FUNCTIONALS)])
     return table, found
+
+
+def compare_heat(options, count):
+    """As compare_tilted(), of the block with heat and flow."""
+    table, found = linear.Table(OF_HEAT, 26), {"PorePy": [], "Sprekk": []}
+    for h, on_crack in HEAT[:count]:
+        made = options.output / f"porepy_thm_{h:g}.msh"
+        told, run = theirs(options, "thm.py", h, on_crack, made.resolve())
+        found["PorePy"].append(run(told["functionals"]))
+        found["Sprekk"].append(ours.thm(options, named(made, options.output / f"thm_{h:g}.msh"), f"thm_{h:g}"))
+        for code, of in found.items():
+            table.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(of[-1].values[name] for name in THERMAL)])
+    return found
 
 
 def compare_errors(options, same, count):
@@ -140,7 +160,7 @@ def compare_flow(options, count):
 def tell_apart(found):
     """Prints how far the programs are apart; what is further than it may be, in words."""
     apart, wrong = runs.apart(found["Sprekk"], found["PorePy"]), []
-    table = linear.Table({"apart (distances from the limit)": "", **{name: ".2f" for name in FUNCTIONALS}}, 36)
+    table = linear.Table({"apart (distances from the limit)": "", **{name: ".2f" for name in apart[0]}}, 36)
     for run, of in zip(found["Sprekk"], apart):
         table.add([f"{run.cells} cells", *of.values()])
         wrong += [f"apart: {name} on {run.cells} cells, {value:.2f} distances, {runs.WITHIN} are allowed" for name, value in of.items()
@@ -174,52 +194,76 @@ def draw(same, found, file):
     figure.savefig(file, dpi=150)
 
 
-def write(file, same, found):
+def write(file, both, found):
     with open(file, "w", newline="") as opened:
         writer = csv.writer(opened)
         writer.writerow(["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"])
-        for code, of in same.items():
-            writer.writerows(["tilted", code, *cells(run), name, value] for run in of for name, value in run.values.items())
+        for case, same in both.items():
+            for code, of in same.items():
+                writer.writerows([case, code, *cells(run), name, value] for run in of for name, value in run.values.items())
         for what, (their, our, error) in found.items():
             writer.writerows([what, run.code, *cells(run), "relative error", error(run)] for run in their + our)
 
 
+def warm_up(options):
+    """numba compiles into its cache."""
+    theirs(options, "crack.py", "opening", 0.5, (options.output / "porepy_crack.msh").resolve())
+    theirs(options, "tilted.py", 0.5, 0.3, (options.output / "porepy_first.msh").resolve())
+
+
+def meshes_of(options, all_of_them):
+    return QUICK if options.quick else len(all_of_them)
+
+
+def ratios(options, name, of):
+    """{name_4k: time of PorePy over that of Sprekk} of all meshes."""
+    return {f"{name}_{their.cells}" if options.quick else f"{name}_{their.cells / 1e3:.0f}k": runs.ratio(their, our)
+            for their, our in zip(of["PorePy"], of["Sprekk"])}
+
+
 def main(words):
-    parser = linear.parser("peer", __doc__, only=False)
-    options = parser.parse_args(words)
+    options = linear.parser("peer", __doc__).parse_args(words)
     options.porepy = os.environ.get("POREPY") and Path(os.environ["POREPY"]).resolve()
     if not options.porepy:
         print(WHY)
         return 0
     if not Path(options.porepy, "src/porepy").is_dir():
         sys.exit(f"peer: POREPY = {options.porepy} holds no src/porepy")
+    parts = linear.matching(options, PARTS)
     options.output.mkdir(parents=True, exist_ok=True)
-    theirs(options, "crack.py", "opening", 0.5, (options.output / "porepy_crack.msh").resolve())  # numba compiles into its cache
-    theirs(options, "tilted.py", 0.5, 0.3, (options.output / "porepy_first.msh").resolve())
-    print("values times 1000")
-    _, same = compare_tilted(options, QUICK if options.quick else len(TILTED))
-    print()
-    wrong = []
-    if not options.quick:
-        wrong = tell_apart(same)
+    warm_up(options)
+    same, found, total, wrong = {}, {}, {}, []
+    if "contact" in parts:
+        print("values times 1000")
+        _, same["tilted"] = compare_tilted(options, meshes_of(options, TILTED))
+    if "heat" in parts:
+        print("\nwith flow and heat")
+        same["heat"] = compare_heat(options, meshes_of(options, HEAT))
+    for case, of in same.items():
+        total |= ratios(options, RATIOS[case], of)
+        if not options.quick:
+            print()
+            wrong += tell_apart(of)
+    if "contact" in parts:
         print()
-    _, found, exact = compare_errors(options, same, QUICK if options.quick else len(FINE))
-    print(f"\nmean slip without error: {exact:.4e}\n")
-    total = {f"ratio_{their.cells}" if options.quick else f"ratio_{their.cells / 1e3:.0f}k": runs.ratio(their, our) for their, our in zip(same["PorePy"], same["Sprekk"])}
-    total["ratio_equal_error"] = tell_equal(found)
-    print("\nmean pressure of the regular network")
-    flow = compare_flow(options, QUICK if options.quick else len(FLOW["Sprekk"]))
-    print()
-    tell_equal(flow)
-    print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
-    wrong += damage.compare(options, theirs)
-    write(options.output / "peer.csv", same, {**found, **flow})
-    draw(same, found, options.output / "peer.png")
+        _, found, exact = compare_errors(options, same["tilted"], meshes_of(options, FINE))
+        print(f"\nmean slip without error: {exact:.4e}\n")
+        total["ratio_equal_error"] = tell_equal(found)
+        draw(same["tilted"], found, options.output / "peer.png")
+    if "flow" in parts:
+        print("\nmean pressure of the regular network")
+        flow = compare_flow(options, meshes_of(options, FLOW["Sprekk"]))
+        print()
+        tell_equal(flow)
+        found |= flow
+    if "damage" in parts:
+        print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
+        wrong += damage.compare(options, theirs)
+    write(options.output / "peer.csv", same, found)
     missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()
-              if not total.get(name, 0) >= asked]
-    print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and peer.png in {options.output}"]))
-    last = {name: value for name, value in total.items() if options.quick or name in ASKED}
-    print(" ".join(f"{name}={value:.0f}" for name, value in last.items()))
+              if not total.get(name, 0) >= asked and not (options.only and name not in total)]
+    print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and pictures in {options.output}"]))
+    print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED))
     return 1 if wrong else 0
 
 

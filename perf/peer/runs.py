@@ -3,6 +3,7 @@ import math
 from dataclasses import dataclass, field
 
 FUNCTIONALS = ("slip max", "slip mean", "t_n mean", "traction x", "traction z", "jump x", "jump z", "reaction x", "reaction z")
+THERMAL = ("slip max", "slip mean", "opening", "t_n mean", "p mean", "T mean", "heat", "reaction x", "reaction z")  # mm, MPa, K, kW, GN
 WITHIN = 3  # times the distance of a value from its limit, by which the two programs may differ
 
 
@@ -28,7 +29,7 @@ def apart(ours, theirs):
     def distance(runs, k, name):
         return abs(runs[k].values[name] - limit(*runs[-2:], name))
     return [{name: abs(ours[k].values[name] - theirs[k].values[name]) / max(distance(ours, k, name), distance(theirs, k, name))
-             for name in FUNCTIONALS} for k in range(len(ours))]
+             for name in ours[k].values} for k in range(len(ours))]
 
 
 def cheapest(runs, error, most):

@@ -8,6 +8,7 @@
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/wells.hpp"
 #include "physics/hybrid_diffusion.hpp"
+#include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/scene.hpp"
@@ -41,12 +42,26 @@ std::vector<Well> wells(const Scene& scene, int dim) {
   return wells;
 }
 
-/// Of the flow in and through a joint whose sides have moved apart by `opening`, m.
-FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, Real opening,
+/// How far apart the sides of a joint are at least under any compression, m. Slip back may close what keeps its
+/// dilation as a number by more than slip has opened it.
+Real least_opening(const Material& joint, const std::array<Real, 3>& x) {
+  constexpr Real any_compression = 1e100;  // Pa
+  const Real zero = 0;                     // all that laws have kept
+  const auto law = joint.joint(x).law;
+  if (laws::n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
+  return law.gap.initial + law.closure(laws::Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
+}
+
+/// Of the flow in and through a joint whose sides have moved apart by `opening`, m, without one if they cannot.
+/// Iterates of Newton's method may close it further than its law does, and cut off what is injected: flow sees no less
+/// than a part of what compression leaves.
+FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, const std::optional<Real>& opening,
                                         const std::array<Real, 3>& x) {
+  constexpr Real part = 0.9;  // below 1, so that apertures of solutions are above what iterates see
   const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
              residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
-             a = std::max(aperture, residual);
+             a = std::max(aperture, residual),
+             of_iterates = opening ? part * std::max(Real(0), aperture + least_opening(joint, x)) : 0;
   SPREKK_CHECK(a > 0,
                "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
@@ -54,8 +69,10 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, R
   const auto& given = joint.tangential_permeability;
   const Real k = given ? value_at("tangential permeability", *given, base::positive(), x) : 0,
              across = value_at("normal permeability", joint.normal_permeability, base::positive_or_infinite(), x);
-  const FractureFlowParameters::Face face{.along = {aperture + opening, residual, k, viscosity, joint.walls(x)},
-                                          .exchange = 2 * across / (a * viscosity)};
+  const auto walls = joint.walls(x);
+  const FractureFlowParameters::Face face{
+      .along = {aperture + opening.value_or(0), std::max(residual, walls.hydraulic(of_iterates)), k, viscosity, walls},
+      .exchange = 2 * across / (a * viscosity)};
   SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
                "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
                "0: give a \"residual aperture\", or an \"initial aperture\" above the closure",
@@ -64,10 +81,13 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, R
 }
 
 /// Of local fracture faces under the initial stress. Collective.
-std::vector<Real> openings_of(const Setting& setting) {
-  if (Mechanics::is_in(setting.scene) && !setting.mesh.fracture_names.empty())
-    return with_ghosts(setting.mesh, fields::Entity::fracture_face, initial_openings(setting));
-  return std::vector<Real>(setting.mesh.fracture_faces.size(), 0);
+std::vector<std::optional<Real>> openings_of(const Setting& setting) {
+  std::vector<std::optional<Real>> openings(setting.mesh.fracture_faces.size());
+  if (Mechanics::is_in(setting.scene) && !setting.mesh.fracture_names.empty()) {
+    const auto initial = with_ghosts(setting.mesh, fields::Entity::fracture_face, initial_openings(setting));
+    openings.assign(initial.begin(), initial.end());
+  }
+  return openings;
 }
 
 /// Of local fracture faces. Collective.
@@ -180,8 +200,8 @@ std::vector<Real> start_apertures(const Setting& setting) {
   const auto openings = openings_of(setting);
   for (std::size_t f = 0; f < openings.size(); ++f) {
     const auto& face = mesh.fracture_faces[f];
-    apertures.push_back(
-        std::max(Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f]));
+    apertures.push_back(std::max(
+        Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f].value_or(0)));
   }
   return apertures;
 }

@@ -50,8 +50,8 @@ def errors(model, mode):
 
 
 def make(mode, h, file):
-    sizes = {"cell_size": COARSER * h, "cell_size_fracture": h, "cell_size_boundary": COARSER * h, "cell_size_min": h}
-    return Model(measured.parameters(G, 2 * G * NU / (1 - 2 * NU), FRICTION, sizes, known=KNOWN[mode], meshing_kwargs={"file_name": file}))
+    solid = {"shear_modulus": G, "lame_lambda": 2 * G * NU / (1 - 2 * NU), "friction_coefficient": FRICTION}
+    return Model(measured.parameters(measured.sizes(COARSER * h, h), solid, known=KNOWN[mode], meshing_kwargs={"file_name": file}))
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ def make(steps):
     return type("Model", (Kept, geometry, base), {})(
         {**example.model_params, "exact_solution": exact, "material_constants": {"solid": FractureDamageSolidConstants(**SOLID)},
          "time_manager": pp.TimeManager(np.arange(steps + 1), 1, True), "interface_displacement_parameter_values": jumps,
-         "north_displacements": space, "max_iterations": 60, "nl_convergence_tol": 1e-12})
+         "north_displacements": space, "max_iterations": 60})
 
 
 if __name__ == "__main__":

@@ -38,9 +38,8 @@ class Counted:
 
 def run(make, coarse, size):
     """Runs make(coarse), to load and compile what is needed, then make(size); returns that model."""
-    pp.run_time_dependent_model(make(coarse))
-    model = make(size)
-    model.count("all", lambda: pp.run_time_dependent_model(model))
+    for model in (make(coarse), make(size)):
+        model.count("all", lambda model=model: pp.run_time_dependent_model(model, model.params))
     return model
 
 
@@ -53,11 +52,16 @@ def vectors(model, operator):
     return evaluate(model, operator).reshape(-1, model.nd)
 
 
-def parameters(shear_modulus, lame, friction, size, **more):
-    return {"times_to_export": [], "grid_type": "simplex", "meshing_arguments": size, "folder_name": os.devnull,
-            "max_iterations": 40, "nl_convergence_tol": 1e-10,
-            "material_constants": {"solid": pp.SolidConstants(shear_modulus=shear_modulus, lame_lambda=lame, friction_coefficient=friction),
-                                   "numerical": pp.NumericalConstants(characteristic_displacement=1e-2)}, **more}
+def sizes(size, on_fracture):
+    return {"cell_size": size, "cell_size_fracture": on_fracture, "cell_size_boundary": size, "cell_size_min": on_fracture}
+
+
+def parameters(meshing, solid, fluid=None, **more):
+    material = {"solid": pp.SolidConstants(**solid), "numerical": pp.NumericalConstants(characteristic_displacement=1e-2)}
+    if fluid:
+        material["fluid"] = pp.FluidComponent(**fluid)
+    return {"times_to_export": [], "grid_type": "simplex", "meshing_arguments": meshing, "folder_name": os.devnull,
+            "max_iterations": 40, "nl_convergence_tol": 1e-10, "material_constants": material, **more}
 
 
 def tell(model, **values):

@@ -9,16 +9,20 @@ import measured
 import numpy as np
 import porepy as pp
 
-FRICTION, HALF, DIP = 0.5, 0.25, np.radians(-30)
+FRICTION, DIP = 0.5, np.radians(-30)
 
 
-class Model(measured.Counted, pp.MomentumBalance):
+class Block(measured.Counted):
+    """A cube with an inclined rectangle around its centre, fixed at its bottom; its top moves after the start."""
+    side, half_length, half_width, moved = 1.0, 0.25, 0.25, (0.005, 0, -0.01)
+
     def set_domain(self):
-        self._domain = pp.domains.nd_cube_domain(3, 1.0)
+        self._domain = pp.domains.nd_cube_domain(3, self.side)
 
     def set_fractures(self):
-        along, across, centre = np.array([np.cos(DIP), 0, np.sin(DIP)]), np.array([0, 1, 0]), np.full(3, 0.5)
-        corners = [centre + HALF * (a * along + b * across) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        along = self.half_length * np.array([np.cos(DIP), 0, np.sin(DIP)])
+        across, centre = np.array([0, self.half_width, 0]), np.full(3, self.side / 2)
+        corners = [centre + a * along + b * across for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         self._fractures = [pp.PlaneFracture(np.array(corners).T)]
 
     def bc_type_mechanics(self, sd):
@@ -29,8 +33,13 @@ class Model(measured.Counted, pp.MomentumBalance):
 
     def bc_values_displacement(self, bg):
         values = np.zeros((3, bg.num_cells))
-        values[:, self.domain_boundary_sides(bg).top] = np.array([[0.005], [0], [-0.01]])
+        if self.time_manager.time > 0:
+            values[:, self.domain_boundary_sides(bg).top] = np.array(self.moved)[:, None]
         return values.ravel("F")
+
+
+class Model(Block, pp.MomentumBalance):
+    """Rock, contact and friction alone."""
 
 
 def functionals(model):
@@ -51,9 +60,8 @@ def functionals(model):
 
 
 def make(size, file):
-    h, on_crack = size
-    sizes = {"cell_size": h, "cell_size_fracture": on_crack, "cell_size_boundary": h, "cell_size_min": on_crack}
-    return Model(measured.parameters(0.4, 0.4, FRICTION, sizes, meshing_kwargs={"file_name": file}))
+    solid = {"shear_modulus": 0.4, "lame_lambda": 0.4, "friction_coefficient": FRICTION}
+    return Model(measured.parameters(measured.sizes(*size), solid, meshing_kwargs={"file_name": file}))
 
 
 if __name__ == "__main__":
