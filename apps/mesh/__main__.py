@@ -86,7 +86,7 @@ def made_of(text, network):
         except NetworkError as error:
             drawn = {name: k for k, name in enumerate(network.at_random)}
             last = {max((name for name in names if name in drawn), key=drawn.get, default=None) for names in error.features}
-            if not last or None in last or sum(again.values()) > MOST_DRAWN * len(drawn):
+            if not last or None in last or sum(again.values()) + len(last) > max(1, MOST_DRAWN * len(drawn)):
                 raise
         again.update({name: again.get(name, 0) + 1 for name in last})
         network = Network(text, again)

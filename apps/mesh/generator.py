@@ -39,14 +39,14 @@ def centres(random, domain, n):
     return found[:n]
 
 
-def at_random(entries, domain, again={}):
+def at_random(entries, domain, again=None):
     """Arrays of points: lines in 2D, regular polygons in 3D whose corners lie on a circle of the diameter. `again` {number of a
     fracture, from 0: how often it is drawn again}: the others stay as they are."""
     def drawn(seed, n):
         return draw(np.random.Generator(np.random.PCG64(seed)), n, entries, domain)
 
     found = drawn(entries["seed"], entries["number"])
-    for k, times in again.items():
+    for k, times in (again or {}).items():
         found[k] = drawn([entries["seed"], k, times], 1)[0]
     return found
 

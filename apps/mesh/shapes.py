@@ -30,7 +30,7 @@ class Errors:
             yield
         except NetworkError as error:
             self.lines.append(str(error))
-            self.features += error.features
+            self.features += error.features or [()]  # which no other drawing mends
 
     def throw(self, files=()):
         if self.lines:

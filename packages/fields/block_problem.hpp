@@ -40,7 +40,7 @@ struct Block {
   /// Of order 2: from the unknowns of order 1 that multigrid starts from, and that coordinates and near_null_space
   /// belong to, to those of the block. Null: multigrid starts from the block itself.
   RCP<const CrsMatrix> interpolation = {};
-  std::string enriches = "";        ///< the block whose functions it adds to; multigrid on that one does without it
+  std::string enriches = "";        ///< the block whose functions it adds to: multigrid smooths it with that one
   std::string condensed_into = "";  ///< its own matrix is about diagonal: preconditioners eliminate it from this block
   bool advected = false;            ///< a flow carries it: its own matrix may be far from symmetric
   bool balance = false;             ///< its rows are balances of rates: they may differ by many orders of magnitude

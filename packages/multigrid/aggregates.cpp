@@ -1,5 +1,6 @@
 #include "multigrid/aggregates.hpp"
 
+#include "base/check.hpp"
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
@@ -120,6 +121,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
 void Nodes::add_smoothed(std::size_t n) {
   const std::size_t before = free.size();
   if (n == before) return;
+  SPREKK_CHECK(weak.empty(), "multigrid: couplings of nodes that are added are not known");
   if (before > 0) motion.resize(motion.size() / before * n, 0);
   free.resize(n, false);
   if (!place.empty()) place.resize(n);

@@ -23,7 +23,8 @@ constexpr Real least_coarsening = 0.8;
 
 /// Nodes of an aggregate of the finest level. In space a coarse node has six unknowns; nodes with few neighbours, as in
 /// tetrahedra, would make so many coarse ones that the levels below took half of the memory and time of the finest one.
-/// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Collective.
+/// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Small parts,
+/// in which most nodes have neighbours on other ranks, may take the other choice. Collective.
 std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   constexpr int modes_in_space = 6;
   constexpr std::size_t long_row = 27, enough = 36;

@@ -73,8 +73,7 @@ class DirectSolver : public LinearSolver {
     if (!report.converged)
       report.reason = fmt::format(
           "direct solve: relative residual {:.1e} after refinement and {} iterations of GMRES with the factors, at "
-          "most "
-          "{:.0e} is acceptable: the matrix is singular or nearly so",
+          "most {:.0e} is acceptable: the matrix is singular or nearly so",
           report.residual, report.iterations - 1, acceptable);
     return report;
   }

@@ -3,10 +3,6 @@
 #include <Ifpack2_Factory.hpp>
 #include <TpetraExt_TripleMatrixMultiply.hpp>
 
-#include <algorithm>
-
-#include "base/check.hpp"
-
 namespace sprekk::solve {
 namespace {
 

@@ -80,8 +80,7 @@ class IterativeSolver : public LinearSolver {
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
     const bool keeps = reuse_.may_keep() && preconditioner_->can_be_kept() && system.symmetric == system_.symmetric &&
-                       !system.diagonal.front().matrix.is_null() &&
-                       n_changed(*system.diagonal.front().matrix) <= most_changed;
+                       !system.diagonal.front().matrix.is_null() && n_changed(system) <= most_changed;
     system_ = system;
     system_.reproducible = reproducible_;
     symmetric_ = system.symmetric && preconditioner_->is_symmetric();
@@ -191,13 +190,16 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// How many rows have another diagonal than when multigrid was made.
-  GlobalIndex n_changed(const Matrix& matrix) {
-    const auto diagonal = diagonal_of(matrix);
-    const auto now = diagonal->getLocalViewHost(Tpetra::Access::ReadOnly),
-               then = diagonal_->getLocalViewHost(Tpetra::Access::ReadOnly);
+  GlobalIndex n_changed(const LinearSystem& system) {
     GlobalIndex here = 0;
-    for (std::size_t i = 0; i < now.extent(0); ++i)
-      here += std::fabs(now(i, 0) - then(i, 0)) > much * std::fabs(then(i, 0));
+    for (std::size_t r = 0; r < diagonals_.size(); ++r) {
+      if (diagonals_[r].is_null()) continue;
+      const auto diagonal = diagonal_of(*system.diagonal[r].matrix);
+      const auto now = diagonal->getLocalViewHost(Tpetra::Access::ReadOnly),
+                 then = diagonals_[r]->getLocalViewHost(Tpetra::Access::ReadOnly);
+      for (std::size_t i = 0; i < now.extent(0); ++i)
+        here += std::fabs(now(i, 0) - then(i, 0)) > much * std::fabs(then(i, 0));
+    }
     return base::sum_over_ranks(*comm_, here);
   }
 
@@ -206,8 +208,11 @@ class IterativeSolver : public LinearSolver {
     const bool keeps = reuse_.is_of_earlier_system();
     failure_.clear();
     system_.diagonal.front().careful = reuse_.state() != Reuse::State::unchecked;
-    if (const auto& first = system_.diagonal.front().matrix; !keeps && !first.is_null())
-      diagonal_ = diagonal_of(*first);
+    if (!keeps) {
+      diagonals_.clear();
+      for (const auto& part : system_.diagonal)
+        diagonals_.push_back(part.matrix.is_null() ? Teuchos::null : diagonal_of(*part.matrix));
+    }
     try {
       preconditioner_->setup(system_, keeps);
       inverse_ = preconditioner_->inverse();
@@ -270,25 +275,24 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Starts from x = 0. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there
-  /// are too many. Where conjugate gradients meet a direction of negative energy, as rules of integration leave of some
-  /// functions at crack tips in hexahedra, GMRES takes over for good.
+  /// are too many, or a preconditioner of an earlier matrix is not positive for this one. Of a new one the matrix is
+  /// not: rules of integration leave a little negative energy to some functions at crack tips in hexahedra. GMRES takes
+  /// over for good then.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
     if (!scale_.is_null()) M = rcp(new ScaledOperator(inverse_, unscale_));
     const auto solve_once = [&] {
-      const auto end = solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most);
-      iterations += end.iterations;
-      return end.ended;
+      return solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most);
     };
-    if (!symmetric_ || !definite_ || parameters.isParameter("Solver Type")) return solve_once();
-    try {
-      return solve_once();
-    } catch (const std::exception&) {  // the same on all ranks: Belos decides by sums over them
+    auto end = solve_once();
+    if (end.indefinite) x.putScalar(0);
+    if (end.indefinite && !reuse_.is_of_earlier_system() && !parameters.isParameter("Solver Type")) {
       definite_ = false;
-      x.putScalar(0);
-      return solve_once();
+      end = solve_once();
     }
+    iterations += end.iterations;
+    return end.ended;
   }
 
   PreconditionerOptions options_;
@@ -305,7 +309,7 @@ class IterativeSolver : public LinearSolver {
   static constexpr Real much = 0.1;        // that a diagonal may change,
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   LinearSystem system_;
-  RCP<const Vector> diagonal_;  // when multigrid was made
+  std::vector<RCP<const Vector>> diagonals_;  // [block] when multigrid was made; null: it has none
   bool symmetric_ = false, definite_ = true;
   Reuse reuse_;
   std::string failure_ = "the matrix was not set up";

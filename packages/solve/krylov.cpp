@@ -1,5 +1,6 @@
 #include "solve/krylov.hpp"
 
+#include <BelosCGIteration.hpp>
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 
@@ -56,8 +57,12 @@ KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, con
   Belos::SolverFactory<Real, MultiVector, Operator> factory;
   const auto solver = factory.create(method, list);
   solver->setProblem(problem);
-  const bool converged = solver->solve() == Belos::Converged;
-  return {converged || solver->isLOADetected(), solver->getNumIters()};
+  try {
+    const bool converged = solver->solve() == Belos::Converged;
+    return {converged || solver->isLOADetected(), solver->getNumIters()};
+  } catch (const Belos::CGIterateFailure&) {  // by sums over all ranks, on all of them
+    return {false, 0, true};
+  }
 }
 
 }  // namespace sprekk::solve

@@ -16,6 +16,7 @@ void check_krylov(const Teuchos::ParameterList& given);
 struct KrylovEnd {
   bool ended;  ///< by itself: converged, or stopped where rounding leaves no more to gain; false: too many iterations
   int iterations;
+  bool indefinite = false;  ///< conjugate gradients met a direction in which A or M is not positive; x is of no use
 };
 
 /// Solves A x = b from x on, M about A^-1 from the right, by the "Solver Type" of the parameters, or by `usual`, to the

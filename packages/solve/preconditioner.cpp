@@ -178,10 +178,11 @@ bool is_condensed_pair(const std::vector<Block>& blocks) {
   return blocks.size() == 2 && blocks[1].condensed_into == blocks[0].name && !blocks[0].coordinates.is_null();
 }
 
-/// Whether all blocks but the first enrich it.
+/// Whether all blocks but the first enrich it, in nodes of its size.
 bool enrich_first(const std::vector<Block>& blocks) {
-  return std::all_of(blocks.begin() + 1, blocks.end(),
-                     [&](const Block& block) { return block.enriches == blocks.front().name; });
+  return std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) {
+    return block.enriches == blocks.front().name && block.n_components == blocks.front().n_components;
+  });
 }
 
 std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, const std::vector<Block>& blocks) {

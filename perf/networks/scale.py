@@ -8,6 +8,7 @@ import krylov
 import linear
 
 STEPS = 4     # of the scene: one compresses, the others shear
+DRAINED = 1e5  # s, of a step with flow: in less time the pressure of what cannot drain decides
 AS_DRAWN = {3: (300, 20), 2: (100, 10)}  # fractures and side of the domain of the scenes
 SCENES = {3: "random_3d_300.xml", 2: "random_2d_100.xml"}
 SETS = {3: ("steep", "flat"), 2: ("main", "cross")}
@@ -50,6 +51,12 @@ class Scale:
                  (("settlement", ", ".join(f"{x * wider:.6g}" for x in (0, 4e-4 * side, 4e-4 * side))),
                   ("shear", ", ".join(f"{x * wider:.6g}" for x in (0, 0, 8e-4 * side))))]
         return (f"Mesh file.network.domain.upper corner={{{corner}}}", *numbers, *moved)
+
+    def entries(self):
+        """Of the run."""
+        step = DRAINED if self.flow else 1
+        times = [f"Tables.{table}.arguments={{0, {step}, {11 * step}}}" for table in ("settlement", "confinement", "shear")]
+        return (f"Time.end={STEPS * step}", f"Time.steps={STEPS}", *times, *(FLOW if self.flow else ()))
 
 
 def scales():
@@ -115,7 +122,7 @@ def measure(options, made, seed):
 
     for scale in chosen:
         mesh, fractures = made(scale, scale.sets(seed))
-        entries = (*scale.sets(seed), f"Mesh file.path={mesh}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *(FLOW if scale.flow else ()))
+        entries = (*scale.sets(seed), f"Mesh file.path={mesh}", *scale.entries())
         row = Row(scale.name, fractures, linear.run(options, entries, "run_" + scale.name.replace(" ", "_").replace(",", ""), scene=f"networks/{scale.file}"))
         show(row)
         networks.append((scale, row))
@@ -133,7 +140,7 @@ def summary(networks, beside):
     newton = [n for _, row in networks for n in row.newton]
     both = [(row, beside[scale.name]) for scale, row in networks if scale.name in beside and not beside[scale.name].run.failure]
     ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in range(3)]
-    of_size = [(math.log(row.fractures), math.log(row.seconds)) for row, _ in both]
+    of_size = [(math.log(row.fractures), math.log(row.seconds)) for scale, row in networks if scale.dim == 3 and not scale.flow]
     return {"krylov_max": max((row.run.most_used for _, row in networks), default=math.nan), "newton_median": float(np.median(newton or [math.nan])),
             "newton_max": max(newton, default=math.nan), "seconds_over_blocks": ratio[0], "bytes_over_blocks": ratio[1],
             "with_tips": ratio[2],

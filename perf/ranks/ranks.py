@@ -66,11 +66,14 @@ class Machine:
     direct: float = 2e9    # flop/s with factors
 
 
-def model(rows, unknowns=5e4, machine=Machine()):
+UNKNOWNS = 5e4  # of a rank
+
+
+def model(rows, unknowns=UNKNOWNS, machine=Machine()):
     """Seconds of a Krylov iteration by what they are for, on 10^2 to 10^5 ranks with so many unknowns each: counts of the largest run of the weak
     series, per unknown or, of halos, per unknown^(2/3); the last level grows with the ranks, of which each keeps a node, and one rank solves it
     with factors of a space-filling graph, 30 n^(4/3) numbers."""
-    row = max((row for row in rows if row.kind == "weak"), key=lambda row: row.ranks)
+    row = max((row for row in rows if row.kind == "weak" and row.cycle), key=lambda row: row.ranks)
     cycle, own = row.cycle, row.run.unknowns / row.ranks
     more, levels = unknowns / own, cycle["levels"]
     matrix = 8 * 45  # bytes per unknown: a product with the matrix
@@ -89,7 +92,7 @@ def predict(rows):
           + f"{'efficiency':>12}")
     for ranks, parts in model(rows):
         total = sum(parts.values())
-        print(f"{ranks:>9}{5e4 * ranks:>12.0e}" + "".join(f"{1e3 * value:>16.3g}" for value in (*parts.values(), total)) + f"{parts['memory'] / total:>12.2f}")
+        print(f"{ranks:>9}{UNKNOWNS * ranks:>12.0e}" + "".join(f"{1e3 * value:>16.3g}" for value in (*parts.values(), total)) + f"{parts['memory'] / total:>12.2f}")
 
 
 def summary(rows, most):

@@ -345,7 +345,7 @@ class Directions(unittest.TestCase):
 
 
 class Random(unittest.TestCase):
-    def random(self, domain, again={}, **entries):
+    def random(self, domain, again=None, **entries):
         from domain import Body
         from generator import at_random
         given = {"number": 4000, "seed": 3, "shortest": 1.0, "longest": 10.0, "exponent": 2.5, "strike": 30.0, "dip": 60.0, "concentration": 20.0, "corners": 8}
