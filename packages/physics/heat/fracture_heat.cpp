@@ -13,12 +13,16 @@ using assembly::Slot;
 
 namespace {
 
-/// | symbol | shape           | unit          |                                                      |
-/// | x      | 1               | K             | T of the face                                        |
-/// | r      | n_rows          | W, m^3/s      | c A m (T - T_old) rate, then -beta A m (T - T_old) rate |
-/// | area   | [local face]    | m^2           | (2D: m)                                              |
-/// | factor | [local face, n_rows] | J/(m^3 K), 1/K | c, -beta                                       |
-/// | kept   | [owned face, 2] | K, m          | T_old, m                                             |
+/// What a fluid brings whose amount m in a fracture changes: T dm/dt, by the same rates, is taken from d(m T)/dt, which
+/// leaves q (T - T_old), q = now m_old + before (m_old - m_older), less what the step before stored. See
+/// assembly::Rates.
+///
+/// | symbol | shape                | unit           |                                            |
+/// | x      | 1                    | K              | T of the face                              |
+/// | r      | n_rows               | W, m^3/s       | c A q (T - T_old), then -beta A q (T - T_old) |
+/// | area   | [local face]         | m^2            | (2D: m)                                    |
+/// | factor | [local face, n_rows] | J/(m^3 K), 1/K | c, -beta                                   |
+/// | kept   | [owned face, 3]      | K, m, m        | T_old, m_old, m_older                      |
 template <int n_rows>
 struct Filling {
   using Columns = assembly::Slots<Slot<1, 1>>;
@@ -26,13 +30,16 @@ struct Filling {
   ConstView<Real*> area;
   ConstView<Real**> factor;
   View<Real**> kept;
-  Real rate = 0;
+  Real now = 0, before = 0;
 
+  KOKKOS_INLINE_FUNCTION Real per_kelvin(int f, int k) const {
+    return factor(f, k) * area(f) * (now * kept(f, 1) + before * (kept(f, 1) - kept(f, 2)));
+  }
   KOKKOS_INLINE_FUNCTION void residual(int f, const Real (&x)[1], Real (&r)[n_rows]) const {
-    for (int k = 0; k < n_rows; ++k) r[k] = factor(f, k) * area(f) * kept(f, 1) * rate * (x[0] - kept(f, 0));
+    for (int k = 0; k < n_rows; ++k) r[k] = per_kelvin(f, k) * (x[0] - kept(f, 0));
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&)[1], Real (&J)[n_rows][1]) const {
-    for (int k = 0; k < n_rows; ++k) J[k][0] = factor(f, k) * area(f) * kept(f, 1) * rate;
+    for (int k = 0; k < n_rows; ++k) J[k][0] = per_kelvin(f, k);
   }
 };
 
@@ -51,7 +58,7 @@ class FractureHeat final : public assembly::Module {
     d.couplings = {{Loop::fracture_cells, "face temperature", {"face temperature"}}};
     if (expands) d.couplings.push_back({Loop::fracture_faces, "face pressure", {"face temperature"}});
     d.stores = true;
-    d.history = {{"temperature, filling", fields::Entity::fracture_face, 2}};
+    d.history = {{"temperature, two fillings", fields::Entity::fracture_face, 3}};
     using assembly::Summary;
     d.outputs = {{{"fracture temperature",
                    "K",
@@ -92,6 +99,7 @@ class FractureHeat final : public assembly::Module {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       kept(f, 0) = start(f, parameters_.initial);
       kept(f, 1) = parameters_.faces[f].aperture * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
+      kept(f, 2) = kept(f, 1);
     }
     Kokkos::deep_copy(history[0], kept);
   }
@@ -110,6 +118,7 @@ class FractureHeat final : public assembly::Module {
         "filling", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int f) {
           const Real a = aperture(f) + (widens ? widening(f) : 0);
           kept(f, 0) = T(facet(f));
+          kept(f, 2) = kept(f, 1);
           kept(f, 1) = (a > 0 ? a : 0) * (flows ? fluid.density(p(facet(f))) : 1) *
                        (changes ? response.density(kept(f, 0)).value : 1);
         });
@@ -134,7 +143,8 @@ class FractureHeat final : public assembly::Module {
   Filling<expands ? 2 : 1> filling(const assembly::State& state) const {
     auto op = filling_;
     op.kept = state.history[0];
-    op.rate = state.rate;
+    op.now = state.rate;
+    op.before = state.before;
     return op;
   }
 
