@@ -18,6 +18,23 @@ std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh) {
   return sides;
 }
 
+std::vector<std::array<LocalIndex, 2>> neighbours(const mesh::Mesh& mesh) {
+  const int n_faces = mesh::n_faces(mesh.shape);
+  const auto& facets = *mesh.facets;
+  std::vector<std::array<LocalIndex, 2>> of_facet(facets.id.size(), {-1, -1});
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell)
+    for (int k = 0; k < n_faces; ++k) {
+      auto& [first, second] = of_facet[facets.of_cell[cell * n_faces + k]];
+      (first < 0 ? first : second) = cell;
+    }
+  for (const LocalIndex facet : facets.fracture_face) of_facet[facet] = {-1, -1};
+  of_facet.erase(std::remove_if(of_facet.begin(), of_facet.end(), [](const auto& pair) { return pair[1] < 0; }),
+                 of_facet.end());
+  for (auto& [first, second] : of_facet)
+    if (mesh.cell_id[second] < mesh.cell_id[first]) std::swap(first, second);
+  return of_facet;
+}
+
 bool has_tip(const mesh::Mesh& mesh, LocalIndex cell) {
   if (mesh.tip.empty()) return false;
   const auto first = mesh.cells.begin() + cell * mesh.nodes_per_cell();
@@ -176,6 +193,13 @@ Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
       const auto [f, side] = sides[s];
       table.add((on_cells ? mesh.fracture_faces[f].cell[side] : mesh.facets->fracture_face[f]) * width);
     }
+    return {table.finish(), width};
+  }
+  if (on_cells && loop == Loop::neighbours) {
+    const auto pairs = neighbours(mesh);
+    TableBuilder table(pairs.size(), 2);
+    for (const auto& pair : pairs)
+      for (const LocalIndex cell : pair) table.add(cell * width);
     return {table.finish(), width};
   }
   if (on_cells && loop == Loop::tip_cells) {

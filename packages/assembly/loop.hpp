@@ -22,12 +22,16 @@ enum class Loop {
   fracture_faces,  ///< owned fracture faces
   fracture_cells,  ///< all local fracture faces, as cells of the fracture
   boundary_faces,  ///< boundary faces of all local cells
+  neighbours,      ///< pairs of local cells with a face between them that is no fracture's
   tip_cells,       ///< those of cells that have a crack tip, see mesh::Mesh::tip
   tip_sides        ///< those of fracture_sides whose cell has one
 };
 
 /// The entities of Loop::fracture_sides: {fracture face, side}.
 std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh);
+
+/// The entities of Loop::neighbours, of a mesh with facets: the two cells, that with the lower number first.
+std::vector<std::array<LocalIndex, 2>> neighbours(const mesh::Mesh& mesh);
 
 /// Local cells that have a crack tip, and the number of an entity of Loop::fracture_sides for each of Loop::tip_sides.
 std::vector<LocalIndex> tip_cells(const mesh::Mesh& mesh);
@@ -62,7 +66,8 @@ class Writers {
 /// | fracture_faces, fracture_cells | face nodes of side minus, then plus; - | all components                   |
 /// | boundary_faces            | the face's nodes                     | -                                           |
 ///
-/// A field on cells has one group in cells, tip_cells, boundary_faces and on sides, that of the cell; one on facets all
+/// A field on cells has one group in cells, tip_cells, boundary_faces and on sides, that of the cell, and one for each
+/// of two neighbours; one on facets all
 /// of the cell's, or the face's; on sides and in fracture_faces the fracture face itself, in fracture_cells the face,
 /// then its ridges.
 ///

@@ -66,6 +66,8 @@ struct Unknown {
   /// Its rows are balances of rates: of fluxes, and State::rate times what is stored. They may differ by orders of
   /// magnitude, so each is measured by its diagonal, anew in each step.
   bool balance = false;
+  /// Its values may be orders of magnitude above their scale: their rounding counts in the rows of others.
+  bool unbounded = false;
   /// Of tractions of contact: the scale of the jumps that their rows have in them, times contact::Grip::augmentation.
   std::string augmented_by = "";
   Reactions reactions = {};
@@ -171,7 +173,8 @@ class Context {
 /// component).
 struct State {
   Real t = 0;
-  Real rate = 0;  ///< what rates are times what a module stores more than at the start of the step, 1/s: see Rates
+  Real rate = 0;    ///< what rates are times what a module stores more than at the start of the step, 1/s: Rates::now
+  Real before = 0;  ///< Rates::before; what the step before stored is subtracted by the framework
   contact::Regularisation contact = {};
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
   std::vector<ConstView<Real*>> x;

@@ -113,6 +113,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
   Real rounding(const fields::BlockVector& x, const std::string& scale) const;
+  View<Real*> rounding_of_others(int b, const fields::BlockVector& x) const;
   void update_scales(Real t);
   void find_schur();
   std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;

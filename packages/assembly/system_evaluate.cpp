@@ -60,6 +60,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 State System::state(int module) const {
   State s{.t = t_,
           .rate = rates_.now,
+          .before = rates_.before,
           .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
           .coefficients = coefficients_,
           .x = {},
@@ -257,14 +258,16 @@ Real System::rounding(const BlockVector& x, const std::string& scale) const {
 /// hides the loads has not converged.
 namespace {
 
-/// What rounding of other balances' unknowns leaves of the rows of block b: sum over these c of |J_bc| times their
-/// `rounding(c)`. Collective.
+/// What rounding of other blocks' unknowns leaves of the rows of block b: sum over c of |J_bc| times their
+/// `rounding(c)`, where that is not zero; empty where it is for all. Collective.
 View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n,
                                const std::function<Real(int)>& rounding) {
-  View<Real*> sum("rounding", n);
+  View<Real*> sum;
   for (int c = 0; c < J.n_blocks(); ++c) {
     if (c == b || J(b, c).is_null()) continue;
     const Real each = rounding(c);
+    if (each == 0) continue;
+    if (sum.extent(0) == 0) sum = View<Real*>("rounding", n);
     const auto block = J(b, c)->getLocalMatrixDevice();
     Kokkos::parallel_for(
         "rounding", Kokkos::RangePolicy<Execution>(0, n), KOKKOS_LAMBDA(int i) {
@@ -277,11 +280,18 @@ View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n
 
 }  // namespace
 
+/// Where something is carried, of other balances; of others that may be far above their scale, everywhere.
+View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
+  return rounding_by_others(matrix_, b, base::n_local_elements(*blocks_[b].map), [&](int c) {
+    const bool counts = (carried_[b] && unknowns_[c].balance) || unknowns_[c].unbounded;
+    return counts ? rounding(x, unknowns_[c].scale) : 0;
+  });
+}
+
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   constexpr Real most_noise = 1e-5;  // of the loads
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
-  const auto of_field = [&](int c) { return unknowns_[c].balance ? rounding(x, unknowns_[c].scale) : 0; };
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& unknown = unknowns_[b];
     const bool traction = static_cast<int>(b) == contact_blocks_.traction;
@@ -301,8 +311,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     Real stored = 0;  // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
-    const auto others =
-        carried_[b] ? rounding_by_others(matrix_, static_cast<int>(b), row.extent(0), of_field) : View<Real*>();
+    const auto others = rounding_of_others(static_cast<int>(b), x);
     const Real infinite = std::numeric_limits<Real>::infinity();
     Real largest = 0;
     Kokkos::parallel_reduce(
@@ -336,7 +345,6 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
   constexpr Real share_at_work = 1e-3;  // of the energy of what is carried: as much of it acts on all else, or less
-  const auto of_field = [&](int c) { return unknowns_[c].balance ? rounding(x, unknowns_[c].scale) : 0; };
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
@@ -345,8 +353,7 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
     const auto weight = const_view(weighted ? *weights_[b] : *diagonals_[b]);
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const bool balance = unknowns_[b].balance, powers = balance && coupled_;
-    const auto others =
-        carried_[b] ? rounding_by_others(matrix_, static_cast<int>(b), row.extent(0), of_field) : View<Real*>();
+    const auto others = rounding_of_others(static_cast<int>(b), x);
     const Real rounding_of_block = balance ? rounding(x, unknowns_[b].scale) : 0;
     Real part = 0;
     Kokkos::parallel_reduce(

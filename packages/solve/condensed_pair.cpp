@@ -87,20 +87,10 @@ void CondensedPair::fill_S(const LinearSystem& pair, const Vector& D_inverse) {
   }
   S_->resumeFill();
   Kokkos::deep_copy(S_->getLocalMatrixDevice().values, FF.getLocalMatrixDevice().values);
-  if (const auto& schur = pair.diagonal[0].schur; !schur.is_null()) add_diagonal(*schur);
+  if (const auto& schur = pair.diagonal[0].schur; !schur.is_null()) add_to_diagonal(*S_, *schur);
   const auto &FK = *pair.blocks[1]->crs(), &KF = *pair.blocks[2]->crs();
   subtract_product(FK, *with_ghost_rows(FK, KF, D_inverse));
   S_->fillComplete(FF.getDomainMap(), FF.getRangeMap());
-}
-
-void CondensedPair::add_diagonal(const Vector& added) {
-  const auto local = S_->getLocalMatrixHost();
-  const auto rows = S_->getRowMap()->getLocalMap(), columns = S_->getColMap()->getLocalMap();
-  const auto values = added.getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (LocalIndex row = 0; row < local.numRows(); ++row)
-    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
-      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
-        local.values(k) += values(row, 0);
 }
 
 void CondensedPair::subtract_product(const CrsMatrix& FK, const CrsMatrix& KF) {

@@ -23,7 +23,6 @@ class CondensedPair : public Preconditioner {
   void prepare(const LinearSystem& pair, SolverCost& cost) override;
   RCP<const fields::Operator> made() const override { return inverse_; }
   void fill_S(const LinearSystem& pair, const Vector& D_inverse);
-  void add_diagonal(const Vector& added);
   void subtract_product(const CrsMatrix& FK, const CrsMatrix& KF);
 
   Block first_;

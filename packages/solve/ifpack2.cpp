@@ -69,16 +69,30 @@ class Ifpack2Method : public Preconditioner {
  private:
   void prepare(const LinearSystem& system, SolverCost&) override {
     matrix_.update(system);
-    SPREKK_CHECK(type_ != "Gauss-Seidel" || !has_zero_on_diagonal(*matrix_.crs()),
+    const auto matrix = with_schur(system);
+    SPREKK_CHECK(type_ != "Gauss-Seidel" || !has_zero_on_diagonal(*matrix),
                  "its matrix has zeros on the diagonal; solve directly, or eliminate the block locally");
     if (made_.is_null()) {
-      made_ = create(method_, parameters_, matrix_.crs());
+      made_ = create(method_, parameters_, matrix);
       made_->initialize();
     }
     made_->compute();
   }
   RCP<const Operator> made() const override { return made_; }
 
+  /// What elimination of other blocks adds is added, of a block alone.
+  RCP<const CrsMatrix> with_schur(const LinearSystem& system) {
+    const auto& schur = system.diagonal.front().schur;
+    if (schur.is_null() || system.diagonal.size() > 1) return matrix_.crs();
+    if (sum_.is_null()) sum_ = rcp(new CrsMatrix(matrix_.crs()->getCrsGraph()));
+    sum_->resumeFill();
+    Kokkos::deep_copy(sum_->getLocalMatrixDevice().values, matrix_.crs()->getLocalMatrixDevice().values);
+    add_to_diagonal(*sum_, *schur);
+    sum_->fillComplete(matrix_.crs()->getDomainMap(), matrix_.crs()->getRangeMap());
+    return sum_;
+  }
+
+  RCP<CrsMatrix> sum_;  // null: that of the system
   std::string type_, method_;
   ParameterList parameters_;
   WholeMatrix matrix_;

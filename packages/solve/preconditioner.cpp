@@ -279,6 +279,16 @@ std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {
   return std::make_unique<Direct>(blocks.front().name);
 }
 
+void add_to_diagonal(CrsMatrix& A, const Vector& added) {
+  const auto local = A.getLocalMatrixHost();
+  const auto rows = A.getRowMap()->getLocalMap(), columns = A.getColMap()->getLocalMap();
+  const auto values = added.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (LocalIndex row = 0; row < local.numRows(); ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+      if (columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
+        local.values(k) += values(row, 0);
+}
+
 /// The last paragraph of an exception's text: what went wrong, without the place in the library.
 std::string gist(const std::string& text) {
   const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1), first = text.find("\n\n");

@@ -82,6 +82,9 @@ class WholeMatrix {
   RCP<const Matrix> matrix_;
 };
 
+/// To a matrix whose diagonal has places. Local.
+void add_to_diagonal(CrsMatrix& A, const Vector& added);
+
 /// Of the text of a library's exception: what went wrong, without the place in its sources.
 std::string gist(const std::string& text);
 

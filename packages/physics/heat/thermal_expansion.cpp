@@ -3,7 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
-#include "physics/poroelasticity/coupling_volumes.hpp"
+#include "physics/coupling_volumes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -27,6 +27,8 @@ class BulkMomentum final : public assembly::Module {
 
   std::string name() const override { return "bulk momentum"; }
 
+  void set_fields(const std::set<std::string>& fields) override { split_ = fields.count("solid pressure") > 0; }
+
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     const Real E = largest_modulus(mesh), L = mesh::largest_extent(mesh);
     assembly::Declaration d;
@@ -50,6 +52,7 @@ class BulkMomentum final : public assembly::Module {
     op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity.values, "material"),
                                   assembly::material_numbers(context.geometry(), parameters_.elasticity.number)});
     displacement_ = context.field("displacement");
+    if (split_) solid_pressure_ = context.field("solid pressure");
     if (mesh_->n_global_enriched > 0) tip_displacement_ = context.field("tip displacement");
     using Assembler = assembly::Assembler<Op>;
     cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
@@ -124,6 +127,10 @@ class BulkMomentum final : public assembly::Module {
                        : Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[tip_displacement_]);
     std::vector<Real> values;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, q, values);
+    if (!split_) return values;
+    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[solid_pressure_]);
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+      for (int k = 0; k < 3; ++k) values[6 * c + k] -= p(c);
     return values;
   }
 
@@ -240,9 +247,9 @@ class BulkMomentum final : public assembly::Module {
 
   BulkMomentumParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
-  int displacement_ = -1, tip_displacement_ = -1;
-  bool loaded_ = false;
-  Real size_ = 0;  // largest extent of the domain, m
+  int displacement_ = -1, tip_displacement_ = -1, solid_pressure_ = -1;
+  bool loaded_ = false, split_ = false;  // has a solid pressure
+  Real size_ = 0;                        // largest extent of the domain, m
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;
   assembly::Load load_;  // N

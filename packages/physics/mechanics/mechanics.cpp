@@ -4,6 +4,7 @@
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
 #include "physics/mechanics/modules.hpp"
+#include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/uniqueness.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/scene.hpp"
@@ -95,19 +96,47 @@ std::string power_to(const Scene& scene) {
   return field;
 }
 
+/// With displacements of an order; 1: of any. Other unknowns on facets are those of fields with a part in the stress,
+/// which the bubbles of facets would have to see.
+bool has_solid_pressure(const Scene& scene, int order = 1) {
+  bool alone = true;
+  for_each_physics([&](auto physics) {
+    if constexpr (!std::is_same_v<decltype(physics), Mechanics>) alone = alone && !physics.needs_facets(scene);
+  });
+  return alone && std::any_of(scene.materials.begin(), scene.materials.end(), [order](const auto& material) {
+           const auto& rock = material.second;
+           return rock.type == "elastic" && rock.has_elasticity() && rock.is_uniformly_elastic() &&
+                  VolumetricSplit(rock.elasticity({}), order).modulus > 0;
+         });
+}
+
+/// Splits the elasticity of cells of an order.
+Properties<Real> split(Properties<laws::Elasticity>& elasticity, int order) {
+  Properties<Real> modulus{{}, elasticity.number};
+  for (auto& law : elasticity.values) {
+    const VolumetricSplit split(law, order);
+    law = split.elasticity;
+    modulus.values.push_back(split.modulus);
+  }
+  return modulus;
+}
+
 MechanicsParameters parameters_of(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   BulkMomentumParameters bulk{.elasticity = elasticity(scene, mesh),
                               .body_force = body_force(scene, mesh),
                               .initial_stress = initial_stress(scene, mesh.region_names)};
+  const int order = mesh::order(mesh.shape);
+  const auto modulus = has_solid_pressure(scene, order) ? split(bulk.elasticity, order) : Properties<Real>();
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (!condition.traction.empty())
       bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
                                 condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  if (mesh.fracture_names.empty()) return {.bulk = bulk};
+  if (mesh.fracture_names.empty()) return {.bulk = bulk, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
   return {.bulk = bulk,
+          .solid_modulus = modulus,
           .joints = joints(scene, mesh),
           .fluid_pressure = unknown ? FluidPressure() : fluid,
           .initial_pressure = unknown ? fluid : FluidPressure(),
@@ -144,6 +173,8 @@ bool has_tips(const mesh::Mesh& mesh) {
 Real usual_augmentation() { return ElasticPlasticJumpParameters().augmentation; }
 
 bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.flow && scene.flow->rigid_rock); }
+
+bool Mechanics::needs_facets(const Scene& scene) { return is_in(scene) && has_solid_pressure(scene); }
 
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
@@ -240,7 +271,8 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
 }
 
 std::string Mechanics::no_error_estimate(const Scene& scene) {
-  return is_in(scene) ? "" : "is of stress and jumps, and the rock does not deform";
+  if (!is_in(scene)) return "is of stress and jumps, and the rock does not deform";
+  return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
 }
 
 std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {

@@ -80,6 +80,7 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   static bool is_in(const Scene& scene);
+  static bool needs_facets(const Scene& scene);
   static std::string no_error_estimate(const Scene& scene);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);

@@ -2,6 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "physics/mechanics/interface_traction_balance.hpp"
+#include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/tip_enrichment.hpp"
 
 #include <algorithm>
@@ -56,6 +57,8 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   const auto& fluid = parameters.fluid_pressure;
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(make_bulk_momentum(mesh.shape, bulk));
+  if (!parameters.solid_modulus.values.empty())
+    modules.push_back(make_solid_pressure(mesh, {.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(make_interface_traction_balance(mesh.shape, {.elasticity = bulk.elasticity,
                                                                  .body_force = bulk.body_force,

@@ -8,6 +8,7 @@ namespace sprekk::physics {
 
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
+  Properties<Real> solid_modulus = {};      ///< of cells, see SolidPressureParameters; empty: no rock has one
   Properties<JointParameters> joints = {};  ///< of owned fracture faces, in groups by fractures
   FluidPressure fluid_pressure = {};
   FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
@@ -19,8 +20,9 @@ struct MechanicsParameters {
 /// Of the module for jumps.
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
 
-/// What a mesh needs: the momentum of the bulk; with fractures, the traction balance of their sides and the split of
-/// their jumps; with enriched tips (mesh::Mesh::enriched), the functions around them. Collective.
+/// What a mesh needs: the momentum of the bulk, with a solid pressure where rock is nearly incompressible; with
+/// fractures, the traction balance of their sides and the split of their jumps; with enriched tips
+/// (mesh::Mesh::enriched), the functions around them. Collective.
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
                                                               const MechanicsParameters& parameters);
 

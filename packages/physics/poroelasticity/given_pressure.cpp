@@ -2,7 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "base/check.hpp"
-#include "physics/poroelasticity/coupling_volumes.hpp"
+#include "physics/coupling_volumes.hpp"
 #include "physics/properties.hpp"
 
 #include <algorithm>

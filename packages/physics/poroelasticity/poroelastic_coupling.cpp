@@ -4,7 +4,8 @@
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "physics/hybrid_diffusion.hpp"
-#include "physics/poroelasticity/coupling_volumes.hpp"
+#include "physics/volume_work.hpp"
+#include "physics/coupling_volumes.hpp"
 
 #include <algorithm>
 
@@ -14,42 +15,6 @@ using assembly::Loop;
 using assembly::Slot;
 
 namespace {
-
-/// A pressure p and displacements that change the volume V it works on.
-///
-/// | symbol    | shape          | unit  |                                                        |
-/// | x         | displacements [m], p | m, Pa | unknowns                                         |
-/// | r         | forces [m], dV/dt    | N, m^3/s (2D: m^2/s) | -(p - p_0) dV/du, rate V          |
-/// | volume    | [entity, m]    | m^2   | dV/du                                                  |
-/// | reference | [entity]       | Pa    | p_0; empty: zero                                       |
-/// | rate      |                | 1/s   | of assembly::State                                     |
-template <class... Displacements>
-struct Work {
-  using Columns = assembly::Slots<Displacements..., Slot<1, 1>>;
-  using Rows = Columns;
-  static constexpr int m = Columns::size - 1, last = sizeof...(Displacements);
-  static constexpr bool couples(int row, int column) { return (row == last) != (column == last); }
-  View<Real**> volume;
-  ConstView<Real*> reference = {};
-  Real rate = 0;
-
-  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1], Real (&r)[m + 1]) const {
-    const Real p = x[m] - (reference.extent(0) > 0 ? reference(e) : 0);
-    r[m] = 0;
-    for (int k = 0; k < m; ++k) {
-      r[k] = -volume(e, k) * p;
-      r[m] += rate * volume(e, k) * x[k];
-    }
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[m + 1], Real (&J)[m + 1][m + 1]) const {
-    for (auto& row : J)
-      for (Real& value : row) value = 0;
-    for (int k = 0; k < m; ++k) {
-      J[k][m] = -volume(e, k);
-      J[m][k] = rate * volume(e, k);
-    }
-  }
-};
 
 /// A fluid that pushes a side of a fracture face, and the share of the side in how far the face has opened.
 ///
@@ -178,8 +143,8 @@ class PoroelasticCoupling final : public assembly::Module {
 
  private:
   using Nodes = Slot<n, dim>;
-  using OfNodes = Work<Nodes>;
-  using OfBubble = Work<Slot<1, dim>>;
+  using OfNodes = VolumeWork<Nodes>;
+  using OfBubble = VolumeWork<Slot<1, dim>>;
   using OfSide = Opening<Nodes, Slot<1, dim>>;
   using Stabilised = StabilisedCell<shape>;
   template <class Op>

@@ -54,13 +54,13 @@ struct Patch {
 };
 
 /// By Hooke's law; in 2D plane strain, which sets stress_zz.
-inline Patch uniform_patch(int dim, Matrix3 stress) {
-  if (dim == 2) stress[2][2] = lame_lambda / (2 * (lame_lambda + G)) * (stress[0][0] + stress[1][1]);
+inline Patch uniform_patch(int dim, Matrix3 stress, Real lambda = lame_lambda) {
+  if (dim == 2) stress[2][2] = lambda / (2 * (lambda + G)) * (stress[0][0] + stress[1][1]);
   Patch patch{dim, stress};
   const Real trace = stress[0][0] + stress[1][1] + stress[2][2];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      patch.strain[i][j] = (stress[i][j] - (i == j ? lame_lambda / (3 * lame_lambda + 2 * G) * trace : 0)) / (2 * G);
+      patch.strain[i][j] = (stress[i][j] - (i == j ? lambda / (3 * lambda + 2 * G) * trace : 0)) / (2 * G);
   return patch;
 }
 
