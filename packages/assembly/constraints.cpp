@@ -13,6 +13,16 @@
 
 namespace sprekk::assembly {
 
+bool DirichletCondition::holds_at(const std::array<Real, 3>& x) const {
+  if (!within) return true;
+  const auto& [lower, upper] = *within;
+  Real size = 0;
+  for (int i = 0; i < 3; ++i) size = std::max({size, std::abs(x[i]), std::abs(lower[i]), std::abs(upper[i])});
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) inside = inside && x[i] >= lower[i] - 1e-9 * size && x[i] <= upper[i] + 1e-9 * size;
+  return inside;
+}
+
 namespace {
 
 /// Collects entries, one per unknown.
@@ -45,7 +55,7 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
   const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component) {
     Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, {0, 0, 0}};
     std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
-    collector.add(entry);
+    if (conditions[condition].holds_at(entry.x)) collector.add(entry);
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
     for (const auto& face : mesh.boundary_faces) {
@@ -109,7 +119,7 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
       if (conditions[k].values[c]) collector.add({GlobalIndex(facet) * n_components + c, k, c, x});
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k) {
-    const auto& [name, field, boundary, values, region, fracture] = conditions[k];
+    const int boundary = conditions[k].boundary, region = conditions[k].region, fracture = conditions[k].fracture;
     if (boundary < 0) {
       for_each_facet_in(mesh, region, [&](LocalIndex facet, const mesh::Vector& x) { add(k, facet, x); });
       continue;

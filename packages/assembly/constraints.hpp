@@ -23,6 +23,9 @@ struct DirichletCondition {
   std::vector<std::optional<base::Expression>> values;
   int region = -1;    ///< only on faces of cells of this region; -1: all
   int fracture = -1;  ///< only where this fracture ends; -1: on faces, and, if no region is named, where fractures end
+  /// Of a field on nodes: only in this box, its lower and upper corner included.
+  std::optional<std::array<std::array<Real, 3>, 2>> within = {};
+  bool holds_at(const std::array<Real, 3>& x) const;
 };
 
 /// The unknowns that conditions on one node field hold.

@@ -85,7 +85,7 @@ class Gram {
         const auto nodes = mesh::nodes_of_face(mesh_, face.cell, face.local_face);
         for (int k = 0; k < mesh::n_face_nodes(mesh_.shape); ++k)
           for (int i = 0; i < mesh_.dim(); ++i) {
-            if (!condition.values[i]) continue;
+            if (!condition.values[i] || !condition.holds_at(mesh::point(mesh_, nodes[k]))) continue;
             const RigidRow held = row(body, nodes[k], i);
             add(body, held, body, held, 1);
           }

@@ -39,6 +39,7 @@ std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFac
 template <Shape shape, class Sums>
 void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletCondition& condition, Real t,
                const Sums& sums) {
+  if (condition.within) return;  // single nodes
   for (const auto& face : mesh.boundary_faces) {
     const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];
     if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;

@@ -344,7 +344,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
-  constexpr Real share_at_work = 1e-3;  // of the energy of what is carried: as much of it acts on all else, or less
+  constexpr Real share_at_work = 1e-6;  // of the energy of what is carried: as much of it acts on all else, or less
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();

@@ -32,13 +32,22 @@ constexpr Unit time_in(Real seconds) { return {{0, 0, 1, 0, 0}, 0, seconds}; }
 constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1, 0}, 0, radians}; }
 constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
 
-constexpr std::array<Symbol, 23> symbols{{{"m", true, length},
+constexpr Real foot = 0.3048, inch = foot / 12, darcy = 9.869232667160128e-13;  // 1 cP cm^2/s/atm
+constexpr Real psi = 4.4482216152605 / (inch * inch);                           // a pound-force per square inch
+constexpr std::array<Symbol, 30> symbols{{{"m", true, length},
                                           {"g", true, {mass.powers, -3, 1}},
                                           {"s", true, time_in(1)},
                                           {"N", true, force},
                                           {"Pa", true, pressure_in(0)},
                                           {"bar", true, pressure_in(5)},
                                           {"J", true, {{2, 1, -2, 0, 0}, 0, 1}},
+                                          {"D", true, {{2, 0, 0, 0, 0}, 0, darcy}},
+                                          {"l", true, {{3, 0, 0, 0, 0}, -3, 1}},
+                                          {"L", true, {{3, 0, 0, 0, 0}, -3, 1}},
+                                          {"P", true, {{-1, 1, -1, 0, 0}, -1, 1}},
+                                          {"ft", false, {{1, 0, 0, 0, 0}, 0, foot}},
+                                          {"in", false, {{1, 0, 0, 0, 0}, 0, inch}},
+                                          {"psi", true, {{-1, 1, -2, 0, 0}, 0, psi}},
                                           {"W", true, {{2, 1, -3, 0, 0}, 0, 1}},
                                           {"K", false, {{0, 0, 0, 0, 1}, 0, 1}},
                                           {"rad", true, angle_in(1)},
@@ -72,16 +81,16 @@ constexpr std::array<Prefix, 10> prefixes{{{"", 0},
                                            {"n", -9}}};
 
 /// What a user is offered in place of the first symbol of a unit.
-constexpr std::array<std::array<const char*, 5>, 10> offered{{{"Pa", "kPa", "MPa", "GPa", "bar"},
-                                                             {"m", "km", "cm", "mm", "um"},
-                                                             {"s", "min", "h", "day", "year"},
-                                                             {"min", "s", "h", "day", nullptr},
-                                                             {"N", "kN", "MN", nullptr, nullptr},
-                                                             {"kg", "g", nullptr, nullptr, nullptr},
-                                                             {"J", "kJ", "MJ", nullptr, nullptr},
-                                                             {"W", "kW", "MW", nullptr, nullptr},
-                                                             {"K", nullptr, nullptr, nullptr, nullptr},
-                                                             {"degree", "rad", nullptr, nullptr, nullptr}}};
+constexpr std::array<std::array<const char*, 6>, 10> offered{{{"Pa", "kPa", "MPa", "GPa", "bar", "psi"},
+                                                              {"m", "km", "cm", "mm", "um", "ft"},
+                                                              {"s", "min", "h", "day", "year"},
+                                                              {"min", "s", "h", "day", nullptr},
+                                                              {"N", "kN", "MN", nullptr, nullptr},
+                                                              {"kg", "g", nullptr, nullptr, nullptr},
+                                                              {"J", "kJ", "MJ", nullptr, nullptr},
+                                                              {"W", "kW", "MW", nullptr, nullptr},
+                                                              {"K", nullptr, nullptr, nullptr, nullptr},
+                                                              {"degree", "rad", nullptr, nullptr, nullptr}}};
 
 bool opens_symbol(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;

@@ -28,8 +28,9 @@ std::string quantity_text(const Quantity& quantity);
 
 /// What is wrong with the text of a unit, e.g. `unknown unit "GPaa". Did you mean "GPa"?`; empty if nothing is.
 ///
-/// A unit is a product or quotient of powers, "kg/m^3", "kg/(m*s^2)", of the symbols m, g, s, N, Pa, bar, rad with or
-/// without a prefix n, u, m, c, k, M, G, and min, h, hour, day, year (365.25 days), degree, deg.
+/// A unit is a product or quotient of powers, "kg/m^3", "kg/(m*s^2)", of the symbols m, g, s, N, Pa, bar, psi, J, W,
+/// rad, l (litre), D (darcy), P (poise) with or without a prefix n, u, m, c, k, M, G, and ft, in, min, h, hour, day,
+/// year (365.25 days), degree, deg.
 std::string defect_of_unit(const std::string& unit);
 
 /// For messages about them.

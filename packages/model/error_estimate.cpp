@@ -107,7 +107,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
   physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda],
-                                   physics::initial_stress(model_.scene(), mesh.region_names), *model_.state()[lambda],
+                                   physics::initial_stress(model_.scene(), mesh), *model_.state()[lambda],
                                    stress.forces);
   try {
     prescribe(right_side);

@@ -131,6 +131,13 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
       if (!field.empty() && one.field != field) continue;
       condition.field = one.field;
       condition.values.clear();
+      condition.within.reset();
+      if (!one.lower_corner.empty()) {
+        auto& [lower, upper] = condition.within.emplace();
+        lower = upper = {};
+        std::copy(one.lower_corner.begin(), one.lower_corner.end(), lower.begin());
+        std::copy(one.upper_corner.begin(), one.upper_corner.end(), upper.begin());
+      }
       for (const auto& value : one.values)
         condition.values.push_back(value.text() == "free" ? std::nullopt : std::make_optional(value));
       all.push_back(condition);

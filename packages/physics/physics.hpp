@@ -41,6 +41,7 @@ inline std::string implausible(const std::string& where, const std::string& what
 struct Prescribed {
   std::string field;
   std::vector<base::Expression> values;
+  std::vector<Real> lower_corner = {}, upper_corner = {};  ///< only at nodes in this box; empty: everywhere
 };
 
 /// What the fluid of Flow carries along: `capacity` times u in each volume of it at reference conditions.

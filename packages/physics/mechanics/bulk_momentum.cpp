@@ -71,11 +71,9 @@ class BulkMomentum final : public assembly::Module {
   }
 
   bool constant_load() const override {
-    const auto constant = [](const base::Expression& e) { return e.constant_in_time(); };
-    bool all = parameters_.body_force.constant_in_time();
-    for (const auto& traction : parameters_.tractions)
-      all = all && std::all_of(traction.value.begin(), traction.value.end(), constant);
-    return all;
+    const auto& all = parameters_.tractions;
+    return parameters_.body_force.constant_in_time() &&
+           std::all_of(all.begin(), all.end(), [](const auto& traction) { return traction.constant_in_time(); });
   }
 
   void set_time(Real t, const assembly::Scales&) override {
@@ -93,11 +91,11 @@ class BulkMomentum final : public assembly::Module {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
-        if (holds(traction, face))
+        if (traction.holds(*mesh_, face))
           assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face,
-                                               [&](const auto&, Real, const auto& x) {
-                                                 for (const auto& e : traction.value)
-                                                   largest = std::max(largest, std::abs(e(x, t)));
+                                               [&, at = traction.on(*mesh_, face)](const auto&, Real, const auto& x) {
+                                                 for (int i = 0; i < dim; ++i)
+                                                   largest = std::max(largest, std::abs(at(i, x, t)));
                                                });
     if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return {{"stress", largest}};
     Real force = 0;
@@ -136,10 +134,6 @@ class BulkMomentum final : public assembly::Module {
 
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
-  }
-  bool holds(const BoundaryTraction& traction, const mesh::Mesh::BoundaryFace& face) const {
-    return face.boundary == traction.boundary &&
-           (traction.region < 0 || mesh_->cell_region[face.cell] == traction.region);
   }
   /// Young's, Pa. Collective.
   Real largest_modulus(const mesh::Mesh& mesh) const {
@@ -186,12 +180,13 @@ class BulkMomentum final : public assembly::Module {
   template <class Host>
   void add_traction(const BoundaryTraction& traction, Real t, const Host& load) const {
     for (const auto& face : mesh_->boundary_faces) {
-      if (!holds(traction, face)) continue;
+      if (!traction.holds(*mesh_, face)) continue;
+      const auto at = traction.on(*mesh_, face);
       const auto corners = mesh::face_nodes(shape)[face.local_face];
       assembly::for_each_face_point<shape>(
           *mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
             for (int i = 0; i < dim; ++i) {
-              const Real force = area * traction.value[i](x, t);
+              const Real force = area * at(i, x, t);
               for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
                 add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
             }
@@ -256,6 +251,11 @@ class BulkMomentum final : public assembly::Module {
 };
 
 }  // namespace
+
+bool BoundaryTraction::constant_in_time() const {
+  return std::all_of(value.begin(), value.end(), [](const auto& e) { return e.constant_in_time(); }) &&
+         (!pressure || pressure->constant_in_time());
+}
 
 std::unique_ptr<assembly::Module> make_bulk_momentum(Shape shape, BulkMomentumParameters parameters) {
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {

@@ -12,11 +12,26 @@
 
 namespace sprekk::physics {
 
-/// Traction on a boundary, Pa, in global components.
+/// Traction on a boundary, Pa: t - p n, with the outward normal n.
 struct BoundaryTraction {
   int boundary;
-  std::vector<base::Expression> value;
-  int region = -1;  ///< only on faces of cells of this region; -1: all
+  std::vector<base::Expression> value = {};       ///< t, in global components; empty: none
+  std::optional<base::Expression> pressure = {};  ///< p
+  int region = -1;                                ///< only on faces of cells of this region; -1: all
+
+  bool holds(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
+    return face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region);
+  }
+  bool constant_in_time() const;
+  /// At points x of a face, component i: at(i, x, t).
+  auto on(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
+    auto n = mesh::area_vector(mesh::face_corners(mesh, face.cell, face.local_face));
+    const Real area = mesh::norm(n);
+    for (Real& component : n) component /= area;
+    return [this, n](int i, const std::array<Real, 3>& x, Real t) {
+      return (value.empty() ? 0 : value[i](x, t)) - (pressure ? (*pressure)(x, t) * n[i] : 0);
+    };
+  }
 };
 
 struct BulkMomentumParameters {

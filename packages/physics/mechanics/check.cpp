@@ -3,7 +3,9 @@
 #include "physics/comparison.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
+#include <tuple>
 
 namespace sprekk::physics {
 
@@ -26,7 +28,7 @@ void compare_rock(Comparison& c) {
   check_stress(c, "Bulk", bulk.initial_stress);
   for (const auto& [name, region] : c.scene().regions) check_stress(c, "Regions > " + name, region.initial_stress);
   if (!Mechanics::is_in(c.scene())) {
-    if (!bulk.body_force.empty() || bulk.lithostatic_stress)
+    if (!bulk.body_force.empty() || bulk.lithostatic_stress || bulk.in_situ_stress)
       c.fail("Bulk", "has a force or stress of the rock, which " + rigid_entry(c.scene()) + " says does not deform");
     return;
   }
@@ -61,9 +63,11 @@ void compare_conditions(Comparison& c) {
     const std::string section = "Boundary conditions > " + name;
     c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
     c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
-    const bool given = !(condition.displacement.empty() && condition.traction.empty());
+    c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
+    c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
+    const bool given = condition.Mechanics::BoundaryCondition::is_given();
     if (given && condition.fracture)
-      c.fail(section + " > \"fracture\"", "goes without \"displacement\" and \"traction\"");
+      c.fail(section + " > \"fracture\"", "goes without \"displacement\", \"traction\" and \"confining pressure\"");
     if (given && !Mechanics::is_in(c.scene()))
       c.fail(section, "moves or loads the rock, which " + rigid_entry(c.scene()) + " says does not deform");
   }
@@ -94,18 +98,53 @@ void compare_lithostatic_stress(Comparison& c) {
     c.fail(place, "needs gravity along the last coordinate only");
 }
 
+void compare_in_situ_stress(Comparison& c) {
+  const auto& stress = c.scene().bulk.in_situ_stress;
+  if (!stress || !c.names().dim || *c.names().dim == 3 || stress->azimuth == 0 || stress->azimuth == 90) return;
+  c.fail("Bulk > in-situ stress > \"azimuth\"",
+         fmt::format("is {} degrees; in 2D SHmax lies in the section, 90, or across it, 0", stress->azimuth));
+}
+
 /// The conditions that could be read and fit to the mesh.
 std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c) {
   std::map<std::string, BoundaryCondition> result;
   for (const auto& [name, condition] : c.scene().boundary_conditions) {
     const auto n = condition.displacement.size();
+    const auto fits = [&](std::size_t size) { return size == 0 || size == static_cast<std::size_t>(*c.names().dim); };
     if (c.is_sound("Boundary conditions > " + name) && has(*c.names().boundaries, condition.boundary) &&
         (!condition.region || has(*c.names().regions, *condition.region)) &&
-        (!condition.fracture || has(*c.names().fractures, *condition.fracture)) &&
-        (n == 0 || n == static_cast<std::size_t>(*c.names().dim)))
+        (!condition.fracture || has(*c.names().fractures, *condition.fracture)) && fits(n) &&
+        fits(condition.lower_corner.size()) && fits(condition.upper_corner.size()))
       result.emplace(name, condition);
   }
   return result;
+}
+
+/// Of conditions in boxes: that a node of the boundary is in each, or which one is nearest to its middle.
+void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
+                 const std::vector<assembly::DirichletCondition>& conditions) {
+  using mesh::operator-, mesh::operator+, mesh::operator*;
+  for (const auto& condition : conditions) {
+    if (!condition.within) continue;
+    const auto middle = 0.5 * (mesh::Vector((*condition.within)[0]) + mesh::Vector((*condition.within)[1]));
+    bool any = false;
+    mesh::Vector nearest{};
+    Real distance = std::numeric_limits<Real>::infinity();
+    for (const auto& face : mesh.boundary_faces) {
+      if (face.boundary != condition.boundary) continue;
+      const auto nodes = mesh::nodes_of_face(mesh, face.cell, face.local_face);
+      for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
+        const auto x = mesh::point(mesh, nodes[k]);
+        any = any || condition.holds_at(x);
+        if (const Real d = mesh::norm(x - middle); d < distance) std::tie(distance, nearest) = std::pair(d, x);
+      }
+    }
+    if (!any)
+      c.fail(fmt::format("Boundary conditions > {} > \"lower corner\"", condition.name),
+             fmt::format("no node of boundary \"{}\" is in the box; the nearest to its middle is at ({:.9g}, {:.9g}, "
+                         "{:.9g})",
+                         (*c.names().boundaries)[condition.boundary], nearest[0], nearest[1], nearest[2]));
+  }
 }
 
 /// Whether the values of a condition at the end of the first step are known.
@@ -123,6 +162,7 @@ void Mechanics::compare(Comparison& c) {
   compare_conditions(c);
   compare_gravity(c);
   compare_lithostatic_stress(c);
+  compare_in_situ_stress(c);
 }
 
 void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
@@ -130,6 +170,7 @@ void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
   const auto held = [&] { return dirichlet_conditions(conditions, {}, c.names(), "displacement"); };
   const bool all = conditions.size() == c.scene().boundary_conditions.size() &&
                    (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
+  check_boxes(c, mesh, held());
   if (is_in(c.scene()) && all) c.fail_unheld(assembly::unheld(mesh, held()));
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);

@@ -70,15 +70,33 @@ void Mechanics::Bulk::describe(base::Section& s) {
   describe_initial_stress(s, initial_stress, "");
   s.section(lithostatic_stress, "lithostatic stress",
             "initial stress of rock at rest under gravity along the last coordinate");
+  s.section(in_situ_stress, "in-situ stress",
+            "initial stress given by the vertical one and two horizontal ones, compression positive");
 }
 
 void Mechanics::Bulk::check(base::Section& s) const {
-  if (lithostatic_stress && !initial_stress.empty()) s.fail("give either \"initial stress\" or \"lithostatic stress\"");
+  if (!initial_stress.empty() + lithostatic_stress.has_value() + in_situ_stress.has_value() > 1)
+    s.fail("give one of \"initial stress\", \"lithostatic stress\" and \"in-situ stress\"");
 }
 
 void Lithostatic::describe(base::Section& s) {
   s.required(surface, "surface", "m", "coordinate where the vertical stress is zero");
   s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "horizontal over vertical stress");
+}
+
+void PrincipalStress::describe(base::Section& s) {
+  const auto component = [&](Component& one, const std::string& name, const std::string& which) {
+    s.entry(one.value, name, "Pa", base::any(), which + " at the datum, compression positive");
+    s.entry(one.gradient, name + " gradient", "Pa/m", base::any(), "its growth with depth, per metre");
+  };
+  s.required(datum, "datum", "m", "vertical coordinate from which depth counts, z in 3D, y in 2D");
+  component(vertical, "Sv", "vertical stress");
+  component(largest, "SHmax", "largest horizontal stress");
+  component(smallest, "Shmin", "smallest horizontal stress");
+  s.entry(
+      azimuth, "azimuth", "degree", base::any(),
+      "direction of SHmax, clockwise from north: in 3D x is east and y north; in 2D, a section from west to east, 90 "
+      "(SHmax lies in it) or 0 (across it)");
 }
 
 void Mechanics::Region::describe(base::Section& s) {
@@ -98,16 +116,27 @@ void Mechanics::Fracture::describe(base::Section& s) {
 void Mechanics::BoundaryCondition::describe(base::Section& s) {
   s.entry(displacement, "displacement", "m", base::any().or_word("free"),
           "per direction a value, an expression of x, y, z, t, or free");
+  s.entry(lower_corner, "lower corner", "m",
+          "of a box: the \"displacement\" holds only at nodes of the boundary in it, e.g. at a point or along an edge");
+  s.entry(upper_corner, "upper corner", "m", "of the box; absent: the \"lower corner\", a point");
   s.entry(traction, "traction", "Pa",
           "force per area on the body, per direction a value or an expression of x, y, z, t");
+  s.entry(
+      confining_pressure, "confining pressure", "Pa", base::any(),
+      "force per area into the body along the normal of its faces, a value or an expression of x, y, z, t; is added "
+      "to a \"traction\"");
 }
 
 void Mechanics::BoundaryCondition::check(base::Section& s) const {
-  if (!displacement.empty() && !traction.empty()) s.fail("give either \"displacement\" or \"traction\"");
+  if (lower_corner.empty() && !upper_corner.empty()) s.fail("upper corner", "goes with a \"lower corner\"");
+  if (displacement.empty() && !lower_corner.empty()) s.fail("lower corner", "goes with a \"displacement\"");
+  if (!displacement.empty() && is_loaded())
+    s.fail(fmt::format("give either \"displacement\" or \"{}\"", traction.empty() ? "confining pressure" : "traction"));
 }
 
 std::vector<Prescribed> Mechanics::BoundaryCondition::prescribed() const {
-  return displacement.empty() ? std::vector<Prescribed>() : std::vector<Prescribed>{{"displacement", displacement}};
+  if (displacement.empty()) return {};
+  return {{"displacement", displacement, lower_corner, upper_corner.empty() ? lower_corner : upper_corner}};
 }
 
 }  // namespace sprekk::physics

@@ -125,13 +125,15 @@ MechanicsParameters parameters_of(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   BulkMomentumParameters bulk{.elasticity = elasticity(scene, mesh),
                               .body_force = body_force(scene, mesh),
-                              .initial_stress = initial_stress(scene, mesh.region_names)};
+                              .initial_stress = initial_stress(scene, mesh)};
   const int order = mesh::order(mesh.shape);
   const auto modulus = has_solid_pressure(scene, order) ? split(bulk.elasticity, order) : Properties<Real>();
   for (const auto& [name, condition] : scene.boundary_conditions)
-    if (!condition.traction.empty())
-      bulk.tractions.push_back({index_of(mesh.boundary_names, condition.boundary), condition.traction,
-                                condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+    if (condition.is_loaded())
+      bulk.tractions.push_back({.boundary = index_of(mesh.boundary_names, condition.boundary),
+                                .value = condition.traction,
+                                .pressure = condition.confining_pressure,
+                                .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
@@ -192,11 +194,30 @@ Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
   return base::max_over_ranks(*mesh.comm, here);
 }
 
-InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names) {
-  const auto common = scene.bulk.lithostatic_stress ? lithostatic_stress(scene) : scene.bulk.initial_stress;
+std::vector<base::Expression> PrincipalStress::stress(int dim) const {
+  const char up = "xyz"[dim - 1];
+  const Real s = std::sin(azimuth * M_PI / 180), c = std::cos(azimuth * M_PI / 180);
+  /// -(a largest + b smallest + v vertical) at a point
+  const auto sum = [&](Real a, Real b, Real v) {
+    const Real value = a * largest.value + b * smallest.value + v * vertical.value,
+               gradient = a * largest.gradient + b * smallest.gradient + v * vertical.gradient;
+    base::Expression component(fmt::format("-({:.17g}) - ({:.17g})*({:.17g} - {})", value, gradient, datum, up));
+    component.compile();
+    return component;
+  };
+  const auto east = sum(s * s, c * c, 0), north = sum(c * c, s * s, 0), along_up = sum(0, 0, 1);
+  if (dim == 2) return {east, along_up, north, base::Expression(0)};
+  return {east, north, along_up, sum(s * c, -s * c, 0), base::Expression(0), base::Expression(0)};
+}
+
+InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh) {
+  const auto& bulk = scene.bulk;
+  const auto common = bulk.lithostatic_stress ? lithostatic_stress(scene)
+                      : bulk.in_situ_stress   ? bulk.in_situ_stress->stress(mesh.dim())
+                                              : bulk.initial_stress;
   InitialStress stress;
   std::size_t n_components = 0;
-  for (const auto& name : region_names) {
+  for (const auto& name : mesh.region_names) {
     const auto region = scene.regions.find(name);
     const bool own = region != scene.regions.end() && !region->second.initial_stress.empty();
     n_components =

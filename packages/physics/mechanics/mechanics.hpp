@@ -23,6 +23,20 @@ struct Lithostatic {
   void describe(base::Section& section);
 };
 
+/// Initial stress whose principal directions are the vertical and two horizontal ones; compression positive, linear in
+/// the depth below a datum. In 3D x is east, y north, z up; in 2D x is east and y up, a vertical section.
+struct PrincipalStress {
+  struct Component {
+    Real value = 0, gradient = 0;  ///< at the datum, Pa; per metre of depth, Pa/m
+  };
+  Real datum = 0;  ///< vertical coordinate, m
+  Component vertical, largest, smallest;
+  Real azimuth = 90;  ///< of the largest horizontal one, degrees clockwise from north
+  void describe(base::Section& section);
+  /// XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; tension positive.
+  std::vector<base::Expression> stress(int dim) const;
+};
+
 struct Mechanics : Physics<Mechanics> {
   /// Every number may be an expression of x, y, z.
   struct Rock : Physics::Rock {
@@ -47,6 +61,7 @@ struct Mechanics : Physics<Mechanics> {
     std::vector<base::Expression> body_force;
     std::vector<base::Expression> initial_stress;   ///< XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D
     std::optional<Lithostatic> lithostatic_stress;  ///< or this
+    std::optional<PrincipalStress> in_situ_stress;  ///< or this
     void describe(base::Section& section);
     void check(base::Section& section) const;
   };
@@ -64,12 +79,15 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   struct BoundaryCondition : Physics::BoundaryCondition {
-    static constexpr const char* kinds = "either \"displacement\" or \"traction\"";
-    std::vector<base::Expression> displacement;  ///< per component; the text "free" leaves one free
+    static constexpr const char* kinds = "either \"displacement\", or \"traction\", \"confining pressure\" or both";
+    std::vector<base::Expression> displacement;    ///< per component; the text "free" leaves one free
+    std::vector<Real> lower_corner, upper_corner;  ///< displacements only at nodes in this box; empty: everywhere
     std::vector<base::Expression> traction;
+    std::optional<base::Expression> confining_pressure;  ///< along the inward normal
     void describe(base::Section& section);
     void check(base::Section& section) const;
-    bool is_given() const { return !(displacement.empty() && traction.empty()); }
+    bool is_loaded() const { return !traction.empty() || confining_pressure; }
+    bool is_given() const { return !displacement.empty() || is_loaded(); }
     std::vector<Prescribed> prescribed() const;
   };
 
@@ -99,7 +117,7 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
 
 /// As given, or the lithostatic one; of a region its own, where it has one.
-InitialStress initial_stress(const Scene& scene, const std::vector<std::string>& region_names);
+InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh);
 
 /// An owned fracture face at the start: its traction in its frame, Pa, and the bound on the shear of its joint.
 struct StartOfFace {

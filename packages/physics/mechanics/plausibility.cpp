@@ -156,13 +156,16 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
   Real stress = 0;
   const auto compare = [&](Real value) { stress = std::max(stress, std::abs(value)); };
   looking([&] {
-    for (const auto& [name, condition] : scene.boundary_conditions)
-      for (const auto& component : condition.traction)
+    for (const auto& [name, condition] : scene.boundary_conditions) {
+      auto loads = condition.traction;
+      if (condition.confining_pressure) loads.push_back(*condition.confining_pressure);
+      for (const auto& component : loads)
         for_each_face_of(mesh, condition, [&](const mesh::Vector& x, int) {
           for (std::size_t k = 0; k < (component.constant_in_time() ? 1 : times.size()); ++k)
             compare(component(x, times[k]));
         });
-    const auto initial = initial_stress(scene, mesh.region_names);
+    }
+    const auto initial = initial_stress(scene, mesh);
     for (LocalIndex cell = 0; cell < mesh.n_owned_cells && !initial.empty(); ++cell)
       for (const auto& component : initial.value[mesh.cell_region[cell]])
         compare(component(mesh::cell_centre(mesh, cell), 0));
@@ -274,7 +277,7 @@ Real largest_principal(const std::vector<Real>& s) {
 /// Initial stress in tension somewhere.
 std::string tension_doubt(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
-  const auto initial = initial_stress(scene, mesh.region_names);
+  const auto initial = initial_stress(scene, mesh);
   if (initial.empty()) return "";
   std::vector<Extreme> highest(1);
   std::array<Real, 2> volumes{};  // of cells in tension, of all
@@ -302,13 +305,35 @@ std::string tension_doubt(const Setting& setting) {
                   "{:.4g})",
                   100 * volumes[0] / volumes[1], most.value, most.x[0], most.x[1], most.x[2]),
       "rock at rest is compressed, which has a negative sign here",
-      "check signs and, of a \"lithostatic stress\", the \"surface\"");
+      "check signs and, of a \"lithostatic stress\", the \"surface\", of an \"in-situ stress\" the \"datum\"");
+}
+
+/// Horizontal stresses whose names are exchanged at the datum or at the foot, and a vertical one that is not the
+/// weight.
+std::string in_situ_doubt(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  const auto& stress = scene.bulk.in_situ_stress;
+  if (!stress) return "";
+  const auto place = scene.origin + ": Sprekk > Bulk > in-situ stress";
+  const Real differs = stress->largest.value - stress->smallest.value,
+             grows = stress->largest.gradient - stress->smallest.gradient;
+  if (differs < 0 || (differs == 0 && grows < 0))
+    return implausible(place, "SHmax is below Shmin", "it is the largest horizontal stress",
+                       "exchange them, and turn the \"azimuth\" by 90 degrees");
+  const auto& gravity = scene.bulk.gravity;
+  const auto& density = scene.material_of("bulk").density;
+  if (gravity.empty() || !density || !density->is_constant()) return "";
+  const Real weight = -(*density)({}, 0) * gravity.back(), gradient = stress->vertical.gradient;
+  if (std::abs(gradient - weight) <= 0.02 * std::abs(weight)) return "";
+  return implausible(place,
+                     fmt::format("\"Sv gradient\" is {:.4g} Pa/m, and rock weighs {:.4g} Pa/m", gradient, weight),
+                     "the difference moves the rock at the start", "check \"density\" and \"gravity\"");
 }
 
 /// Fractures beyond their strength at the start.
 std::string strength_doubt(const Setting& setting) {
   const auto& mesh = setting.mesh;
-  if (initial_stress(setting.scene, mesh.region_names).empty()) return "";
+  if (initial_stress(setting.scene, mesh).empty()) return "";
   const auto starts = starts_of_faces(setting);
   std::vector<Real> beyond(mesh.single_fractures.size(), 0), all(beyond);
   for (std::size_t f = 0; f < starts.size(); ++f) {
@@ -343,7 +368,8 @@ std::string strength_doubt(const Setting& setting) {
 std::vector<std::string> Mechanics::plausibility(const Setting& setting, const std::vector<Real>& times) {
   if (!is_in(setting.scene)) return {};
   const auto some = some_of(times);
-  std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some), tension_doubt(setting)};
+  std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some), tension_doubt(setting),
+                                  in_situ_doubt(setting)};
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(joint_doubts(setting));
   if (!setting.mesh.fracture_names.empty()) all.push_back(strength_doubt(setting));

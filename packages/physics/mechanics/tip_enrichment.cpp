@@ -106,10 +106,9 @@ class TipEnrichment final : public assembly::Module {
   }
 
   bool constant_load() const override {
-    bool all = parameters_.body_force.constant_in_time() && fluid_.constant_in_time();
-    for (const auto& traction : parameters_.tractions)
-      for (const auto& component : traction.value) all = all && component.constant_in_time();
-    return all;
+    const auto& all = parameters_.tractions;
+    return parameters_.body_force.constant_in_time() && fluid_.constant_in_time() &&
+           std::all_of(all.begin(), all.end(), [](const auto& traction) { return traction.constant_in_time(); });
   }
 
   void set_time(Real t, const assembly::Scales&) override {
@@ -258,15 +257,14 @@ class TipEnrichment final : public assembly::Module {
   template <class Host>
   void add_tractions(const mesh::Mesh::BoundaryFace& face, Real t, const Host& load) const {
     for (const auto& traction : parameters_.tractions) {
-      if (face.boundary != traction.boundary ||
-          (traction.region >= 0 && mesh_->cell_region[face.cell] != traction.region))
-        continue;
+      if (!traction.holds(*mesh_, face)) continue;
+      const auto at = traction.on(*mesh_, face);
       tip(face.cell).for_each_face_point(face.local_face,
                                          [&](const auto&, const auto& psi, const auto& area, const auto& x) {
                                            for (int k = 0; k < Tip::n_face; ++k)
                                              for (int i = 0; i < dim; ++i)
                                                add(load, face.cell, mesh::face_nodes(shape)[face.local_face][k], i,
-                                                   psi[k] * mesh::norm(area) * traction.value[i](x, t));
+                                                   psi[k] * mesh::norm(area) * at(i, x, t));
                                          });
     }
   }

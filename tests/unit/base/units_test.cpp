@@ -38,6 +38,14 @@ TEST(Units, numbers_are_what_the_exponent_makes_of_them) {
   EXPECT_EQ(value_of("3 kg/(m*s^2)", "Pa"), 3);
   EXPECT_EQ(value_of("2 kbar", "Pa"), 2e8);
   EXPECT_EQ(value_of("9.81 m/s/s", "m/s^2"), 9.81);
+  EXPECT_EQ(value_of("10 l/s", "m^3/s"), 0.01);
+  EXPECT_EQ(value_of("250 mL", "m^3"), 2.5e-4);
+  EXPECT_EQ(value_of("2 cP", "Pa*s"), 2e-3);
+  EXPECT_EQ(value_of("100 ft", "m"), 30.48);
+  EXPECT_EQ(value_of("12 in", "ft"), 1);
+  EXPECT_NEAR(value_of("1 mD", "m^2"), 9.869233e-16, 1e-22);
+  EXPECT_NEAR(value_of("145.0377377 psi", "Pa"), 1e6, 1e-2);
+  EXPECT_NEAR(value_of("1 kpsi/ft", "Pa/m"), 22620594, 1);
   for (int i = 1; i < 1000; ++i) {
     const std::string digits = fmt::format("{}.{}", i / 10, i % 10);
     EXPECT_EQ(value_of(digits + " GPa", "Pa"), *parse_number(digits + "e9"));
