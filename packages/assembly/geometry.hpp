@@ -1,7 +1,7 @@
-// What kernels read of the mesh's cells, and integrals over cells and faces on the host.
+// Tables of cells for kernels, and integrals over cells and faces on the host.
 #pragma once
 
-#include "assembly/reference_cell.hpp"
+#include "assembly/cell_nodes.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -10,22 +10,6 @@
 #include <vector>
 
 namespace sprekk::assembly {
-
-/// What a kernel over cells reads of the mesh, which must stay as it is.
-struct Geometry {
-  ConstView<Real**> coordinates;  ///< [node, component], m
-  ConstView<LocalIndex**> cells;  ///< [cell, local node]
-  ConstView<int*> region;         ///< [cell]
-
-  explicit Geometry(const mesh::Mesh& mesh);
-
-  /// Copies the node coordinates of a cell, [local node][component].
-  template <int n, int dim>
-  KOKKOS_INLINE_FUNCTION void gather(LocalIndex cell, Real (&X)[n][dim]) const {
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < dim; ++i) X[a][i] = coordinates(cells(cell, a), i);
-  }
-};
 
 template <class T>
 ConstView<T*> to_device(const std::vector<T>& from, const std::string& name) {
@@ -47,15 +31,6 @@ void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_node
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   for (int a = 0; a < n; ++a)
     for (int i = 0; i < dim; ++i) X[a][i] = mesh.coordinates[mesh.cells[cell * n + a] * dim + i];
-}
-
-/// Calls use(rule) with the rule for a cell with nodes at X: `Straight`, or CurvedQuadrature where it is not straight.
-template <Shape shape, class Straight, class Use>
-KOKKOS_INLINE_FUNCTION void with_rule(const Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)], const Use& use) {
-  if (ReferenceCell<shape>::is_straight(X))
-    use(Straight());
-  else if constexpr (mesh::order(shape) == 2)
-    use(CurvedQuadrature<shape>(X));
 }
 
 /// Calls visit(xi, volume, x) at the points of a rule, by default one for bubbles: reference point, volume that it

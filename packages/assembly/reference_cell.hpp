@@ -4,7 +4,7 @@
 // shape.hpp.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 #include "mesh/shape.hpp"
 
 #include <type_traits>

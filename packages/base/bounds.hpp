@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 namespace sprekk::base {
 

@@ -2,7 +2,7 @@
 // instructions, each with a fallback. Device code of these kernels has never been compiled.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Flow along a fracture.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 #include "laws/aperture_kinds.hpp"
 
 namespace sprekk::laws {

@@ -1,7 +1,7 @@
 // What the laws of a joint may ask about the point of a fracture that they are evaluated at.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 #include <type_traits>
 

@@ -1,7 +1,7 @@
 // Darcy's law q = -(k/mu) (grad p - rho g) of one fluid.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 namespace sprekk::laws {
 

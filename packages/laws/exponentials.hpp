@@ -1,7 +1,7 @@
 // Exponentials and logarithms that keep their digits near zero, and stiffnesses made of them.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 #include <cmath>
 

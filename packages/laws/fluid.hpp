@@ -1,7 +1,7 @@
 // A fluid whose density is exponential in its pressure.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // How a fluid changes with a quantity that it carries.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 // Equation numbers are those of Wollmann (2024). Any scalar type T; derivatives are taken in (w, lambda) alone.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 #include "laws/contact.hpp"
 #include "laws/joint_kinds.hpp"
 

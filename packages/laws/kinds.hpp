@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/bounds.hpp"
-#include "base/types.hpp"
+#include "base/view.hpp"
 #include "laws/contact.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Curves that join points by straight lines.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 
 namespace sprekk::laws {
 

@@ -1,8 +1,8 @@
 #include "physics/flux_scheme.hpp"
 
+#include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
-#include "physics/hybrid_cell.hpp"
 
 #include <array>
 

@@ -1,20 +1,13 @@
-// How flows between cells follow from what drives them.
+// Which scheme a scene's flows follow.
 #pragma once
 
 #include "laws/darcy.hpp"
+#include "physics/hybrid_cell.hpp"
 #include "physics/properties.hpp"
 
 #include <string>
 
 namespace sprekk::physics {
-
-/// How flows through a cell's faces follow from pressures: q_i = sum_j T_ij (p - p_j). All are exact for constant
-/// gradients where faces are plane, but tpfa.
-enum class FluxScheme {
-  rt0,   ///< lowest-order Raviart-Thomas-Nedelec on simplices
-  tpfa,  ///< two points, T diagonal: exact where (k/mu) n is parallel to the line from the cell's centre to the face's
-  mimetic  ///< any cell, with the quasi-RT inner product of Lie et al. (2012)
-};
 
 /// The entry "scheme" of a section of a scene, and the property of rock that flows depend on: "permeability".
 struct SchemeEntry {

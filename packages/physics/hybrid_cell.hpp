@@ -1,17 +1,24 @@
 // Flow through the faces of one cell, from its pressure and those on its faces.
 #pragma once
 
-#include "assembly/assembler.hpp"
-#include "assembly/geometry.hpp"
+#include "assembly/cell_nodes.hpp"
+#include "assembly/slots.hpp"
 #include "laws/darcy.hpp"
 #include "laws/fluid.hpp"
-#include "physics/flux_scheme.hpp"
 
 #include <cmath>
 
 namespace sprekk::physics {
 
 using mesh::Shape;
+
+/// How flows through a cell's faces follow from pressures: q_i = sum_j T_ij (p - p_j). All are exact for constant
+/// gradients where faces are plane, but tpfa.
+enum class FluxScheme {
+  rt0,   ///< lowest-order Raviart-Thomas-Nedelec on simplices
+  tpfa,  ///< two points, T diagonal: exact where (k/mu) n is parallel to the line from the cell's centre to the face's
+  mimetic  ///< any cell, with the quasi-RT inner product of Lie et al. (2012)
+};
 
 /// | symbol   | shape       | unit        |                                                       |
 /// | area     | [face, dim] | m^2 (2D: m) | outward area vectors A_i                              |

@@ -5,6 +5,7 @@
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "physics/flow/changed_flow.hpp"
+#include "physics/flux_scheme.hpp"
 #include "physics/hybrid_rock.hpp"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Compiles the kernels of packages/physics and packages/assembly, and the laws in them, for a GPU; runs nothing.
 
-    check_device.py ROOT [--for hip|cuda] [FILE...]     all that have kernels, or these; exit status 1: errors, 77: skipped
+    check_device.py ROOT [--for hip|cuda] [--kokkos CHECKOUT] [FILE...]
+        all that have kernels, or these; exit status 1: errors, 77: skipped
 
 hip:  clang, -fsyntax-only, of device code alone. Needs clang 19 or later (SPREKK_CLANG names another) and the headers
       of HIP: Debian's clang-19, hipcc, libamdhip64-dev, rocm-device-libs.
@@ -11,6 +12,9 @@ cuda: nvcc, which also generates device code. Needs version 12 or later. It know
 
 Both take the installed headers of Trilinos, whose Kokkos (3.4) is configured for the host alone: for the time of the
 check a few configuration headers are overlaid by copies that have the GPU's back end on.
+
+With --kokkos (or SPREKK_KOKKOS) for hip also the programs beside this file, with a checkout of a later Kokkos; they
+need no more of Trilinos than Sacado.
 """
 import argparse
 import os
@@ -62,6 +66,45 @@ def overlay(folder, back_end):
         (folder / "Cuda/Kokkos_Cuda_Half.hpp").write_text("")
 
 
+def overlay_checkout(folder, kokkos):
+    """What CMake would write for a checkout of Kokkos 4 with HIP; returns where headers are."""
+    found = dict(re.findall(r"set\(Kokkos_VERSION_(\w+) (\d+)\)", (kokkos / "CMakeLists.txt").read_text()))
+    version = [int(found[part]) for part in ("MAJOR", "MINOR", "PATCH")]
+    settings = ["CORE_CONFIG_H", f"VERSION {version[0] * 10000 + version[1] * 100 + version[2]}",
+                *(f"VERSION_{part} {number}" for part, number in zip(("MAJOR", "MINOR", "PATCH"), version)),
+                "ENABLE_SERIAL", "ENABLE_HIP", "ENABLE_CXX20", "ENABLE_IMPL_MDSPAN", "ARCH_AMD_GFX90A", 'ARCH_AMD_GPU "GFX90A"']
+    (folder / "KokkosCore_config.h").write_text("".join(f"#define KOKKOS_{setting}\n" for setting in settings))
+    for header, names in [("DeclareBackend", ("decl/Kokkos_Declare_SERIAL", "decl/Kokkos_Declare_HIP")),
+                          ("FwdBackend", ("fwd/Kokkos_Fwd_SERIAL", "fwd/Kokkos_Fwd_HIP")),
+                          ("SetupBackend", ("setup/Kokkos_Setup_HIP",))]:
+        (folder / f"KokkosCore_Config_{header}.hpp").write_text("".join(f"#include <{name}.hpp>\n" for name in names))
+    (folder / "desul/atomics").mkdir(parents=True)
+    (folder / "desul/atomics/Config.hpp").write_text("#define DESUL_ATOMICS_ENABLE_HIP\n")
+    (folder / "sacado").mkdir()
+    for header in TRILINOS.glob("Sacado*"):  # without the Kokkos beside them
+        shutil.copy(header, folder / "sacado")
+    return [folder, *(kokkos / part for part in ("core/src", "containers/src", "tpls/desul/include", "tpls/mdspan/include")),
+            Path(__file__).parent / "sacado", folder / "sacado"]
+
+
+def compile_all(command, files, back_end):
+    """Whether there were no errors."""
+    wrong, crashed = [], []
+    for file in files:
+        done = subprocess.run([*command, str(file)], capture_output=True, text=True)
+        output = done.stdout + done.stderr
+        errors = sorted({line for line in output.splitlines() if re.search(r"\berror\b", line)})
+        if done.returncode and ("Segmentation fault" in output or "PLEASE submit a bug report" in output):
+            crashed.append(file)
+        elif done.returncode:
+            wrong.append(file)
+            print(f"{file}:\n  " + "\n  ".join(errors[:10] or output.splitlines()[-10:]), flush=True)
+    for file in crashed:
+        print(f"{file}: the compiler crashed")
+    print(f"{back_end}: {len(files)} files, {len(wrong)} with errors, {len(crashed)} where the compiler crashed", flush=True)
+    return not wrong
+
+
 def first_of(*names):
     for name in names:
         if name and shutil.which(name):
@@ -96,33 +139,29 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("root", type=Path)
     parser.add_argument("--for", dest="back_end", choices=BACK_ENDS, default="hip")
+    parser.add_argument("--kokkos", type=Path, default=os.environ.get("SPREKK_KOKKOS"), help="a checkout of Kokkos 4")
     parser.add_argument("files", nargs="*", type=Path)
     arguments = parser.parse_intermixed_args()
     packages = arguments.root / "packages"
     if not (TRILINOS / "KokkosCore_config.h").exists():
         skip(f"no Kokkos in {TRILINOS}; SPREKK_TRILINOS_INCLUDE names another folder")
+    if arguments.kokkos and not (Path(arguments.kokkos) / "core/src/Kokkos_Core.hpp").exists():
+        sys.exit(f"{arguments.kokkos}: no checkout of Kokkos")
     files = arguments.files or [f for package in ("assembly", "physics") for f in sorted(packages.glob(f"{package}/**/*.cpp"))
                                 if HAS_KERNELS.search(f.read_text())]
-    command = compiler(arguments.back_end) + ["-std=c++20", "-w", "-DFMT_SHARED"]
-    wrong, crashed = [], []
+    command = compiler(arguments.back_end) + ["-std=c++20", "-w", "-DFMT_SHARED", f"-I{packages}"]
     with tempfile.TemporaryDirectory() as name:
         overlay(Path(name), arguments.back_end)
-        command += [f"-I{name}", f"-I{packages}", "-isystem", str(TRILINOS)]
-        for folder in mpi_includes():
-            command += ["-isystem", folder]
-        for file in files:
-            done = subprocess.run([*command, str(file)], capture_output=True, text=True)
-            output = done.stdout + done.stderr
-            errors = sorted({line for line in output.splitlines() if re.search(r"\berror\b", line)})
-            if done.returncode and ("Segmentation fault" in output or "PLEASE submit a bug report" in output):
-                crashed.append(file)
-            elif done.returncode:
-                wrong.append(file)
-                print(f"{file}:\n  " + "\n  ".join(errors[:10] or output.splitlines()[-10:]), flush=True)
-    for file in crashed:
-        print(f"{file}: the compiler crashed")
-    print(f"{arguments.back_end}: {len(files)} files, {len(wrong)} with errors, {len(crashed)} where the compiler crashed")
-    sys.exit(1 if wrong else 0)
+        includes = [f"-I{name}"]
+        for folder in [str(TRILINOS), *mpi_includes()]:
+            includes += ["-isystem", folder]
+        good = compile_all(command + includes, files, arguments.back_end)
+    if arguments.kokkos and arguments.back_end == "hip":
+        with tempfile.TemporaryDirectory() as name:
+            includes = [f"-I{folder}" for folder in overlay_checkout(Path(name), Path(arguments.kokkos))]
+            here = Path(__file__).parent
+            good = compile_all(command + includes, [here / "cells.cpp", here / "faces.cpp"], "hip, the checkout") and good
+    sys.exit(0 if good else 1)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     check_rules.py ROOT     prints "file:line: [rule] what" for every violation; exit status 1 if there is any
 
 Rules: include-order, solver-header, host-only, kernel, unfinished, self-contained, static-state, generic-room,
-heat-room, trilinos-names, compiler, functor, lambda.
+heat-room, trilinos-names, compiler, functor, lambda, host-read, host-pointer.
 """
 import re
 import sys
@@ -57,6 +57,8 @@ COMPILERS = re.compile(r"\b__(?:builtin_\w+|attribute__|declspec)\b|\b_mm\d*_\w+
 KNOW_COMPILERS = {"packages/fields/node_kernels.hpp", "packages/multigrid/rounded_matrix.hpp",
                   "packages/solve/condensed_block.cpp"}
 FUNCTOR = re.compile(r"\boperator\s*\(\)\s*\(\s*(?:const\s+)?(?:int|LocalIndex|std::size_t)\b[^)]*\)\s*const")
+# A view of the device, or, in the group, one that says where it is.
+DEVICE_VIEW = re.compile(r"\b(Kokkos::)?(?:Const)?View<")
 UNFINISHED = re.compile(r"\b(?:TOD[O]|FIXM[E]|XX[X]|HAC[K])\b")
 NOT_SELF_CONTAINED = re.compile(r"/wor[k]/|\b[s]essions?\b|\b[i]ssue #", re.IGNORECASE)
 KERNEL_MACRO = r"KOKKOS_(?:CLASS_)?LAMBDA|KOKKOS_(?:FORCE)?(?:INLINE_)?FUNCTION"
@@ -140,8 +142,44 @@ def wrong_place(code, position):
     return None
 
 
+def end_of_template(code, start):
+    """The position after the bracket that closes the one at start."""
+    depth = 0
+    for i in range(start, len(code)):
+        depth += {"<": 1, ">": -1}.get(code[i], 0)
+        if depth == 0:
+            return i + 1
+    return len(code)
+
+
+def device_views(code):
+    """Names that are declared as View or ConstView, and as nothing else; functions that return one are none."""
+    views, others = set(), set(re.findall(r"\bauto\s*&?\s*(\w+)\s*[=(]", code))
+    others.update(re.findall(r"\b(\w+)\s*\([^(){};]*\)\s*(?:const\b|override\b|\{)", code))
+    for match in DEVICE_VIEW.finditer(code):
+        name = re.compile(r"\s*(?:const\s*)?&?\s*(\w+)\s*(?:[;={,)]|\(\s*,|(\(\s*[^\s,]))").match(
+            code, end_of_template(code, match.end() - 1))
+        if name:
+            (others if name[2] or match[1] else views).add(name[1])
+    return views - others
+
+
+def check_host(code, kernels):
+    """Entries of device views that the host reads or writes, and pointers that it hands to kernels."""
+    def on_host(position):
+        return not any(start <= position < end for start, end in kernels)
+    for name in device_views(code):
+        for match in re.finditer(rf"(?<![\w.>:]){name}\s*\(\s*[^\s,)]", code):  # its label is blank
+            if on_host(match.start()):
+                yield match.start(), "host-read", f"{name}(...) outside of kernels, without a mirror"
+    for match in re.finditer(r"\b(\w+)\s*=\s*[^;{}]*(?:\.|->)data\s*\(\s*\)\s*;", code):
+        if on_host(match.start()) and any(re.search(rf"\b{match[1]}\b", code[start:end]) for start, end in kernels):
+            yield match.start(), "host-pointer", f"{match[1]} is used in a kernel"
+
+
 def check_kernels(code):
     """Violations of the rooms whose kernels must compile for a GPU."""
+    yield from check_host(code, list(kernel_bodies(code, KERNEL_MACRO)))
     for match in FUNCTOR.finditer(code):
         begin = max(code.rfind(c, 0, match.start()) for c in ";{}:") + 1
         if "KOKKOS_" not in code[begin:match.start()] and "std::" not in match.group():

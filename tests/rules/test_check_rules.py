@@ -54,6 +54,11 @@ BAD = [  # file, text, rule
      "lambda"),
     ("packages/physics/a.cpp", "class A : B {\n  struct C { void g() { each(KOKKOS_LAMBDA(int i) {}); } };\n};", "lambda"),
     ("packages/assembly/a.cpp", "void f() {\n  sizes([&](auto n) { each(KOKKOS_LAMBDA(int i) {}); });\n}", "lambda"),
+    ("packages/physics/a.cpp", "Real f(const ConstView<Real*>& x) { return x(3); }", "host-read"),
+    ("packages/assembly/a.cpp", 'void f() {\n  View<Real**> x("x", n, 3);\n  for (int i = 0; i < n; ++i) x(i, 0) = 1;\n}',
+     "host-read"),
+    ("packages/assembly/a.cpp", "void f() {\n  const Real* p = v.data();\n  each(KOKKOS_LAMBDA(int i) { y(i) = p[i]; });\n}",
+     "host-pointer"),
     ("packages/fields/a.cpp", "auto f() { return map->getNodeNumElements(); }", "trilinos-names"),
     ("tests/unit/a.cpp", "for (auto i : map->getNodeElementList()) f(i);", "trilinos-names"),
     ("packages/solve/a.cpp", "Real f(Real b) { return Kokkos::Experimental::fabs(b); }", "trilinos-names"),
@@ -88,6 +93,12 @@ struct Gather {
   KOKKOS_FUNCTION Real operator()(int i) const;
   KOKKOS_INLINE_FUNCTION explicit Gather(int n) : n_{n}, m_{n} { renew(n); }
   std::vector<Real> host() const { return std::vector<Real>(view.data(), view.data() + n_); }
+  Real one() const {
+    const View<Real*> x("x", n_);
+    const auto there = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x);
+    return there(0) + rows()(1);
+  }
+  View<Real*> rows() const;
 };
 void message() { throw Error("a new std::vector: exit(1)"); }
 bool on_exit_of(int f);

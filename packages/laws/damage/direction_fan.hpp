@@ -1,7 +1,7 @@
 // A history of slip in all directions of the plane, in constant memory, and how far it may be from the exact one.
 #pragma once
 
-#include "base/types.hpp"
+#include "base/view.hpp"
 #include "laws/contact.hpp"
 
 #include <cmath>

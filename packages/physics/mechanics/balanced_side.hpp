@@ -1,8 +1,8 @@
 // Forces between the two sides of a fracture face and the rock behind them.
 #pragma once
 
-#include "assembly/assembler.hpp"
 #include "assembly/reference_cell.hpp"
+#include "assembly/slots.hpp"
 
 namespace sprekk::physics {
 

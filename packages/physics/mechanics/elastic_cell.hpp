@@ -1,8 +1,8 @@
 // Linear elasticity in one cell, as a local operator over the cells.
 #pragma once
 
-#include "assembly/assembler.hpp"
-#include "assembly/geometry.hpp"
+#include "assembly/cell_nodes.hpp"
+#include "assembly/slots.hpp"
 #include "laws/elasticity.hpp"
 
 namespace sprekk::physics {

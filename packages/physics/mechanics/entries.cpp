@@ -1,4 +1,5 @@
 // What scenes say of mechanics.
+#include "laws/elastic_constants.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/entry_of_place.hpp"
 

@@ -1,7 +1,8 @@
 // The traction rows of a fracture face, and their derivatives by Sacado.
 #pragma once
 
-#include "assembly/assembler.hpp"
+#include "assembly/reference_cell.hpp"
+#include "assembly/slots.hpp"
 #include "laws/joint.hpp"
 
 #include <Sacado.hpp>

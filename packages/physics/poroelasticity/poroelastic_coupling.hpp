@@ -5,6 +5,7 @@
 #include "base/expression.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/hybrid_cell.hpp"
+#include "physics/properties.hpp"
 
 #include <memory>
 #include <vector>

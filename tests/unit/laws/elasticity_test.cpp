@@ -1,4 +1,4 @@
-#include "laws/elasticity.hpp"
+#include "laws/elastic_constants.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,216 @@
+// All joint laws on random faces: residual, Jacobian and active set, and what is kept at the end of a step.
+#include "joints.hpp"
+#include "physics/mechanics/balanced_side.hpp"
+#include "physics/mechanics/joint_face.hpp"
+#include "report.hpp"
+
+#include <cstdio>
+#include <stdexcept>
+
+namespace sprekk::device {
+namespace {
+
+using mesh::Shape;
+
+/// Steps in which slip goes to and fro, so that laws have a history; the same faces in every program.
+template <int dim>
+struct Faces {
+  std::vector<laws::Joint> joints;
+  int n_kept = 0;
+  std::vector<Real> history;  // [joint, p_old and kept]
+
+  int size() const { return dim - 1 + n_kept; }
+
+  Faces(Report& report, const std::string& name, std::vector<laws::Joint> laws) : joints(std::move(laws)) {
+    for (const auto& joint : joints) n_kept = std::max(n_kept, joint.n_history(dim));
+    auto& input = report.inputs[name];
+    if (!report.has_inputs) {
+      Random random(dim);
+      for (const auto& joint : joints) add(joint, random, input);
+    }
+    history = input;
+  }
+
+ private:
+  void add(const laws::Joint& joint, Random& random, std::vector<Real>& all) const {
+    std::vector<Real> before(n_kept, 0), kept(n_kept, 0);
+    Real p[dim - 1] = {};
+    for (int step = 0; step < 8; ++step) {
+      Real w[dim], lambda[dim], old[dim - 1];
+      w[0] = random(-2e-4, 3e-4);
+      lambda[0] = random(-8e6, 0);
+      for (int i = 0; i < dim - 1; ++i) {
+        old[i] = p[i];
+        p[i] = w[i + 1] = old[i] + random(-3e-4, 3e-4);
+        lambda[i + 1] = random(-4e6, 4e6);
+      }
+      const auto state = random.chance(0.1) ? laws::ContactState::open : laws::ContactState::slip;
+      before = kept;
+      const laws::History history{before.data(), 1};
+      joint.commit(laws::converged<dim>(joint, state, w, lambda, p, old, history), {kept.data(), 1});
+    }
+    all.insert(all.end(), p, p + dim - 1);
+    all.insert(all.end(), kept.begin(), kept.end());
+  }
+};
+
+/// What laws keep of a face after a step that ends at the unknowns.
+template <class Face, int n_kept>
+struct Commit {
+  static constexpr int dim = Face::dim;
+  Face face;
+  View<Real**> x;    // [face, column]
+  View<Real**> out;  // [face, number]
+
+  KOKKOS_INLINE_FUNCTION void operator()(int f) const {
+    Real local[Face::Columns::size], elastic[dim], plastic[dim], p[dim - 1], kept[n_kept];
+    for (int k = 0; k < Face::Columns::size; ++k) local[k] = x(f, k);
+    const auto end = face.point(f, local);
+    const auto& law = face.law(face.number(f));
+    laws::split_jump<dim>(law, end.state, end.w, end.traction, end.p_old, elastic, plastic, face.history(f));
+    for (int i = 0; i < dim - 1; ++i) p[i] = end.state == laws::ContactState::stick ? end.p_old[i] : plastic[i + 1];
+    for (int k = 0; k < n_kept; ++k) kept[k] = face.kept(f, k);
+    law.commit(laws::converged<dim>(law, end.state, end.w, end.traction, p, end.p_old, face.history(f)), {kept, 1});
+    for (int k = 0; k < n_kept; ++k) out(f, k) = kept[k];
+  }
+};
+
+/// Face f has joint f/n of all; frames, tractions and displacements are random.
+template <Shape shape>
+auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
+  using Face = physics::JointFace<shape, false>;
+  constexpr int dim = Face::dim, n_nodes = Face::n, n_columns = Face::Columns::size;
+  const int n_joints = static_cast<int>(faces.joints.size());
+  Random random(17);
+  const auto numbers = [&](Real low, Real high) {
+    return [&random, low, high](const auto& view) {
+      for (std::size_t k = 0; k < view.size(); ++k) view.data()[k] = random(low, high);
+    };
+  };
+  Face face;
+  face.frame = filled<Real***>(
+      [&](const auto& view) {
+        for (int f = 0; f < n; ++f) {  // a rotation
+          const Real a = random(0, 6.28), b = random(0, 3.14), ca = std::cos(a), sa = std::sin(a);
+          const Real rows[3][3] = {{ca, sa, 0},
+                                   {-sa * std::cos(b), ca * std::cos(b), std::sin(b)},
+                                   {sa * std::sin(b), -ca * std::sin(b), std::cos(b)}};
+          for (int i = 0; i < dim; ++i)
+            for (int k = 0; k < dim; ++k) view(f, i, k) = dim == 3 || i == 0 ? rows[i][k] : k == 0 ? -sa : ca;
+        }
+      },
+      n, dim, dim);
+  face.share = filled<Real**>(numbers(0.8 / n_nodes, 1.2 / n_nodes), n, n_nodes);
+  face.bubble_mean = filled<Real*>(numbers(0.4, 0.7), n);
+  face.law = filled<laws::Joint*>(
+      [&](const auto& view) { std::copy(faces.joints.begin(), faces.joints.end(), view.data()); }, n_joints);
+  const auto joint = [&](int f) { return static_cast<int>(static_cast<long>(f) * n_joints / n); };
+  face.number = filled<int*>(
+      [&](const auto& view) {
+        for (int f = 0; f < n; ++f) view(f) = joint(f);
+      },
+      n);
+  face.augmentation = filled<Real*>(numbers(2e10, 1e11), n);
+  const auto copy = [&](int begin) {
+    return [&faces, &joint, begin, n](const auto& view) {
+      for (int f = 0; f < n; ++f)
+        for (std::size_t k = 0; k < view.extent(1); ++k)
+          view(f, k) = faces.history[joint(f) * faces.size() + begin + k];
+    };
+  };
+  face.p_old = filled<Real**>(copy(0), n, dim - 1);
+  if (faces.n_kept > 0) face.kept = filled<Real**>(copy(dim - 1), n, faces.n_kept);
+  const auto old = host_of(face.p_old);
+  const auto frame = host_of(face.frame);
+  const auto x = filled<Real**>(
+      [&](const auto& view) {
+        for (int f = 0; f < n; ++f) {
+          const bool slips = random.chance(0.7);
+          Real w[dim];
+          w[0] = random(-3e-4, 2e-4);
+          for (int i = 1; i < dim; ++i) w[i] = old(f, i - 1) + (slips ? random(-2e-4, 2e-4) : random(-2e-6, 2e-6));
+          for (int a = 0; a < n_nodes; ++a)
+            for (int i = 0; i < dim; ++i) {
+              view(f, a * dim + i) = random(-1e-4, 1e-4);
+              Real jump = 0;
+              for (int k = 0; k < dim; ++k) jump += frame(f, k, i) * w[k];
+              view(f, (n_nodes + a) * dim + i) = view(f, a * dim + i) + jump;
+            }
+          for (int k = Face::beta; k < Face::lambda; ++k) view(f, k) = random(-1e-6, 1e-6);
+          view(f, Face::lambda) = random(-9e6, 1e6);
+          for (int i = 1; i < dim; ++i) view(f, Face::lambda + i) = random(-4e6, 4e6);
+        }
+      },
+      n, n_columns);
+  return std::pair(face, x);
+}
+
+/// Differences of what is kept are to be small beside it, or beside a length of 0.1 mm.
+template <Shape shape>
+void add_commit(Report& report, const std::string& name, const Faces<mesh::dimension(shape)>& faces, int n) {
+  using Face = physics::JointFace<shape, false>;
+  constexpr int n_kept = device::n_kept<Face::dim>;  // that of `faces`, which have all laws
+  const auto made = joint_faces<shape>(faces, n);
+  const Commit<Face, n_kept> commit{made.first, made.second, View<Real**>("out", n, n_kept)};
+  Kokkos::parallel_for("commit", Kokkos::RangePolicy<Execution>(0, n), commit);
+  const auto kept = host_of(commit.out);
+  Case& result = report.cases[name];
+  for (int f = 0; f < n; ++f)
+    for (int k = 0; k < n_kept; ++k) {
+      result.value.push_back(kept(f, k));
+      result.scale.push_back(std::max(std::abs(kept(f, k)), 1e-4));
+    }
+}
+
+/// Every state must occur.
+void tell_states(const std::string& name, const Case& one, int n) {
+  const int size = static_cast<int>(one.value.size()) / n;
+  int count[3] = {};
+  for (int f = 0; f < n; ++f) ++count[static_cast<int>(one.value[(f + 1) * size - 1])];
+  std::printf("%s: %d open, %d stick, %d slip\n", name.c_str(), count[0], count[1], count[2]);
+  if (10 * std::min({count[0], count[1], count[2]}) < n) throw std::runtime_error(name + ": states are too rare");
+}
+
+template <Shape shape>
+void add_joints(Report& report, const std::string& dim) {
+  using Faces = device::Faces<mesh::dimension(shape)>;
+  const Faces all(report, dim + " histories", all_joints()), common(report, dim + " no history", {common_joint()});
+  const int n = 4 * static_cast<int>(all.joints.size());
+  const auto faces = [](const Faces& faces) { return [&faces](int n) { return joint_faces<shape>(faces, n); }; };
+  add_case(report, dim + " faces, all laws", n, report.n_timed, faces(all));
+  tell_states(dim, report.cases[dim + " faces, all laws"], n);
+  add_case(report, dim + " faces, Coulomb", 1000, report.n_timed, faces(common));
+  add_commit<shape>(report, dim + " faces, end of a step", all, n);
+}
+
+/// Sides of faces with any numbers.
+template <Shape shape>
+auto sides(int n) {
+  using Side = physics::BalancedSide<shape>;
+  Random random(5);
+  const auto fill = [&](const auto& view) {
+    const auto host = Kokkos::create_mirror_view(view);
+    for (std::size_t k = 0; k < host.size(); ++k) host.data()[k] = random(-1, 1);
+    Kokkos::deep_copy(view, host);
+  };
+  Side side(n);
+  fill(side.coupling);
+  fill(side.frame);
+  fill(side.stiffness);
+  fill(side.bubble);
+  fill(side.push);
+  fill(side.force);
+  const View<Real**> x("x", n, Side::Columns::size);
+  fill(x);
+  return std::pair(side, x);
+}
+
+}  // namespace
+
+void add_faces(Report& report) {
+  add_joints<Shape::triangle>(report, "2D");
+  add_joints<Shape::tetrahedron>(report, "3D");
+  add_case(report, "3D sides of faces", 1000, report.n_timed, [](int n) { return sides<Shape::tetrahedron>(n); });
+}
+
+}  // namespace sprekk::device

@@ -1,0 +1,147 @@
+// Evaluates local operators in a loop of kernels; compares and times what they return.
+#pragma once
+
+#include "base/view.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace sprekk::device {
+
+/// Of one operator: numbers of all entities, the sizes that differences are to be compared with, and what it costs.
+struct Case {
+  std::vector<Real> value, scale;
+  Real seconds = 0;  ///< of an entity, residual and Jacobian
+};
+
+/// By name. `inputs` are computed once, by the program that the others are compared with.
+struct Report {
+  std::map<std::string, Case> cases;
+  std::map<std::string, std::vector<Real>> inputs;
+  bool has_inputs = false;
+  int n_timed = 0;  ///< entities of a loop that is timed; 0: none is
+};
+
+template <class T>
+auto host_of(const T& view) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+}
+
+/// Fills a view on the host: fill(host view).
+template <class Data, class Fill, class... Extents>
+View<Data> filled(const Fill& fill, Extents... extents) {
+  const View<Data> view("view", extents...);
+  const auto host = Kokkos::create_mirror_view(view);
+  fill(host);
+  Kokkos::deep_copy(view, host);
+  return view;
+}
+
+/// Numbers in [low, high), the same wherever they are computed.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  Real operator()(Real low, Real high) { return low + (high - low) * (engine_() * 0x1p-32); }
+  bool chance(Real share) { return engine_() * 0x1p-32 < share; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// Whether an operator tells the active set.
+template <class Op, class = void>
+constexpr bool has_state_of = false;
+template <class Op>
+constexpr bool has_state_of<Op, std::void_t<typename Op::Point>> = true;
+
+template <class Op>
+struct Kernel {
+  static constexpr int n_rows = Op::Rows::size, n_columns = Op::Columns::size;
+  static constexpr bool has_state = has_state_of<Op>;
+  static constexpr int size = n_rows * (1 + n_columns) + has_state;
+  Op op;
+  View<Real**> x;    // [entity, column]
+  View<Real**> out;  // [entity, residual, Jacobian by rows[, active set]]
+
+  KOKKOS_INLINE_FUNCTION void operator()(int e) const {
+    Real local[n_columns], r[n_rows], J[n_rows][n_columns];
+    for (int k = 0; k < n_columns; ++k) local[k] = x(e, k);
+    op.residual(e, local, r);
+    op.jacobian(e, local, J);
+    for (int i = 0; i < n_rows; ++i) {
+      out(e, i) = r[i];
+      for (int k = 0; k < n_columns; ++k) out(e, n_rows + i * n_columns + k) = J[i][k];
+    }
+    if constexpr (has_state) out(e, size - 1) = static_cast<int>(op.point(e, local).state);
+  }
+};
+
+/// Evaluated once to be compared, or repeatedly to be timed.
+template <class Op>
+Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
+  using K = Kernel<Op>;
+  const int n = static_cast<int>(x.extent(0));
+  const K kernel{op, x, View<Real**>("out", n, K::size)};
+  const auto run = [&] {
+    Kokkos::parallel_for("evaluate", Kokkos::RangePolicy<Execution>(0, n), kernel);
+    Kokkos::fence();
+  };
+  run();
+  Case result;
+  if (timed) {
+    result.seconds = 1e300;
+    for (int round = 0; round < 5; ++round) {
+      const auto begin = std::chrono::steady_clock::now();
+      run();
+      const std::chrono::duration<Real> took = std::chrono::steady_clock::now() - begin;
+      result.seconds = std::min(result.seconds, took.count() / n);
+    }
+    return result;
+  }
+  // differences are to be small beside: of a residual, the sum of |J_ik x_k|; of J_ik, the largest |J_il| u_l over u_k,
+  // u the mean size of an unknown; the active set is to be the same
+  const auto unknowns = host_of(x), numbers = host_of(kernel.out);
+  std::vector<Real> unit(K::n_columns, 0);
+  for (int e = 0; e < n; ++e)
+    for (int k = 0; k < K::n_columns; ++k) unit[k] += std::abs(unknowns(e, k)) / n;
+  for (int e = 0; e < n; ++e) {
+    for (int j = 0; j < K::size; ++j) result.value.push_back(numbers(e, j));
+    std::vector<Real> of_rows, of_entries;
+    for (int i = 0; i < K::n_rows; ++i) {
+      Real sum = std::abs(numbers(e, i)), most = 0;
+      const auto J = [&](int k) { return std::abs(numbers(e, K::n_rows + i * K::n_columns + k)); };
+      for (int k = 0; k < K::n_columns; ++k) {
+        sum += J(k) * std::abs(unknowns(e, k));
+        most = std::max(most, J(k) * unit[k]);
+      }
+      of_rows.push_back(sum);
+      for (int k = 0; k < K::n_columns; ++k) of_entries.push_back(most / unit[k]);
+    }
+    for (const auto* part : {&of_rows, &of_entries})
+      result.scale.insert(result.scale.end(), part->begin(), part->end());
+    if (K::has_state) result.scale.push_back(1);
+  }
+  return result;
+}
+
+/// make(n, seed) returns an operator and unknowns of n entities.
+template <class Make>
+void add_case(Report& report, const std::string& name, int n, int n_timed, const Make& make) {
+  const auto [op, x] = make(n);
+  Case& result = report.cases[name] = evaluated(op, x, false);
+  if (n_timed == 0) return;
+  const auto [many, unknowns] = make(n_timed);
+  result.seconds = evaluated(many, unknowns, true).seconds;
+}
+
+void add_faces(Report& report);
+void add_cells(Report& report);
+
+}  // namespace sprekk::device
