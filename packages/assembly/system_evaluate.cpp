@@ -234,6 +234,7 @@ void System::commit(const BlockVector& x) {
     contact_->remember(x);
   }
   if (keeps_gains()) find_gains();
+  if (rate_errors_) find_errors(x);
   committed_t_ = t_;
   committed_dt_ = dt_;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
