@@ -21,7 +21,7 @@ Real find_rate(const View<Real**>& x, const View<Real**>& old, const View<Real**
   const int width = static_cast<int>(x.extent(1));
   Kokkos::parallel_reduce(
       "rate", Kokkos::RangePolicy<Execution>(0, x.extent(0)),
-      KOKKOS_LAMBDA(int e, Real & most) {
+      KOKKOS_LAMBDA(int e, Real& most) {
         for (int k = 0; k < width; ++k) {
           rate(e, k) = (x(e, k) - old(e, k)) / dt;
           const Real change = x(e, k) > start(e, k) ? x(e, k) - start(e, k) : start(e, k) - x(e, k);
@@ -38,7 +38,7 @@ Real square_of_sum(Real a, const View<Real**>& u, Real b, const View<Real**>& v,
   const int width = static_cast<int>(u.extent(1));
   Kokkos::parallel_reduce(
       "difference", Kokkos::RangePolicy<Execution>(0, u.extent(0)),
-      KOKKOS_LAMBDA(int e, Real & s) {
+      KOKKOS_LAMBDA(int e, Real& s) {
         for (int k = 0; k < width; ++k) {
           const Real value = a * u(e, k) + b * v(e, k) + c * w(e, k);
           s += value * value;
@@ -51,8 +51,9 @@ Real square_of_sum(Real a, const View<Real**>& u, Real b, const View<Real**>& v,
 }  // namespace
 
 RateErrors::RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& layouts,
-                       const std::vector<char>& balances, Rates::Scheme scheme, const fields::BlockVector& start)
-    : comm_(std::move(comm)), second_order_(scheme == Rates::Scheme::bdf2) {
+                       const std::vector<char>& balances, Rates::Scheme scheme, const fields::BlockVector& start,
+                       Real duration)
+    : comm_(std::move(comm)), second_order_(scheme == Rates::Scheme::bdf2), duration_(duration) {
   for (std::size_t b = 0; b < layouts.size(); ++b) {
     if (!balances[b]) continue;
     const auto& field = layouts[b].field();
@@ -68,6 +69,11 @@ RateErrors::RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& 
 
 void RateErrors::begin(const fields::BlockVector& x) {
   for (const auto& kept : blocks_) Kokkos::deep_copy(kept.old, entries(*x[kept.block], kept.field.n_components));
+}
+
+void RateErrors::forget(bool jump) {
+  n_rates_ = jump ? -1 : 0;
+  for (auto& kept : blocks_) kept.lasts = kept.sum = 0;
 }
 
 fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bool second_order) {
@@ -99,15 +105,23 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
     auto& kept = blocks_[k];
     const Real speed = std::sqrt(squares[2 * k] / kept.n), bent = std::sqrt(squares[2 * k + 1] / kept.n);
     const Real shrinks = n_rates_ > 0 && kept.speed > 0 ? std::min<Real>(1, speed / kept.speed) : 1;
+    const Real growth = n_rates_ > 0 && kept.largest > 0 && elapsed_ > 0
+                            ? std::log(std::max<Real>(1, largest[k] / kept.largest)) / std::log(1 + dt / elapsed_)
+                            : 0;
+    const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 30);
     kept.largest = std::max(kept.largest, largest[k]);
+    const Real size = kept.largest * std::pow(ahead, std::min<Real>(growth, 0.5));
     kept.lasts = shrinks * kept.lasts + dt;
     kept.speed = speed;
-    if (known && kept.largest > 0)
-      errors.push_back({kept.field.name, constant * bent * kept.lasts / dt / kept.largest,
+    const Real own = known ? constant * bent : 0;
+    kept.sum = shrinks * kept.sum + own;
+    if (known && size > 0)
+      errors.push_back({kept.field.name, std::sqrt(kept.sum * own * kept.lasts / dt) / size,
                         (second_order ? 2 : 1) + dt / kept.lasts});
   }
   dt_before_ = dt_;
   dt_ = dt;
+  elapsed_ += dt;
   n_rates_ = std::min(n_rates_ + 1, 2);
   return errors;
 }
@@ -125,24 +139,27 @@ std::vector<std::pair<fields::Field, View<Real**>>> RateErrors::histories() cons
 }
 
 std::vector<Real> RateErrors::memory() const {
-  std::vector<Real> numbers = {static_cast<Real>(n_rates_), dt_, dt_before_};
-  for (const auto& kept : blocks_) numbers.insert(numbers.end(), {kept.largest, kept.lasts, kept.speed});
+  std::vector<Real> numbers = {static_cast<Real>(n_rates_), dt_, dt_before_, elapsed_};
+  for (const auto& kept : blocks_) numbers.insert(numbers.end(), {kept.largest, kept.lasts, kept.speed, kept.sum});
   return numbers;
 }
 
 void RateErrors::resume(const std::vector<Real>& memory) {
-  if (memory.size() != 3 + 3 * blocks_.size()) {  // of steps that were not watched
+  if (memory.size() != 4 + 4 * blocks_.size()) {  // of steps that were not watched
     n_rates_ = 0;
-    dt_ = dt_before_ = 0;
+    dt_ = dt_before_ = elapsed_ = 0;
     return;
   }
   n_rates_ = static_cast<int>(memory[0]);
   dt_ = memory[1];
   dt_before_ = memory[2];
+  elapsed_ = memory[3];
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    blocks_[k].largest = memory[3 + 3 * k];
-    blocks_[k].lasts = memory[4 + 3 * k];
-    blocks_[k].speed = memory[5 + 3 * k];
+    const Real* of = &memory[4 + 4 * k];
+    blocks_[k].largest = of[0];
+    blocks_[k].lasts = of[1];
+    blocks_[k].speed = of[2];
+    blocks_[k].sum = of[3];
   }
 }
 

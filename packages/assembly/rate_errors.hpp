@@ -16,13 +16,16 @@ namespace sprekk::assembly {
 ///   Euler: 1/2 dt^2 |x''|, with x'' = 2 f_2, f_2 = (r - r_1)/(dt + dt_1)
 ///   BDF2: (1 + w)^2/(6 w (1 + 2w)) dt^3 |x'''|, with x''' = 6 (f_2 - f_2 of the step before)/(dt + dt_1 + dt_2),
 ///   w = dt/dt_1
-/// What steps err in adds up for as long as a difference of two states lasts, tau: tau = min(1, |r|/|r_1|) tau_1 + dt.
-/// So the error is that of the step times tau/dt; |.| is the root mean square over the block, relative to the largest
-/// change of an unknown since the start.
+/// What steps err in, e, adds up to E as long as a difference of two states lasts, tau:
+///   E = s E_1 + e,  tau = s tau_1 + dt,  s = min(1, |r|/|r_1|)
+/// Steps that all err at the rate of this one would come to e tau/dt. The error is the geometric mean of both: one that
+/// errs more than others does it once. |.| is the root mean square over the block, relative to the largest
+/// change of an unknown since the start. At time t that is c and grows like t^p; the one to come soon is taken, c
+/// min(30, T/t)^min(p, 1/2) with T the end: else what begins at zero would be resolved as finely as if it stayed small.
 class RateErrors {
  public:
   RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& layouts, const std::vector<char>& balances,
-             Rates::Scheme scheme, const fields::BlockVector& start);
+             Rates::Scheme scheme, const fields::BlockVector& start, Real duration);
 
   /// x is where the next step begins.
   void begin(const fields::BlockVector& x);
@@ -30,8 +33,8 @@ class RateErrors {
   /// Collective.
   fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order);
   /// Loads change their course here: what follows has another rate, and where `jump` one that is unknown in the first
-  /// step, at the start of which the state may jump.
-  void forget(bool jump) { n_rates_ = jump ? -1 : 0; }
+  /// step, at the start of which the state may jump. How long it lasts is found anew.
+  void forget(bool jump);
 
   /// Rates, [entity, component], by names.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
@@ -42,15 +45,16 @@ class RateErrors {
   struct Kept {  // of a block
     int block;
     fields::Field field;
-    View<Real**> start, old, rate, rate_before;  // [owned entity, component]
-    Real n = 0;                                  // unknowns on all ranks
-    Real largest = 0, lasts = 0, speed = 0;      // change since the start; tau; |r|
+    View<Real**> start, old, rate, rate_before;       // [owned entity, component]
+    Real n = 0;                                       // unknowns on all ranks
+    Real largest = 0, lasts = 0, speed = 0, sum = 0;  // change since the start; tau; |r|; E
   };
   RCP<const Comm> comm_;
   std::vector<Kept> blocks_;
   bool second_order_;
-  int n_rates_ = -1;                  // that are known
-  Real dt_ = 0, dt_before_ = 0;       // of the last steps
+  Real duration_, elapsed_ = 0;  // of all steps, and of those so far
+  int n_rates_ = -1;             // that are known
+  Real dt_ = 0, dt_before_ = 0;  // of the last steps
 };
 
 }  // namespace sprekk::assembly

@@ -2,6 +2,7 @@
 #include "assembly/system.hpp"
 
 #include "assembly/order_one.hpp"
+#include "assembly/rate_errors.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "fields/without_zeros.hpp"
@@ -139,6 +140,8 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
 }
 
 }  // namespace
+
+System::~System() = default;
 
 void System::declare_fields() {
   std::set<std::string> names;

@@ -3,7 +3,6 @@
 
 #include "assembly/constraints.hpp"
 #include "assembly/module.hpp"
-#include "assembly/rate_errors.hpp"
 #include "assembly/rates.hpp"
 #include "assembly/relaxation.hpp"
 #include "base/timer.hpp"
@@ -26,12 +25,15 @@ struct Reaction {
   Reactions called = {};
 };
 
+class RateErrors;
+
 class System : public fields::BlockProblem, private contact::Equations {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
          const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
+  ~System() override;
   System(const System&) = delete;  // modules and stencils know where its parts are
   System& operator=(const System&) = delete;
 
@@ -80,7 +82,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void resume(const fields::BlockVector& x, const Memory& memory);
 
   /// From now on each commit finds what its step errs in; to be called at the initial state. Collective.
-  void watch_errors();
+  void watch_errors(Real duration);
   /// Rates count: some modules store something from step to step.
   bool has_rates() const;
   /// Of the steps committed since the last call of this or of resume(), the largest by each name.
@@ -89,7 +91,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// most that they have changed in a step so far; it changes the present time. Collective.
   Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
   /// See RateErrors::forget.
-  void forget_rates(bool jump) { rate_errors_->forget(jump); }
+  void forget_rates(bool jump);
 
   const mesh::Mesh& mesh() const { return *mesh_; }
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
@@ -169,10 +171,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
   Relaxation lagged_;              // [local fracture face] of the logarithms of coefficients_
   RCP<base::Timers> timers_;
-  std::optional<RateErrors> rate_errors_;  // if errors of steps are watched
-  fields::BlockVector committed_x_;        // likewise
-  std::vector<Real> load_change_;          // likewise [block] most of a step
-  fields::StepErrors errors_;              // of the last steps
+  std::unique_ptr<RateErrors> rate_errors_;  // if errors of steps are watched
+  fields::BlockVector committed_x_;          // likewise
+  std::vector<Real> load_change_;            // likewise [block] most of a step
+  fields::StepErrors errors_;                // of the last steps
   Rates::Scheme scheme_;
   Real extent_;  // largest of the domain, m
   Rates rates_;

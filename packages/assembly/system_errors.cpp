@@ -1,4 +1,5 @@
 // Errors of time steps.
+#include "assembly/rate_errors.hpp"
 #include "assembly/system.hpp"
 
 #include <algorithm>
@@ -11,11 +12,11 @@ bool System::has_rates() const {
   return std::any_of(declarations_.begin(), declarations_.end(), [](const auto& d) { return d.stores; });
 }
 
-void System::watch_errors() {
+void System::watch_errors(Real duration) {
   const auto start = initial();
   std::vector<char> balances;
   for (const auto& unknown : unknowns_) balances.push_back(unknown.balance);
-  rate_errors_.emplace(comm(), layouts_, balances, scheme_, start);
+  rate_errors_ = std::make_unique<RateErrors>(comm(), layouts_, balances, scheme_, start, duration);
   load_change_.assign(blocks_.size(), 0);
   committed_x_ = fields::create_like(start);
   fields::copy(start, committed_x_);
@@ -29,6 +30,8 @@ void System::resume_errors(const BlockVector& x, const std::vector<Real>& memory
   fields::copy(x, committed_x_);
   errors_.clear();
 }
+
+void System::forget_rates(bool jump) { rate_errors_->forget(jump); }
 
 /// Of the step to x, whose ghosts are there, before histories move on.
 void System::find_errors(const BlockVector& x) {

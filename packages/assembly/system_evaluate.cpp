@@ -1,4 +1,5 @@
 // Evaluation: residuals, Jacobians, measures and outputs at a given x.
+#include "assembly/rate_errors.hpp"
 #include "assembly/system.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"

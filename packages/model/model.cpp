@@ -103,7 +103,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   system_ = std::make_unique<assembly::System>(
       mesh, std::move(modules), conditions, timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
-  if (scene_.time.chooses_steps()) system_->watch_errors();
+  if (scene_.time.chooses_steps()) system_->watch_errors(scene_.time.times().back() - time_);
   x_ = system_->initial();
   start_solver();
 }
@@ -178,12 +178,9 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {{"time", time_},
-                        {"dt", memory.dt},
-                        {"scales", memory.scales},
-                        {"calibration", memory.calibration},
-                        {"errors", memory.errors},
-                        {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {{"time", time_},           {"dt", memory.dt},
+                        {"scales", memory.scales}, {"calibration", memory.calibration},
+                        {"errors", memory.errors}, {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
 }
@@ -203,7 +200,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
   }
   time_ = content.at("time");
   system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration"),
-                        content.value("errors", std::vector<Real>())});
+                       content.value("errors", std::vector<Real>())});
   start_solver();
 }
 

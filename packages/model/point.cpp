@@ -82,8 +82,10 @@ void PointScene::describe(base::Section& s) {
   s.named_sections(materials, "Materials", "joints, by names of your choice");
   s.section(time, "Time", "steps");
   if (s.complete() && time.chooses_steps())
-    s.fail("\"Time\" chooses steps by \"tolerance\" or \"target Newton iterations\", which needs a mesh; give \"steps\" or a "
-           "\"schedule\"");
+    s.fail(
+        "\"Time\" chooses steps by \"tolerance\" or \"target Newton iterations\", which needs a mesh; give \"steps\" "
+        "or a "
+        "\"schedule\"");
   std::optional<PointPath> one;
   s.section(one, "Point", "what drives the point");
   s.named_sections(specimens, "Specimens", "several points instead of one, by names of your choice");

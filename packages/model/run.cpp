@@ -46,9 +46,8 @@ class Progress {
                                ? elapsed / done_ * steps_.n_left()
                                : elapsed * (1 - share) / (share - share_before_);
     log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8.1f}s {:>8.1f}s", report.time,
-              report.time - step.begin,
-              report.newton_iterations, solve::iterations(report.linear_solves), report.cuts, faces[0], faces[1],
-              faces[2], elapsed, remaining);
+              report.time - step.begin, report.newton_iterations, solve::iterations(report.linear_solves), report.cuts,
+              faces[0], faces[1], faces[2], elapsed, remaining);
   }
 
  private:

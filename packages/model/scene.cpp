@@ -26,7 +26,8 @@ void Time::describe(base::Section& s) {
   s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
           "steps become shorter where Newton's method takes more, and longer where it takes less; with tolerance, no "
           "longer than that allows");
-  s.entry(first_step, "first step", "s", base::positive(), "its length, of steps that are chosen; absent: a part of all");
+  s.entry(first_step, "first step", "s", base::positive(),
+          "its length, of steps that are chosen; absent: a part of all");
   s.entry(smallest_step, "smallest step", "s", base::positive(),
           "which is taken whatever it errs in; absent: 1e-9 of all");
   s.entry(largest_step, "largest step", "s", base::positive(), "absent: as long as all");
@@ -50,16 +51,16 @@ void Time::describe(base::Section& s) {
 /// What goes with steps that are chosen, and what does not.
 void Time::describe_choice(base::Section& s) const {
   if (chooses_steps() && steps)
-    s.fail("steps", fmt::format("is {}: does not go with \"{}\", by which steps are chosen; leave out one of them", *steps,
-                                tolerance ? "tolerance" : "target Newton iterations"));
+    s.fail("steps", fmt::format("is {}: does not go with \"{}\", by which steps are chosen; leave out one of them",
+                                *steps, tolerance ? "tolerance" : "target Newton iterations"));
   const std::pair<const char*, const std::optional<Real>&> lengths[] = {
       {"first step", first_step}, {"smallest step", smallest_step}, {"largest step", largest_step}};
   for (const auto& [name, length] : lengths)
     if (length && !chooses_steps())
       s.fail(name, fmt::format("is {} s: needs \"tolerance\" or \"target Newton iterations\"", *length));
   if (smallest_step && largest_step && *smallest_step > *largest_step)
-    s.fail("smallest step", fmt::format("is {} s, must be at most the \"largest step\", {} s", *smallest_step,
-                                        *largest_step));
+    s.fail("smallest step",
+           fmt::format("is {} s, must be at most the \"largest step\", {} s", *smallest_step, *largest_step));
 }
 
 std::vector<Real> Time::times() const {

@@ -44,8 +44,8 @@ struct Time {
   Real start = 0, end = 1;
   std::optional<int> steps;  ///< absent: one, if their length is not chosen
   std::optional<std::vector<Real>> schedule;
-  std::optional<Real> tolerance;          ///< of relative errors, by which lengths of steps are chosen
-  std::optional<int> newton_iterations;   ///< of a step, likewise
+  std::optional<Real> tolerance;         ///< of relative errors, by which lengths of steps are chosen
+  std::optional<int> newton_iterations;  ///< of a step, likewise
   std::optional<Real> first_step, smallest_step, largest_step;
   std::string scheme = "implicit Euler";  ///< or BDF2, of rates of what is stored
   solve::TimeSteppingOptions stepping;

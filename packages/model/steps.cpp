@@ -46,7 +46,6 @@ void Steps::find_next() {
   while (next_ < times_.size() && !is_ahead(times_[next_])) ++next_;
 }
 
-
 Real Steps::share_done() const {
   const auto& time = model_.scene().time;
   const Real end = times_.back();
@@ -61,19 +60,19 @@ StepTaken Steps::take() {
   return step;
 }
 
-/// Loads are taken for straight within a step: where they are not it becomes shorter, unless that does not help.
-Real Steps::end_of_attempt() {
+/// Loads are taken for straight within a step: where they are not it becomes shorter, unless that does not help. The
+/// end of the step, and how far its loads are from straight.
+std::pair<Real, Real> Steps::next_attempt() {
+  const auto scope = model_.timers().scope("choice of steps");
   const Real t = model_.time();
   const auto& tolerance = model_.scene().time.tolerance;
-  Real end = control_->end_of_step(t);
-  for (Real before = 2; tolerance;) {
-    const Real bend = model_.system().bend_of_loads(model_.state(), end, end - t);
-    if (bend <= *tolerance || bend > 0.8 * before) break;
+  for (Real before = 2;;) {
+    const Real end = control_->end_of_step(t);
+    const Real bend = tolerance ? model_.system().bend_of_loads(model_.state(), end, end - t) : 0;
+    if (!tolerance || bend <= *tolerance || bend > 0.8 * before) return {end, bend};
     before = bend;
     control_->shorten(end - t, bend);
-    end = control_->end_of_step(t);
   }
-  return end;
 }
 
 StepTaken Steps::choose() {
@@ -82,22 +81,25 @@ StepTaken Steps::choose() {
   const auto before = *control_;
   StepTaken step{.begin = model_.time()};
   for (;;) {
-    step.end = end_of_attempt();
-    step.report = model_.step_to(step.end);
+    const auto [end, bend] = next_attempt();
+    step.end = end;
+    step.report = model_.step_to(end);
     step.errors = system.take_errors();
+    if (!system.has_rates() || !step.errors.empty()) step.errors.push_back({"loads", bend, 2});
     if (step.report.stopped) control_ = before;
     if (!step.report.converged) return step;
     const Real dt = (step.end - step.begin) / (1 << std::min(step.report.cuts, 20));
     const auto verdict = control_->judge(dt, step.errors, step.report.newton_iterations);
     if (verdict == Verdict::jumped) system.forget_rates(true);
     if (verdict != Verdict::rejected) break;
+    const auto scope = model_.timers().scope("choice of steps");
     model_.take_back();
     ++step.n_rejected;
     step.rejected_iterations += step.report.newton_iterations;
   }
   step.at_time = contains(times_, step.end);
   if (system.has_rates() && contains(knots_, step.end)) {
-    control_->be_careful();
+    control_->be_careful(step.end);
     system.forget_rates(false);
   }
   find_next();

@@ -7,9 +7,9 @@ namespace sprekk::solve {
 
 namespace {
 
-constexpr Real aim = 0.8;                               // of the tolerance
-constexpr Real most_shrink = 0.1, least_shrink = 0.7;   // of what is rejected
-constexpr Real same = 1e-12;                            // of times that differ by rounding
+constexpr Real aim = 0.8;                              // of the tolerance
+constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // of what is rejected
+constexpr Real same = 1e-12;                           // of times that differ by rounding
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Real StepControl::end_of_step(Real t) const {
 }
 
 StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& errors, int newton_iterations) {
-  Real worst = 0, factor = errors.empty() ? 1 : options_.most_growth;
+  Real worst = 0, factor = options_.tolerance && errors.empty() ? 1 : options_.most_growth;
   for (const auto& error : errors) {
     if (!options_.tolerance || !(error.value > 0)) continue;
     worst = std::max(worst, error.value / *options_.tolerance);
@@ -61,9 +61,10 @@ void StepControl::shorten(Real dt, Real bend) {
   dt_ = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
 }
 
-void StepControl::be_careful() {
-  constexpr Real careful = 0.2;
-  dt_ = bounded(careful * dt_);
+void StepControl::be_careful(Real t) {
+  constexpr Real of_last = 0.2, of_rest = 0.02;
+  if (const auto stop = next_stop(t); stop != stops_.end())
+    dt_ = bounded(std::min(of_last * dt_, of_rest * (*stop - t)));
 }
 
 }  // namespace sprekk::solve

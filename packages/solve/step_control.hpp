@@ -17,8 +17,8 @@ struct StepControlOptions {
 
 /// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
 /// suggest dt (wanted/n)^(1/2). Steps with an error above the tolerance are to be rejected, unless a shorter one was
-/// tried and is hardly better: what jumps at a time does so in steps of any length. Stops, increasing, are met; the last
-/// two steps before one are equal, so that none is tiny.
+/// tried and is hardly better: what jumps at a time does so in steps of any length. Stops, increasing, are met; the
+/// last two steps before one are equal, so that none is tiny.
 class StepControl {
  public:
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
@@ -35,8 +35,8 @@ class StepControl {
   Verdict judge(Real dt, const fields::StepErrors& errors, int newton_iterations);
   /// Loads within a step of length dt are not straight, with this error: the next attempt is shorter.
   void shorten(Real dt, Real bend);
-  /// Loads turn at the present time: the next step is short.
-  void be_careful();
+  /// Loads turn at the present time t: the next step is short.
+  void be_careful(Real t);
 
   /// What goes on after a restart, to any bit.
   Real length() const { return dt_; }
@@ -48,9 +48,9 @@ class StepControl {
 
   StepControlOptions options_;
   std::vector<Real> stops_;
-  Real dt_;                // that the next step is to have
-  Real worst_ = 0;         // error over tolerance of the attempt that was rejected last, in this step; or 0
-  Real rejected_dt_ = 0;   // its length
+  Real dt_;               // that the next step is to have
+  Real worst_ = 0;        // error over tolerance of the attempt that was rejected last, in this step; or 0
+  Real rejected_dt_ = 0;  // its length
 };
 
 }  // namespace sprekk::solve
