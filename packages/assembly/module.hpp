@@ -84,7 +84,6 @@ struct History {
   std::string name;
   fields::Entity entity;
   int n_components;
-  bool has_rates = false;  ///< where something is stored, its rates tell errors of steps as those of unknowns do
 };
 
 /// A number of a fracture that follows from the components of a mean or an integral over it; none: it has no meaning.

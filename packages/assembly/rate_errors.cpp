@@ -108,7 +108,7 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
     const Real growth = n_rates_ > 0 && kept.largest > 0 && elapsed_ > 0
                             ? std::log(std::max<Real>(1, largest[k] / kept.largest)) / std::log(1 + dt / elapsed_)
                             : 0;
-    const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 30);
+    const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 10);
     kept.largest = std::max(kept.largest, largest[k]);
     const Real size = kept.largest * std::pow(ahead, std::min<Real>(growth, 0.5));
     kept.lasts = shrinks * kept.lasts + dt;

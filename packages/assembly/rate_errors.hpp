@@ -21,7 +21,7 @@ namespace sprekk::assembly {
 /// Steps that all err at the rate of this one would come to e tau/dt. The error is the geometric mean of both: one that
 /// errs more than others does it once. |.| is the root mean square over the block, relative to the largest
 /// change of an unknown since the start. At time t that is c and grows like t^p; the one to come soon is taken, c
-/// min(30, T/t)^min(p, 1/2) with T the end: else what begins at zero would be resolved as finely as if it stayed small.
+/// min(10, T/t)^min(p, 1/2) with T the end: else what begins at zero would be resolved as finely as if it stayed small.
 class RateErrors {
  public:
   RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& layouts, const std::vector<char>& balances,

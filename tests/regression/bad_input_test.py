@@ -341,7 +341,7 @@ class Scenes(BadInput):
         self.refuse_set(['Time > "first step": is 1 s: needs "tolerance" or "target Newton iterations"'], "Time.first step=1")
         chosen = self.scene("poro/shut_in_2d.xml")
         for entry, words in (("tolerance=0", '"tolerance": is 0, must be between 1e-08 and 0.5'), ("tolerance=2", "must be between"),
-                             ("smallest step=0", '"smallest step": is 0, must be above 0'), ("target Newton iterations=0", "must be between 1 and 1000")):
+                             ("smallest step=0", '"smallest step": is 0, must be positive'), ("target Newton iterations=0", "must be between 1 and 1000")):
             self.refuse([words], "check", chosen, "--set", f"Time.{entry}")
         self.refuse(['"smallest step": is 7200 s, must be at most the "largest step", 3600 s'], "check", chosen, "--set", "Time.smallest step=2 h", "--set", "Time.largest step=1 h")
         text = self.scene("point/cyclic_shear.xml").read_text().replace('"steps" type="int"', '"target Newton iterations" type="int"')

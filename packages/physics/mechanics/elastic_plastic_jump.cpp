@@ -79,7 +79,7 @@ class ElasticPlasticJump final : public assembly::Module {
     d.stores = dissipates();
     if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
-    d.history = {{"plastic jump", face, dim - 1, true}, {"slid", face, 1}};
+    d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     add_outputs(d);
     if (parameters_.n_kept > 0) {
       d.history.push_back({"kept by laws", face, parameters_.n_kept});

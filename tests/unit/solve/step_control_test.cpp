@@ -27,7 +27,9 @@ TEST(StepControl, TakesStepsInverseToTheErrorToThePowerOfTheOrder) {
     std::vector<std::size_t> n;
     for (const Real tolerance : {1e-2, 1e-4}) {
       const StepControl control({.tolerance = tolerance, .first = 1e-3, .smallest = 1e-12, .largest = 1}, {1});
-      n.push_back(ends(control, 1, [&](Real, Real dt) { return std::pow(dt, order); }, order).size());
+      n.push_back(ends(
+                      control, 1, [&](Real, Real dt) { return std::pow(dt, order); }, order)
+                      .size());
     }
     EXPECT_NEAR(std::log(static_cast<Real>(n[1]) / n[0]) / std::log(100), 1 / order, 0.08) << n[0] << ", " << n[1];
   }

@@ -3,7 +3,7 @@
 #include "model/steps.hpp"
 #include "verification/scenes.hpp"
 
-#include <map>
+#include <utility>
 
 namespace sprekk::tests {
 namespace {
@@ -40,8 +40,8 @@ TEST(ChosenSteps, GrowInNumberAsTheirOrderSays) {
   for (const auto& [scheme, order] : std::vector<std::pair<std::string, Real>>{{"implicit Euler", 1}, {"BDF2", 2}}) {
     std::vector<Real> n;
     for (const Real tolerance : {4e-4, 1e-4})
-      n.push_back(static_cast<Real>(
-          go(chosen("verification/terzaghi_2d.xml", tolerance, {"Time.scheme=" + scheme})).size()));
+      n.push_back(
+          static_cast<Real>(go(chosen("verification/terzaghi_2d.xml", tolerance, {"Time.scheme=" + scheme})).size()));
     EXPECT_NEAR(std::log(n[1] / n[0]) / std::log(4), 1 / order, 0.15) << scheme << ": " << n[0] << ", " << n[1];
   }
 }
@@ -89,60 +89,67 @@ TEST(ChosenSteps, RejectWithoutATrace) {
   scene.time.tolerance.reset();
   scene.time.schedule = ends;
   std::size_t k = 0;
-  go(scene, [&](auto& model, auto&) {
-    EXPECT_NEAR(mean(model, Outputs(model)["plastic jump local"], 1), slip[k++], 1e-9);
-  });
+  go(scene,
+     [&](auto& model, auto&) { EXPECT_NEAR(mean(model, Outputs(model)["plastic jump local"], 1), slip[k++], 1e-9); });
 }
 
-/// Slip of the joints after injection has ended, [fracture], and the volume that pores have taken up.
+/// What injection has left after it has ended.
 struct AfterShutIn {
-  std::vector<Real> slip;
-  Real stored = 0, injected = 0;
+  std::vector<Real> slip, pressure;  ///< [owned face], [owned cell]
+  Real stored = 0, injected = 0;     ///< volumes
   std::vector<model::StepTaken> steps;
 };
 
 AfterShutIn shut_in(const model::Scene& scene) {
   AfterShutIn after;
-  Real begin = 0;
   after.steps = go(scene, [&](auto& model, const auto& step) {
     for (const auto& total : model.system().totals(model.state()))
-      if (total.names.back() == "rate") after.injected += total.value * (step.end - begin);
-    begin = step.end;
+      if (total.names.back() == "rate") after.injected += total.value * (step.end - step.begin);
     if (step.end < scene.time.times().back()) return;
     const Outputs out(model);
     const auto& mesh = model.mesh();
-    after.slip.assign(mesh.fracture_names.size(), 0);
-    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-      after.slip[mesh.fracture_faces[f].fracture] += mesh.fracture_faces[f].area * out.scalar("slip", f);
-    for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell)
-      after.stored += assembly::cell_volumes(mesh)[cell] * 1e-11 * (out.scalar("pressure", cell) - 10e6);
-    after.slip = base::sum_over_ranks(*mesh.comm, after.slip);
+    const auto volumes = assembly::cell_volumes(mesh);
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) after.slip.push_back(out.scalar("slip", f));
+    for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
+      after.pressure.push_back(out.scalar("pressure", cell) - 10e6);
+      after.stored += volumes[cell] * 1e-11 * after.pressure.back();
+    }
     after.stored = base::sum_over_ranks(*mesh.comm, after.stored);
   });
   return after;
 }
 
-/// Nothing leaves the box, whose volume stays, and alpha is 1: the rock's pores have all fluid, but for what joints
-/// hold, which they took from the rock.
+/// The root mean square of a - b, relative to the largest of b. Collective.
+Real difference(const std::vector<Real>& a, const std::vector<Real>& b) {
+  const auto comm = Tpetra::getDefaultComm();
+  Real square = 0, largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    square += (a[i] - b[i]) * (a[i] - b[i]);
+    largest = std::max(largest, std::abs(b[i]));
+  }
+  const auto n = base::sum_over_ranks(*comm, static_cast<Real>(a.size()));
+  return std::sqrt(base::sum_over_ranks(*comm, square) / n) / base::max_over_ranks(*comm, largest);
+}
+
+/// Nothing leaves the box, whose volume stays, and the Biot coefficient is 1: the compressibility of pores stores what
+/// is injected, for what joints hold they took from the rock. Slip begins at a pressure, beyond which it is a part of
+/// the pressure's change alone: it is known less well by a factor of up to three.
 TEST(ChosenSteps, ConserveFluidAndMeetSlipAfterShutIn) {
-  auto scene = read_scene("poro/shut_in_2d.xml");
+  auto scene = read_scene("poro/shut_in_2d.xml", {"Time.tolerance=0.03"});
   scene.solver.tolerance = 1e-12;
   const auto chosen = shut_in(scene);
   EXPECT_NEAR(chosen.stored, chosen.injected, 1e-10 * chosen.injected);
   const Real tolerance = *scene.time.tolerance;
   scene.time.tolerance.reset();
   std::vector<Real> ends;
-  Real begin = 0;
-  for (const auto& step : chosen.steps) {
-    for (int k = 1; k < 10; ++k) ends.push_back(begin + (step.end - begin) * k / 10);
-    ends.push_back(begin = step.end);
-  }
+  for (const auto& step : chosen.steps)
+    for (int k = 1; k <= 10; ++k) ends.push_back(k == 10 ? step.end : step.begin + (step.end - step.begin) * k / 10);
   scene.time.schedule = ends;
   const auto fine = shut_in(scene);
   EXPECT_NEAR(fine.stored, fine.injected, 1e-10 * fine.injected);
-  const Real largest = *std::max_element(fine.slip.begin(), fine.slip.end());
-  EXPECT_GT(largest, 0);
-  for (std::size_t k = 0; k < fine.slip.size(); ++k) EXPECT_NEAR(chosen.slip[k], fine.slip[k], tolerance * largest);
+  EXPECT_LE(difference(chosen.pressure, fine.pressure), tolerance);
+  EXPECT_LE(difference(chosen.slip, fine.slip), 3 * tolerance);
+  EXPECT_GT(difference(std::vector<Real>(fine.slip.size(), 0), fine.slip), 0.1);
 }
 
 }  // namespace
