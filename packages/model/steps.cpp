@@ -15,7 +15,7 @@ bool contains(const std::vector<Real>& increasing, Real t) {
 
 solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
   const Real all = end - time.start;
-  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.01;  // of all
+  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // of all
   const Real largest = time.largest_step.value_or(all);
   return {.tolerance = time.tolerance,
           .iterations = time.newton_iterations,
