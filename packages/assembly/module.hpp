@@ -7,6 +7,7 @@
 #include "fields/block_matrix.hpp"
 #include "fields/block_problem.hpp"
 #include "fields/layout.hpp"
+#include "fields/step_error.hpp"
 #include "mesh/mesh.hpp"
 
 #include <functional>
@@ -238,6 +239,9 @@ class Module {
   /// After elimination of the local groups, blocks on the diagonal of the Jacobian at `state` are symmetric as far as
   /// this rank's part goes.
   virtual bool symmetric(const State& state) const { return true; }
+  /// Appends what the step from `begin`, with owned unknowns alone and old histories, to `end` errs in; the same on all
+  /// ranks. Collective.
+  virtual void step_errors(const State& begin, const State& end, fields::StepErrors& errors) const {}
   /// Appends this rank's parts of totals, the same ones on all ranks in the same order. Local.
   virtual void totals(const State& state, std::vector<Total>& totals) const {}
 };

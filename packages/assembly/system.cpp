@@ -2,6 +2,7 @@
 #include "assembly/system.hpp"
 
 #include "assembly/order_one.hpp"
+#include "assembly/rate_errors.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "fields/without_zeros.hpp"
@@ -139,6 +140,8 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
 }
 
 }  // namespace
+
+System::~System() = default;
 
 void System::declare_fields() {
   std::set<std::string> names;
@@ -432,7 +435,7 @@ BlockVector System::initial() const {
   return x;
 }
 
-std::vector<std::pair<fields::Field, View<Real**>>> System::histories() const {
+std::vector<std::pair<fields::Field, View<Real**>>> System::histories(bool rates) const {
   std::vector<std::pair<fields::Field, View<Real**>>> all;
   for (std::size_t m = 0; m < modules_.size(); ++m)
     for (std::size_t h = 0; h < history_[m].size(); ++h) {
@@ -444,6 +447,8 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::histories() const {
     if (gains_[b].extent(0) > 0)
       all.push_back({{"gain of " + field.name, field.entity, field.n_components, ""}, gains_[b]});
   }
+  if (rate_errors_ && rates)
+    for (auto& rate : rate_errors_->histories()) all.push_back(std::move(rate));
   return all;
 }
 
@@ -465,10 +470,14 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   set_time(memory.t, memory.dt);
   take_scales();  // without loads of a step that is taken back
   if (contact_) contact_->resume(x, memory.calibration);
+  if (rate_errors_) resume_errors(x, memory.errors);
 }
 
 System::Memory System::memory() const {
-  return {committed_t_, committed_dt_, scales_, contact_ ? contact_->calibration() : std::vector<Real>()};
+  std::vector<Real> errors = load_change_;
+  if (rate_errors_)
+    for (const Real number : rate_errors_->memory()) errors.push_back(number);
+  return {committed_t_, committed_dt_, scales_, contact_ ? contact_->calibration() : std::vector<Real>(), errors};
 }
 
 }  // namespace sprekk::assembly

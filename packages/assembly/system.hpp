@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace sprekk::assembly {
@@ -24,12 +25,15 @@ struct Reaction {
   Reactions called = {};
 };
 
+class RateErrors;
+
 class System : public fields::BlockProblem, private contact::Equations {
  public:
   /// Declares and binds the modules and assembles the linear ones, once. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
          const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
+  ~System() override;
   System(const System&) = delete;  // modules and stencils know where its parts are
   System& operator=(const System&) = delete;
 
@@ -64,17 +68,30 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::vector<Total> totals(const fields::BlockVector& x);
 
   /// What the modules keep, as "MODULE: HISTORY", and what was stored in the last step, as "gain of FIELD"; the values,
-  /// [owned entity, component], may be written.
-  std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
+  /// [owned entity, component], may be written. And the rates that errors of steps are found by.
+  std::vector<std::pair<fields::Field, View<Real**>>> histories(bool rates = true) const;
   /// What a system has learnt on its way to the last committed state, besides histories.
   struct Memory {
     Real t = 0, dt = 0;             ///< the time of that state, and of the step to it
     Scales scales;                  ///< of the loads so far
     std::vector<Real> calibration;  ///< see contact::Contact
+    std::vector<Real> errors;       ///< what watch_errors() needs
   };
   Memory memory() const;  ///< stored data
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
+
+  /// From now on each commit finds what its step errs in; to be called at the initial state. Collective.
+  void watch_errors(Real duration);
+  /// Rates count: some modules store something from step to step.
+  bool has_rates() const;
+  /// Of the steps committed since the last call of this or of resume(), the largest by each name.
+  fields::StepErrors take_errors() { return std::exchange(errors_, {}); }
+  /// How far loads at x leave, within a step to t of length dt, the straight line between its ends, relative to the
+  /// most that they have changed in a step so far; it changes the present time. Collective.
+  Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
+  /// See RateErrors::forget.
+  void forget_rates(bool jump);
 
   const mesh::Mesh& mesh() const { return *mesh_; }
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
@@ -109,6 +126,9 @@ class System : public fields::BlockProblem, private contact::Equations {
   bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
   void declare_gains();
   void find_gains();
+  void find_errors(const fields::BlockVector& x);
+  void resume_errors(const fields::BlockVector& x, const std::vector<Real>& memory);
+  fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
@@ -152,6 +172,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
   Relaxation lagged_;              // [local fracture face] of the logarithms of coefficients_
   RCP<base::Timers> timers_;
+  std::unique_ptr<RateErrors> rate_errors_;  // if errors of steps are watched
+  fields::BlockVector committed_x_;          // likewise
+  std::vector<Real> load_change_;            // likewise [block] most of a step
+  fields::StepErrors errors_;                // of the last steps
   Rates::Scheme scheme_;
   Real extent_;  // largest of the domain, m
   Rates rates_;

@@ -1,4 +1,5 @@
 // Evaluation: residuals, Jacobians, measures and outputs at a given x.
+#include "assembly/rate_errors.hpp"
 #include "assembly/system.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -235,6 +236,7 @@ void System::commit(const BlockVector& x) {
     contact_->remember(x);
   }
   if (keeps_gains()) find_gains();
+  if (rate_errors_) find_errors(x);
   committed_t_ = t_;
   committed_dt_ = dt_;
   for (std::size_t m = 0; m < modules_.size(); ++m) {

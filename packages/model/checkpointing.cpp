@@ -4,14 +4,15 @@
 
 namespace sprekk::model {
 
-Checkpointing::Checkpointing(Model& model, const std::string& directory, base::Log& log)
-    : model_(model), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
+Checkpointing::Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log)
+    : model_(model), steps_(steps), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
 
 EarlierResults Checkpointing::restore() {
   std::vector<std::string> damage;
   auto checkpoint = checkpoints_.read(damage);
   for (const auto& what : damage) log_.warning("{}", what);
   model_.restore(checkpoint);
+  steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
   return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes")};
@@ -40,6 +41,7 @@ void Checkpointing::write(const Results& results) {
   auto checkpoint = model_.save();
   checkpoint.content["restarts"] = results.restarts();
   checkpoint.content["probes"] = results.probes_begun();
+  checkpoint.content["steps"] = steps_.memory();
   checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);

@@ -3,6 +3,7 @@
 
 #include "base/log.hpp"
 #include "model/results.hpp"
+#include "model/steps.hpp"
 
 #include <chrono>
 
@@ -11,7 +12,7 @@ namespace sprekk::model {
 /// Checkpoints of a model with its results, in DIRECTORY/checkpoints. All members are collective.
 class Checkpointing {
  public:
-  Checkpointing(Model& model, const std::string& directory, base::Log& log);
+  Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log);
 
   /// Removes the checkpoints of an earlier run.
   void start_anew() { checkpoints_.clear(); }
@@ -30,6 +31,7 @@ class Checkpointing {
   void write(const Results& results);
 
   Model& model_;
+  Steps& steps_;
   base::Log& log_;
   io::Checkpoints checkpoints_;
   int n_saved_steps_ = 0;

@@ -53,7 +53,8 @@ json unknowns(const assembly::System& system) {
     const auto& field = layout.field();
     all.push_back({field.name, field.entity, field.n_components, layout.owned()->getGlobalNumElements()});
   }
-  for (const auto& [field, values] : system.histories()) all.push_back({field.name, field.entity, field.n_components});
+  for (const auto& [field, values] : system.histories(false))
+    all.push_back({field.name, field.entity, field.n_components});
   return all;
 }
 

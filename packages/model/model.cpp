@@ -103,6 +103,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   system_ = std::make_unique<assembly::System>(
       mesh, std::move(modules), conditions, timers_,
       scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
+  if (scene_.time.chooses_steps()) system_->watch_errors(scene_.time.times().back() - time_);
   x_ = system_->initial();
   start_solver();
 }
@@ -177,11 +178,9 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {{"time", time_},
-                        {"dt", memory.dt},
-                        {"scales", memory.scales},
-                        {"calibration", memory.calibration},
-                        {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {{"time", time_},           {"dt", memory.dt},
+                        {"scales", memory.scales}, {"calibration", memory.calibration},
+                        {"errors", memory.errors}, {"scene", fingerprint(scene_, *system_)}};
   start_solver();
   return checkpoint;
 }
@@ -194,11 +193,14 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     redistribute(*checkpoint.vectors.at(key_of(system_->blocks()[b])), *x_[b]);
   for (const auto& [field, values] : system_->histories()) {
     fields::Vector vector(fields::owned_map(field, mesh()));
-    redistribute(*checkpoint.vectors.at(field.name), vector);
+    const auto kept = checkpoint.vectors.find(field.name);
+    if (kept == checkpoint.vectors.end()) continue;  // rates, of steps whose length was not chosen
+    redistribute(*kept->second, vector);
     Kokkos::deep_copy(values, entries(vector, field.n_components));
   }
   time_ = content.at("time");
-  system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration")});
+  system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration"),
+                       content.value("errors", std::vector<Real>())});
   start_solver();
 }
 

@@ -85,6 +85,10 @@ void PointScene::describe(base::Section& s) {
   s.section(one, "Point", "what drives the point");
   s.named_sections(specimens, "Specimens", "several points instead of one, by names of your choice");
   if (!s.complete()) return;
+  if (time.chooses_steps())
+    s.fail_inside(
+        "Time: chooses steps by \"tolerance\" or \"target Newton iterations\", which needs a mesh; give \"steps\" or "
+        "a \"schedule\"");
   if (one && !specimens.empty()) s.fail_inside("Specimens: are there beside \"Point\"; leave one of them out");
   if (!one && specimens.empty())
     s.fail_inside("Point: missing, and so are \"Specimens\"; a scene of points needs either");

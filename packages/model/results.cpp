@@ -235,13 +235,32 @@ std::vector<json> Results::journal(int begin) const {
   return entries;
 }
 
-std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool last) {
+/// After every so many steps; of those that are chosen on the way to times of a schedule, after every so many of these.
+bool Results::fields_are_due(const StepTaken& step) const {
+  const auto& time = model_.scene().time;
+  int n = n_steps_;
+  if (time.chooses_steps() && time.schedule) {
+    if (!step.at_time) return false;
+    n = static_cast<int>(std::upper_bound(time.schedule->begin(), time.schedule->end(), step.end) -
+                         time.schedule->begin());
+  }
+  return n % model_.scene().output.every == 0;
+}
+
+std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
+  const auto& report = taken.report;
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
                {"linear_iterations", solve::iterations(report.linear_solves)},
                {"substeps", report.substeps},
                {"cuts", report.cuts},
                {"converged", report.converged}};
+  if (model_.scene().time.chooses_steps()) {
+    step["length"] = report.time - taken.begin;
+    step["rejected"] = taken.n_rejected;
+    step["rejected_newton_iterations"] = taken.rejected_iterations;
+    for (const auto& error : taken.errors) step["estimated_errors"][with_underscores(error.name)] = error.value;
+  }
   for (const auto& linear : report.linear_solves)
     step["linear_solves"].push_back(
         {{"iterations", linear.iterations}, {"residual", linear.residual}, {"used", linear.used}});
@@ -268,7 +287,7 @@ std::array<long long, 3> Results::add_step(const solve::StepReport& report, bool
   }
   add(step);
   ++n_steps_;
-  if (last || n_steps_ % model_.scene().output.every == 0) write_fields(report.time, outputs);
+  if (last || fields_are_due(taken)) write_fields(report.time, outputs);
   const auto rest = std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(5), 20 * write_took_);
   if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > rest)) write_json();
   return counts_of_classes(*model_.mesh().comm, outputs);

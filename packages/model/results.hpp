@@ -5,6 +5,7 @@
 #include "io/vtu.hpp"
 #include "model/error_estimate.hpp"
 #include "model/probes.hpp"
+#include "model/steps.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -41,7 +42,7 @@ class Results {
 
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
   /// fracture faces are open, stick and slip.
-  std::array<long long, 3> add_step(const solve::StepReport& report, bool last);
+  std::array<long long, 3> add_step(const StepTaken& taken, bool last);
   /// What may be wrong with the states added since the last call, each text once in the life of the results.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Which single fractures are in which state after the last step, a line for each state. Stored data.
@@ -61,6 +62,7 @@ class Results {
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
+  bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
   void write_json();
   void finish_in_place(const std::string& reason);

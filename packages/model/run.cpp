@@ -8,6 +8,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
+#include "model/steps.hpp"
 #include "model/warnings.hpp"
 
 #include <fmt/ranges.h>
@@ -31,32 +32,31 @@ namespace {
 /// A line per time step, for terminals.
 class Progress {
  public:
-  Progress(base::Log& log, std::size_t n_steps) : log_(log), n_steps_(n_steps) {
+  Progress(base::Log& log, const Steps& steps) : log_(log), steps_(steps), share_before_(steps.share_done()) {
     log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9}", "time", "dt", "Newton", "linear", "cuts",
               "open", "stick", "slip", "elapsed", "remaining");
   }
 
-  void add(const solve::StepReport& report, Real dt, const std::array<long long, 3>& faces) {
+  void add(const StepTaken& step, const std::array<long long, 3>& faces) {
+    const auto& report = step.report;
     ++done_;
     const Real elapsed = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
-    log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8.1f}s {:>8.1f}s", report.time, dt,
-              report.newton_iterations, solve::iterations(report.linear_solves), report.cuts, faces[0], faces[1],
-              faces[2], elapsed, elapsed / done_ * static_cast<Real>(n_steps_ - done_));
+    const Real share = steps_.share_done();
+    const Real remaining = steps_.n_left() > 0 || share == share_before_
+                               ? elapsed / done_ * steps_.n_left()
+                               : elapsed * (1 - share) / (share - share_before_);
+    log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8.1f}s {:>8.1f}s", report.time,
+              report.time - step.begin, report.newton_iterations, solve::iterations(report.linear_solves), report.cuts,
+              faces[0], faces[1], faces[2], elapsed, remaining);
   }
 
  private:
   base::Log& log_;
-  std::size_t n_steps_, done_ = 0;
+  const Steps& steps_;
+  Real share_before_;
+  int done_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
-
-/// The ends of the steps that are still to be taken from t; what rounding leaves of one is not.
-std::vector<Real> times_after(const Time& time, Real t) {
-  auto times = time.times();
-  const auto is_ahead = [&](Real end) { return end - t > 1e-14 * std::max(std::abs(end), std::abs(time.start)); };
-  times.erase(times.begin(), std::find_if(times.begin(), times.end(), is_ahead));
-  return times;
-}
 
 /// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
 template <class Work>
@@ -165,35 +165,37 @@ Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoint
 }
 
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.
-Ending take_steps(Model& model, Results& results, Checkpointing& checkpoints, base::Log& log,
+Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& checkpoints, base::Log& log,
                   const std::function<bool()>& should_stop) {
   const Scene& scene = model.scene();
-  const auto times = times_after(scene.time, model.time());
-  if (times.empty()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
-  Progress progress(log, times.size());
+  if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
+  Progress progress(log, steps);
   std::string loose;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const Real begin = model.time();
-    bool last = k + 1 == times.size(), interrupted = false;
-    const auto report = or_finished(results, [&] {
-      const auto step = naming_file(scene.origin, [&] { return model.step_to(times[k]); });
+  while (steps.any()) {
+    bool interrupted = false;
+    const auto taken = or_finished(results, [&] {
+      auto taken = naming_file(scene.origin, [&] { return steps.take(); });
+      const auto& step = taken.report;
+      bool last = !steps.any();
       interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));
       last = last || interrupted;
       if (step.stopped) {
         model.take_back();
-        return step;
+        return taken;
       }
-      const auto faces = results.add_step(step, last || !step.converged);
-      progress.add(step, times[k] - begin, faces);
+      const auto faces = results.add_step(taken, last || !step.converged);
+      progress.add(taken, faces);
       for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
-      return step;
+      return taken;
     });
+    const auto& report = taken.report;
     if (interrupted) return interrupt(model, results, checkpoints, log);
     if (report.converged) continue;
     results.finish("failed", report.reason);
-    log.warning("step to t = {} failed at t = {} after {} cuts: {}", times[k], report.time, report.cuts, report.reason);
+    log.warning("step to t = {} failed at t = {} after {} cuts: {}", taken.end, report.time, report.cuts,
+                report.reason);
     return Ending::failed;
   }
   for (const auto& [name, bound] : results.error_bounds()) log.info("{}: known to +-{:.2g} %", name, 100 * bound);
@@ -252,12 +254,13 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
       fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
   describe(*model, log);
   for (const auto& warning : scene_warnings(*model)) log.warning("{}", warning);
-  Checkpointing checkpoints(*model, directory, log);
+  Steps steps(*model);
+  Checkpointing checkpoints(*model, steps, directory, log);
   if (!options.restart) checkpoints.start_anew();
   std::optional<EarlierResults> earlier;
   if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
   Results results(*model, directory, earlier);
-  const auto ending = take_steps(*model, results, checkpoints, log, options.should_stop);
+  const auto ending = take_steps(*model, steps, results, checkpoints, log, options.should_stop);
   tell_costs(*model, log);
   for (const auto& line : results.fracture_digest()) log.info("{}", line);
   if (ending == Ending::completed) log.info("results in {}", directory);

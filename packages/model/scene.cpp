@@ -17,12 +17,25 @@ namespace sprekk::model {
 void Time::describe(base::Section& s) {
   s.entry(start, "start", "s", "time of the initial state");
   s.entry(end, "end", "s", "end of the last step");
-  s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end");
-  s.entry(schedule, "schedule", "s", "ends of all steps, increasing; replaces end and steps");
+  s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end; absent: 1");
+  s.entry(schedule, "schedule", "s",
+          "ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at");
+  s.entry(tolerance, "tolerance", "-", base::between(1e-8, 0.5),
+          "relative error by the length of steps, which are chosen so that it is met, see docs/scenes.md; instead of "
+          "steps");
+  s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
+          "steps become shorter where Newton's method takes more, and longer where it takes less; with tolerance, no "
+          "longer than that allows");
+  s.entry(first_step, "first step", "s", base::positive(),
+          "its length, of steps that are chosen; absent: a part of all");
+  s.entry(smallest_step, "smallest step", "s", base::positive(),
+          "which is taken whatever it errs in; absent: 1e-9 of all");
+  s.entry(largest_step, "largest step", "s", base::positive(), "absent: as long as all");
   s.choice(scheme, "scheme", {"implicit Euler", "BDF2"},
            "of rates of what is stored: of first or second order in time");
   stepping.describe(s);
   if (!s.complete()) return;
+  describe_choice(s);
   Real last = start;
   for (Real t : times()) {
     if (!(t > last)) {
@@ -35,10 +48,26 @@ void Time::describe(base::Section& s) {
   if (schedule && schedule->empty()) s.fail("schedule", "is empty; give at least one time");
 }
 
+/// What goes with steps that are chosen, and what does not.
+void Time::describe_choice(base::Section& s) const {
+  if (chooses_steps() && steps)
+    s.fail("steps", fmt::format("is {}: does not go with \"{}\", by which steps are chosen; leave out one of them",
+                                *steps, tolerance ? "tolerance" : "target Newton iterations"));
+  const std::pair<const char*, const std::optional<Real>&> lengths[] = {
+      {"first step", first_step}, {"smallest step", smallest_step}, {"largest step", largest_step}};
+  for (const auto& [name, length] : lengths)
+    if (length && !chooses_steps())
+      s.fail(name, fmt::format("is {} s: needs \"tolerance\" or \"target Newton iterations\"", *length));
+  if (smallest_step && largest_step && *smallest_step > *largest_step)
+    s.fail("smallest step",
+           fmt::format("is {} s, must be at most the \"largest step\", {} s", *smallest_step, *largest_step));
+}
+
 std::vector<Real> Time::times() const {
   if (schedule) return *schedule;
   std::vector<Real> times;
-  for (int k = 1; k <= steps; ++k) times.push_back(k == steps ? end : start + (end - start) * k / steps);
+  const int n = steps.value_or(1);
+  for (int k = 1; k <= n; ++k) times.push_back(k == n ? end : start + (end - start) * k / n);
   return times;
 }
 

@@ -42,12 +42,19 @@ struct MeshFile {
 
 struct Time {
   Real start = 0, end = 1;
-  int steps = 1;
+  std::optional<int> steps;  ///< absent: one, if their length is not chosen
   std::optional<std::vector<Real>> schedule;
+  std::optional<Real> tolerance;         ///< of relative errors, by which lengths of steps are chosen
+  std::optional<int> newton_iterations;  ///< of a step, likewise
+  std::optional<Real> first_step, smallest_step, largest_step;
   std::string scheme = "implicit Euler";  ///< or BDF2, of rates of what is stored
   solve::TimeSteppingOptions stepping;
   void describe(base::Section& section);
-  std::vector<Real> times() const;  ///< the ends of all steps
+  bool chooses_steps() const { return tolerance || newton_iterations; }
+  std::vector<Real> times() const;  ///< the ends of all steps; if their length is chosen, of those that must be met
+
+ private:
+  void describe_choice(base::Section& section) const;
 };
 
 /// When a run writes a checkpoint: whatever comes first, and after the last step.

@@ -1,10 +1,9 @@
 #include "model/warnings.hpp"
 
-#include "base/xml.hpp"
+#include "model/knots.hpp"
 #include "physics/comparison.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -12,48 +11,42 @@ namespace sprekk::model {
 
 namespace {
 
-/// Whether expressions of the scene call a table by the time.
-bool is_of_time(const std::string& scene, const std::string& table) {
-  for (auto at = scene.find(table + '('); at != scene.npos; at = scene.find(table + '(', at + 1))
-    if (at == 0 || !(std::isalnum(static_cast<unsigned char>(scene[at - 1])) || scene[at - 1] == '_'))
-      if (scene.compare(at + table.size(), 3, "(t)") == 0) return true;
-  return false;
-}
-
 /// How many steps leave out more than a twentieth of what a table does between their ends, and the first of its knots
 /// there.
-std::pair<int, Real> passed_over(const base::Table& table, const Time& time) {
+std::pair<int, Real> passed_over(const TableOfTime& of, const Time& time) {
+  const auto& table = *of.table;
   const auto [least, most] = std::minmax_element(table.values.begin(), table.values.end());
   int n = 0;
-  Real first = 0, begin = time.start;
-  const auto inside = [&](Real t) { return t >= table.arguments.front() && t <= table.arguments.back(); };
-  for (const Real end : time.times()) {
+  Real first = 0, begin = of.shift + of.factor * time.start;
+  const auto inside = [&](Real s) { return s >= table.arguments.front() && s <= table.arguments.back(); };
+  for (const Real t : time.times()) {
+    const Real end = of.shift + of.factor * t;
     bool misses = false;
-    auto knot = std::upper_bound(table.arguments.begin(), table.arguments.end(), begin);
-    for (; inside(begin) && inside(end) && knot != table.arguments.end() && *knot < end && !misses; ++knot) {
+    auto knot = std::upper_bound(table.arguments.begin(), table.arguments.end(), std::min(begin, end));
+    const auto between = [&] { return knot != table.arguments.end() && *knot < std::max(begin, end); };
+    for (; inside(begin) && inside(end) && between() && !misses; ++knot) {
       const Real s = (*knot - begin) / (end - begin), straight = (1 - s) * table(begin) + s * table(end);
       misses = std::abs(table(*knot) - straight) > 0.05 * (*most - *least);
-      if (misses && n++ == 0) first = *knot;
+      if (misses && n++ == 0) first = (*knot - of.shift) / of.factor;
     }
     begin = end;
   }
   return {n, first};
 }
 
+/// Steps that are chosen meet all knots.
 std::vector<std::string> steps_across_knots(const Scene& scene) {
   std::vector<std::string> all;
-  if (scene.tables.empty()) return all;
-  Scene copy = scene;
-  const auto text = base::to_xml(base::effective(copy, "Sprekk"));
-  for (const auto& [name, table] : scene.tables) {
-    const auto [n, knot] = passed_over(table, scene.time);
-    if (n > 0 && is_of_time(text, name))
+  if (scene.time.chooses_steps()) return all;
+  for (const auto& of : tables_of_time(scene)) {
+    const auto [n, knot] = passed_over(of, scene.time);
+    if (n > 0)
       all.push_back(
           physics::implausible(fmt::format("{}: Sprekk > Time", scene.origin),
                                fmt::format("{} step{} over knots of the table \"{}\", the first at t = {:.6g} s", n,
-                                           n == 1 ? " goes" : "s go", name, knot),
+                                           n == 1 ? " goes" : "s go", of.name, knot),
                                "loads count at the ends of steps alone, and slip depends on their path",
-                               "take more \"steps\", or a \"schedule\" with the knots in it"));
+                               "take more \"steps\", a \"schedule\" with the knots in it, or a \"tolerance\""));
   }
   return all;
 }

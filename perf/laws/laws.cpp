@@ -32,7 +32,7 @@ struct Cost {
 class Way {
  public:
   Way(const model::PointScene& scene, const model::PointPath& path, long begin)
-      : driver_(path, scene.materials.at(path.material)), step_(scene.time.end / scene.time.steps), done_(begin) {}
+      : driver_(path, scene.materials.at(path.material)), step_(scene.time.end / scene.time.steps.value_or(1)), done_(begin) {}
   void go(int steps) {
     for (int k = 0; k < steps; ++k, ++done_) driver_.advance(done_ * step_, (done_ + 1) * step_);
   }
@@ -54,7 +54,7 @@ json measure(const model::PointScene& scene) {
   const auto& path = *scene.paths().at(0).second;
   Cost of_first, of_second, of_late;
   Way late(scene, path, 0);
-  late.go(scene.time.steps);
+  late.go(scene.time.steps.value_or(1));
   for (int round = 0; round < rounds; ++round) {
     Way early(scene, path, round * turn);
     early.go(unmeasured);

@@ -335,6 +335,19 @@ class Scenes(BadInput):
         self.refuse(["Sprekk > Materials > rough joint: ", '"joint roughness coefficient" = x-0.7 is -0.', "must be at least 0"], "run",
                     self.scene("verification/joint_kinds_2d.xml"), "--set", joint + "joint roughness coefficient=x-0.7", any_point=True)
 
+    def test_steps_that_choose_themselves(self):
+        self.refuse_set(['Time > "steps": is 4: does not go with "tolerance"'], "Time.steps=4", "Time.tolerance=0.1")
+        self.refuse_set(['Time > "steps": is 4: does not go with "target Newton iterations"'], "Time.steps=4", "Time.target Newton iterations=5")
+        self.refuse_set(['Time > "first step": is 1 s: needs "tolerance" or "target Newton iterations"'], "Time.first step=1")
+        chosen = self.scene("poro/shut_in_2d.xml")
+        for entry, words in (("tolerance=0", '"tolerance": is 0, must be between 1e-08 and 0.5'), ("tolerance=2", "must be between"),
+                             ("smallest step=0", '"smallest step": is 0, must be positive'), ("target Newton iterations=0", "must be between 1 and 1000")):
+            self.refuse([words], "check", chosen, "--set", f"Time.{entry}")
+        self.refuse(['"smallest step": is 7200 s, must be at most the "largest step", 3600 s'], "check", chosen, "--set", "Time.smallest step=2 h", "--set", "Time.largest step=1 h")
+        text = self.scene("point/cyclic_shear.xml").read_text().replace('"steps" type="int"', '"target Newton iterations" type="int"')
+        (self.folder / "a.xml").write_text(text)
+        self.refuse(['"target Newton iterations", which needs a mesh'], "point", "a.xml")
+
     def test_types_and_lengths(self):
         moved = "Boundary conditions.moved.displacement"
         self.refuse_set(['"cells": is the array {2, 2.5}, expected integers'], "Mesh.cells={2, 2.5}")

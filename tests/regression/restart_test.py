@@ -19,6 +19,7 @@ CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml" 
 MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
 TURNS = "contact/damage_turns_3d.xml"  # histories by direction, more of them than there is room for
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
+SHUT_IN = "poro/shut_in_2d.xml"  # steps choose themselves
 DOUBLET = "thm/doublet_2d.xml"  # the same, with heat
 HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
            "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
@@ -99,6 +100,27 @@ class Restart(ProgramTest):
                 self.assertEqual(self.results("parts")["restarts"], [float(first.split(",")[-1])])
                 shutil.rmtree(self.folder / "whole")
                 shutil.rmtree(self.folder / "parts")
+
+    def test_same_steps_where_they_choose_themselves(self):
+        """From the checkpoint before the last on, with all that the choice remembers."""
+        n_rejected = 0
+        for scheme, ranks in (("implicit Euler", 1), ("BDF2", 1), ("implicit Euler", 2)):
+            with self.subTest(scheme=scheme, ranks=ranks):
+                scene = [SHUT_IN, f"Time.scheme={scheme}", "Output.checkpoints.steps=9", QUIET]
+                self.go(*scene, ranks=ranks, output="whole")
+                shutil.copytree(self.folder / "whole", self.folder / "parts")
+                shutil.rmtree(self.checkpoints("parts")[-1])
+                before = len(self.checkpoints("parts"))
+                self.assertEqual(before, 1)
+                self.go(*scene, ranks=ranks, output="parts", restart=True)
+                self.expect_same_bits("whole", "parts")
+                steps, restart = self.results("parts")["steps"], self.results("parts")["restarts"][0]
+                self.assertGreater(sum(step["time"] > restart for step in steps), 0)
+                n_rejected += sum(step["rejected"] for step in steps)
+                self.assertGreater(len({round(step["length"], 6) for step in steps}), 10)
+                for folder in ("whole", "parts"):
+                    shutil.rmtree(self.folder / folder)
+        self.assertGreater(n_rejected, 0)
 
     def test_killed_at_any_moment(self):
         scene = [CYCLIC, "Time.steps=32", "Mesh.cells={4, 4}", EVERY_STEP, QUIET]

@@ -164,6 +164,27 @@ class Results(ProgramTest):
                     for part in parts:
                         self.assertTrue((piece.parent / part).exists(), part)
 
+    def test_steps_that_choose_themselves(self):
+        """Each says its length and what it errs in; pictures at the times of a schedule alone, tables at all."""
+        results = self.run_scene("poro/shut_in_2d.xml", "Time.tolerance=0.1", "Time.schedule={18000, 36000, 72000, 144000}", "Output.every=2")
+        steps, begin = results["steps"], 0
+        for step in steps:
+            self.assertAlmostEqual(step["length"], step["time"] - begin, delta=1e-9 * step["time"])
+            begin = step["time"]
+            self.assertTrue(all(value <= 0.1 for value in step.get("estimated_errors", {}).values()), step)
+        self.assertFalse("estimated_errors" in steps[0])  # nothing is known of the first
+        self.assertIn("pressure", steps[-1]["estimated_errors"])
+        times = [step["time"] for step in steps]
+        for t in (3600, 18000, 19800, 36000, 72000, 144000):  # knots of the table, and the schedule
+            self.assertIn(t, times)
+        written = [float(t) for t in re.findall(r'timestep="([^"]*)"', (self.folder / "out/bulk.pvd").read_text())]
+        self.assertEqual(written, [36000, 144000])
+        on_three = self.run_scene("poro/shut_in_2d.xml", "Time.tolerance=0.1", "Time.schedule={18000, 36000, 72000, 144000}", "Output.vtu=false", ranks=3)["steps"]
+        self.assertEqual(len(on_three), len(steps))
+        for one, three in zip(steps, on_three):
+            self.assertAlmostEqual(one["time"], three["time"], delta=1e-5 * one["time"])
+            self.assertEqual(one["rejected"], three["rejected"])
+
     def test_every_so_many_steps(self):
         self.run_scene("seed/immersed_2d.xml", "Mesh.cells={6, 6}", "Output.every=4")
         text = (self.folder / "out" / "bulk.pvd").read_text()

@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/friction_power.hpp"
 #include "physics/mechanics/joint_face.hpp"
@@ -111,6 +112,7 @@ class ElasticPlasticJump final : public assembly::Module {
     for_each_face(state, [&](LocalIndex f, const Point& point) { states[f] = static_cast<char>(point.state); });
   }
   void grip(const assembly::State& state, std::vector<contact::Grip>& grips) const override;
+  void step_errors(const assembly::State& begin, const assembly::State& end, fields::StepErrors& errors) const override;
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
 
@@ -346,6 +348,28 @@ void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
         }
         law.commit(end, op.kept_of(f));
       });
+}
+
+/// Slip follows the traction at the end of the step, though on the way there it followed others: with an angle alpha
+/// between the tractions at both ends, it is off by about sin(alpha)/2 (back along the same line it is exact). In the
+/// mean over faces that have slid, weighted by their shear forces.
+template <Shape shape, bool tips>
+void ElasticPlasticJump<shape, tips>::step_errors(const assembly::State& begin, const assembly::State& end,
+                                                  fields::StepErrors& errors) const {
+  if (dim == 2) return;
+  const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), begin.x[fields_[2]]);
+  std::vector<Real> sums(2, 0);  // of force times error, and of force
+  for_each_face(end, [&](LocalIndex f, const Point& point) {
+    const bool slides = point.state == ContactState::slip;
+    if (point.state == ContactState::open || (!slides && laws::norm(point.p_old) == 0)) return;
+    const Real *was = &before(f * dim + 1), *now = &point.traction[1];
+    const Real force = mesh_->fracture_faces[f].area * std::hypot(now[0], now[1]);
+    const Real sizes = std::hypot(was[0], was[1]) * std::hypot(now[0], now[1]);
+    sums[1] += force;
+    if (slides && sizes > 0) sums[0] += force * std::abs(was[0] * now[1] - was[1] * now[0]) / sizes / 2;
+  });
+  sums = base::sum_over_ranks(*mesh_->comm, sums);
+  errors.push_back({"direction of slip", sums[1] > 0 ? sums[0] / sums[1] : 0, 1});
 }
 
 /// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t

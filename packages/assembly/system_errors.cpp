@@ -1,0 +1,111 @@
+// Errors of time steps.
+#include "assembly/rate_errors.hpp"
+#include "assembly/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::assembly {
+
+using fields::BlockVector;
+
+bool System::has_rates() const {
+  return std::any_of(declarations_.begin(), declarations_.end(), [](const auto& d) { return d.stores; });
+}
+
+void System::watch_errors(Real duration) {
+  const auto start = initial();
+  std::vector<char> balances;
+  for (const auto& unknown : unknowns_) balances.push_back(unknown.balance);
+  rate_errors_ = std::make_unique<RateErrors>(comm(), layouts_, balances, scheme_, start, duration);
+  load_change_.assign(blocks_.size(), 0);
+  committed_x_ = fields::create_like(start);
+  fields::copy(start, committed_x_);
+}
+
+void System::resume_errors(const BlockVector& x, const std::vector<Real>& memory) {
+  const auto n = std::min(load_change_.size(), memory.size());
+  std::copy_n(memory.begin(), n, load_change_.begin());
+  rate_errors_->resume({memory.begin() + static_cast<std::ptrdiff_t>(n), memory.end()});
+  rate_errors_->begin(x);
+  fields::copy(x, committed_x_);
+  errors_.clear();
+}
+
+void System::forget_rates(bool jump) { rate_errors_->forget(jump); }
+
+/// Of the step to x, whose ghosts are there, before histories move on.
+void System::find_errors(const BlockVector& x) {
+  auto errors = rate_errors_->of_step(x, dt_, rates_.before > 0);
+  const auto owned = rows(committed_x_);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    const auto end = state(static_cast<int>(m));
+    auto begin = end;
+    begin.x.assign(owned.begin(), owned.end());
+    modules_[m]->step_errors(begin, end, errors);
+  }
+  fields::copy(x, committed_x_);
+  for (const auto& error : errors) {
+    const auto same = [&](const auto& other) { return other.name == error.name; };
+    const auto found = std::find_if(errors_.begin(), errors_.end(), same);
+    if (found == errors_.end())
+      errors_.push_back(error);
+    else if (error.value > found->value)
+      *found = error;
+  }
+}
+
+namespace {
+
+void put_prescribed(const ConstView<char*>& mask, const ConstView<Real*>& values, const View<Real*>& row) {
+  Kokkos::parallel_for(
+      "prescribed", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int i) {
+        if (mask(i)) row(i) = values(i);
+      });
+}
+
+}  // namespace
+
+/// What modules and conditions ask for at time t, [block], by the ghosts that are there.
+BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
+  set_time(t, dt);
+  auto all = fields::create_like(x);
+  const auto views = rows(all);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    if (modules_[m]->constant_load()) continue;
+    auto s = state(static_cast<int>(m));
+    s.rate = 0;
+    modules_[m]->residual(s, views);
+  }
+  for (std::size_t b = 0; b < all.size(); ++b)
+    if (!constraints_[b].conditions().empty())
+      put_prescribed(constraints_[b].mask(), constraints_[b].values(), views[b]);
+  return all;
+}
+
+Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
+  const Real begin = t - dt;
+  const auto at = [&](Real time) {
+    refresh_ghosts(x, false);
+    return loads(x, time, dt);
+  };
+  const auto first = at(begin), last = at(t);
+  for (std::size_t b = 0; b < last.size(); ++b) last[b]->update(-1, *first[b], 1);
+  std::vector<Real> bend(last.size(), 0);
+  const Real off = std::sqrt(0.15);  // of points of Gauss, which periods of loads meet by chance alone
+  for (const Real s : {0.5 - off, 0.5, 0.5 + off}) {
+    const auto between = at(begin + s * dt);
+    for (std::size_t b = 0; b < last.size(); ++b) {
+      between[b]->update(-1, *first[b], -s, *last[b], 1);
+      bend[b] = std::max<Real>(bend[b], between[b]->norm2());
+    }
+  }
+  Real largest = 0;
+  for (std::size_t b = 0; b < last.size(); ++b) {
+    load_change_[b] = std::max({load_change_[b], static_cast<Real>(last[b]->norm2()), bend[b]});
+    if (load_change_[b] > 0) largest = std::max(largest, bend[b] / load_change_[b]);
+  }
+  return largest;
+}
+
+}  // namespace sprekk::assembly

@@ -1,0 +1,119 @@
+#include "model/steps.hpp"
+
+#include "model/knots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::model {
+
+namespace {
+
+bool contains(const std::vector<Real>& increasing, Real t) {
+  return std::binary_search(increasing.begin(), increasing.end(), t);
+}
+
+solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
+  const Real all = end - time.start;
+  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // of all
+  const Real largest = time.largest_step.value_or(all);
+  return {.tolerance = time.tolerance,
+          .iterations = time.newton_iterations,
+          .first = std::min(time.first_step.value_or(first * all), largest),
+          .smallest = time.smallest_step.value_or(std::min(1e-9 * all, largest)),
+          .largest = largest,
+          .most_growth = time.scheme == "BDF2" ? 2.3 : 3};
+}
+
+}  // namespace
+
+Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()) {
+  const auto& scene = model.scene();
+  find_next();
+  if (!scene.time.chooses_steps()) return;
+  const Real end = times_.back();
+  knots_ = knots(scene, end);
+  auto stops = times_;
+  stops.insert(stops.end(), knots_.begin(), knots_.end());
+  std::sort(stops.begin(), stops.end());
+  control_.emplace(options_of(scene.time, end, model.system().has_rates()), stops);
+}
+
+/// The first time ahead of the model; what rounding leaves of a step is none.
+void Steps::find_next() {
+  const Real t = model_.time(), start = std::abs(model_.scene().time.start);
+  const auto is_ahead = [&](Real end) { return end - t > 1e-14 * std::max(std::abs(end), start); };
+  while (next_ < times_.size() && !is_ahead(times_[next_])) ++next_;
+}
+
+Real Steps::share_done() const {
+  const auto& time = model_.scene().time;
+  const Real end = times_.back();
+  return (model_.time() - time.start) / (end - time.start);
+}
+
+StepTaken Steps::take() {
+  if (control_) return choose();
+  StepTaken step{.begin = model_.time(), .end = times_[next_]};
+  step.report = model_.step_to(step.end);
+  find_next();
+  return step;
+}
+
+/// Loads are taken for straight within a step: where they are not it becomes shorter, unless that does not help. The
+/// end of the step, and how far its loads are from straight.
+std::pair<Real, Real> Steps::next_attempt() {
+  const auto scope = model_.timers().scope("choice of steps");
+  const Real t = model_.time();
+  const auto& tolerance = model_.scene().time.tolerance;
+  for (Real before = 2;;) {
+    const Real end = control_->end_of_step(t);
+    const Real bend = tolerance ? model_.system().bend_of_loads(model_.state(), end, end - t) : 0;
+    if (!tolerance || bend <= *tolerance || bend > 0.8 * before) return {end, bend};
+    before = bend;
+    control_->shorten(end - t, bend);
+  }
+}
+
+StepTaken Steps::choose() {
+  using Verdict = solve::StepControl::Verdict;
+  auto& system = model_.system();
+  const auto before = *control_;
+  StepTaken step{.begin = model_.time()};
+  for (;;) {
+    const auto [end, bend] = next_attempt();
+    step.end = end;
+    step.report = model_.step_to(end);
+    step.errors = system.take_errors();
+    if (!system.has_rates() || !step.errors.empty()) step.errors.push_back({"loads", bend, 2});
+    if (step.report.stopped) control_ = before;
+    if (!step.report.converged) return step;
+    const Real dt = (step.end - step.begin) / (1 << std::min(step.report.cuts, 20));
+    const auto verdict = control_->judge(dt, step.errors, step.report.newton_iterations);
+    if (verdict == Verdict::jumped) system.forget_rates(true);
+    if (verdict != Verdict::rejected) break;
+    const auto scope = model_.timers().scope("choice of steps");
+    model_.take_back();
+    ++step.n_rejected;
+    step.rejected_iterations += step.report.newton_iterations;
+  }
+  step.at_time = contains(times_, step.end);
+  if (system.has_rates() && contains(knots_, step.end)) {
+    control_->be_careful(step.end);
+    system.forget_rates(false);
+  }
+  find_next();
+  return step;
+}
+
+nlohmann::json Steps::memory() const {
+  if (!control_) return nullptr;
+  return control_->length();
+}
+
+void Steps::resume(const nlohmann::json& memory) {
+  if (control_ && !memory.is_null()) control_->resume(memory.get<Real>());
+  find_next();
+}
+
+}  // namespace sprekk::model

@@ -1,0 +1,70 @@
+#include "solve/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::solve {
+
+namespace {
+
+constexpr Real aim = 0.8;                              // of the tolerance
+constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // of what is rejected
+constexpr Real same = 1e-12;                           // of times that differ by rounding
+
+}  // namespace
+
+std::vector<Real>::const_iterator StepControl::next_stop(Real t) const {
+  return std::find_if(stops_.begin(), stops_.end(), [&](Real stop) {
+    return stop - t > same * std::max({std::abs(stop), std::abs(t), std::abs(stops_.back() - stops_.front())});
+  });
+}
+
+Real StepControl::bounded(Real dt) const { return std::clamp(dt, options_.smallest, options_.largest); }
+
+Real StepControl::end_of_step(Real t) const {
+  const Real stop = *next_stop(t), rest = stop - t;
+  constexpr Real slightly = 1.05;  // longer is better than one step more
+  if (rest <= slightly * dt_) return stop;
+  return t + (rest < 2 * dt_ ? rest / 2 : dt_);
+}
+
+StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& errors, int newton_iterations) {
+  Real worst = 0, factor = options_.tolerance && errors.empty() ? 1 : options_.most_growth;
+  for (const auto& error : errors) {
+    if (!options_.tolerance || !(error.value > 0)) continue;
+    worst = std::max(worst, error.value / *options_.tolerance);
+    factor = std::min(factor, std::pow(aim * *options_.tolerance / error.value, 1 / error.order));
+  }
+  const bool helped = rejected_dt_ == 0 || dt > 0.8 * rejected_dt_ || worst < 0.8 * worst_;
+  if (worst > 1 && helped && dt > options_.smallest) {
+    worst_ = worst;
+    rejected_dt_ = dt;
+    dt_ = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+    return Verdict::rejected;
+  }
+  const bool again = rejected_dt_ > 0;
+  rejected_dt_ = worst_ = 0;
+  if (options_.iterations)
+    factor = std::min(factor, std::sqrt(static_cast<Real>(*options_.iterations) / std::max(1, newton_iterations)));
+  if (worst > 1) {
+    dt_ = bounded(dt);
+    return Verdict::jumped;
+  }
+  if (again) factor = std::min<Real>(factor, 1);
+  const Real next = dt * std::max(factor, most_shrink);
+  dt_ = bounded(dt < dt_ && factor >= 1 ? std::max(next, dt_) : next);
+  return Verdict::accepted;
+}
+
+void StepControl::shorten(Real dt, Real bend) {
+  const Real factor = std::sqrt(aim * options_.tolerance.value_or(bend) / bend);
+  dt_ = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+}
+
+void StepControl::be_careful(Real t) {
+  constexpr Real of_last = 0.2, of_rest = 0.02;
+  if (const auto stop = next_stop(t); stop != stops_.end())
+    dt_ = bounded(std::min(of_last * dt_, of_rest * (*stop - t)));
+}
+
+}  // namespace sprekk::solve

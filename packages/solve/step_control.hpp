@@ -1,0 +1,56 @@
+// How long time steps are, from what the last ones erred in and how hard they were to solve.
+#pragma once
+
+#include "fields/step_error.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace sprekk::solve {
+
+struct StepControlOptions {
+  std::optional<Real> tolerance;  ///< of relative errors
+  std::optional<int> iterations;  ///< of Newton's method, that a step is to take
+  Real first = 1, smallest = 0, largest = 1;
+  Real most_growth = 3;
+};
+
+/// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
+/// suggest dt (wanted/n)^(1/2). Steps with an error above the tolerance are to be rejected, unless a shorter one was
+/// tried and is hardly better: what jumps at a time does so in steps of any length. Stops, increasing, are met; the
+/// last two steps before one are equal, so that none is tiny.
+class StepControl {
+ public:
+  StepControl(const StepControlOptions& options, std::vector<Real> stops)
+      : options_(options), stops_(std::move(stops)), dt_(options.first) {}
+
+  /// The end of the next step, from t.
+  Real end_of_step(Real t) const;
+  enum class Verdict {
+    accepted,
+    rejected,  ///< a shorter one is to be tried
+    jumped     ///< accepted, for it is no shorter step that helps
+  };
+  /// Of a step of length dt, and sets the length of the next one.
+  Verdict judge(Real dt, const fields::StepErrors& errors, int newton_iterations);
+  /// Loads within a step of length dt are not straight, with this error: the next attempt is shorter.
+  void shorten(Real dt, Real bend);
+  /// Loads turn at the present time t: the next step is short.
+  void be_careful(Real t);
+
+  /// What goes on after a restart, to any bit.
+  Real length() const { return dt_; }
+  void resume(Real length) { dt_ = length; }
+
+ private:
+  std::vector<Real>::const_iterator next_stop(Real t) const;
+  Real bounded(Real dt) const;
+
+  StepControlOptions options_;
+  std::vector<Real> stops_;
+  Real dt_;               // that the next step is to have
+  Real worst_ = 0;        // error over tolerance of the attempt that was rejected last, in this step; or 0
+  Real rejected_dt_ = 0;  // its length
+};
+
+}  // namespace sprekk::solve
