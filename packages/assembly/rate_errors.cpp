@@ -76,7 +76,8 @@ void RateErrors::forget(bool jump) {
   for (auto& kept : blocks_) kept.lasts = kept.sum = 0;
 }
 
-fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bool second_order) {
+fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bool second_order,
+                                       const std::vector<Real>& least) {
   fields::StepErrors errors;
   const bool known = n_rates_ > (second_order ? 1 : 0);
   std::vector<Real> squares, largest;
@@ -110,13 +111,15 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
                             : 0;
     const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 10);
     kept.largest = std::max(kept.largest, largest[k]);
-    const Real size = kept.largest * std::pow(ahead, std::min<Real>(growth, 0.5));
+    const Real size = std::max(kept.largest * std::pow(ahead, std::min<Real>(growth, 0.5)), least[kept.block]);
     kept.lasts = shrinks * kept.lasts + dt;
     kept.speed = speed;
     const Real own = known ? constant * bent : 0;
     kept.sum = shrinks * kept.sum + own;
-    if (known && size > 0)
-      errors.push_back({kept.field.name, std::sqrt(kept.sum * own * kept.lasts / dt) / size,
+    if (!known)
+      errors.push_back({kept.field.name, 0, fields::StepError::unknown});
+    else
+      errors.push_back({kept.field.name, size > 0 ? std::sqrt(kept.sum * own * kept.lasts / dt) / size : 0,
                         (second_order ? 2 : 1) + dt / kept.lasts});
   }
   dt_before_ = dt_;

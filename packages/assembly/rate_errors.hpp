@@ -29,9 +29,9 @@ class RateErrors {
 
   /// x is where the next step begins.
   void begin(const fields::BlockVector& x);
-  /// The errors of a step to x, `second_order`: made by BDF2; none of a block as long as rates before are missing.
-  /// Collective.
-  fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order);
+  /// The errors of a step to x, `second_order`: made by BDF2; unknown ones as long as rates before are missing. Changes
+  /// below `least` [block] are none. Collective.
+  fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order, const std::vector<Real>& least);
   /// Loads change their course here: what follows has another rate, and where `jump` one that is unknown in the first
   /// step, at the start of which the state may jump. How long it lasts is found anew.
   void forget(bool jump);

@@ -174,8 +174,8 @@ class System : public fields::BlockProblem, private contact::Equations {
   RCP<base::Timers> timers_;
   std::unique_ptr<RateErrors> rate_errors_;  // if errors of steps are watched
   fields::BlockVector committed_x_;          // likewise
-  std::vector<Real> load_change_;            // likewise [block] most of a step
-  fields::StepErrors errors_;                // of the last steps
+  std::vector<Real> load_change_;  // likewise, of [block] loads and [block] prescribed values, the most of a step
+  fields::StepErrors errors_;      // of the last steps
   Rates::Scheme scheme_;
   Real extent_;  // largest of the domain, m
   Rates rates_;

@@ -18,7 +18,7 @@ void System::watch_errors(Real duration) {
   std::vector<char> balances;
   for (const auto& unknown : unknowns_) balances.push_back(unknown.balance);
   rate_errors_ = std::make_unique<RateErrors>(comm(), layouts_, balances, scheme_, start, duration);
-  load_change_.assign(blocks_.size(), 0);
+  load_change_.assign(2 * blocks_.size(), 0);
   committed_x_ = fields::create_like(start);
   fields::copy(start, committed_x_);
 }
@@ -36,7 +36,10 @@ void System::forget_rates(bool jump) { rate_errors_->forget(jump); }
 
 /// Of the step to x, whose ghosts are there, before histories move on.
 void System::find_errors(const BlockVector& x) {
-  auto errors = rate_errors_->of_step(x, dt_, rates_.before > 0);
+  constexpr Real noise = 1e-8;  // of what linear solves and Newton's method leave, or more
+  std::vector<Real> least;
+  for (const auto& block : blocks_) least.push_back(noise * block.kinematic_scale);
+  auto errors = rate_errors_->of_step(x, dt_, rates_.before > 0, least);
   const auto owned = rows(committed_x_);
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     const auto end = state(static_cast<int>(m));
@@ -50,27 +53,31 @@ void System::find_errors(const BlockVector& x) {
     const auto found = std::find_if(errors_.begin(), errors_.end(), same);
     if (found == errors_.end())
       errors_.push_back(error);
-    else if (error.value > found->value)
+    else if (error.value > found->value || error.order == fields::StepError::unknown)
       *found = error;
   }
 }
 
 namespace {
 
-void put_prescribed(const ConstView<char*>& mask, const ConstView<Real*>& values, const View<Real*>& row) {
+void take_prescribed(const ConstView<char*>& mask, const ConstView<Real*>& values, const View<Real*>& force,
+                     const View<Real*>& value) {
   Kokkos::parallel_for(
-      "prescribed", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int i) {
-        if (mask(i)) row(i) = values(i);
+      "prescribed", Kokkos::RangePolicy<Execution>(0, force.extent(0)), KOKKOS_LAMBDA(int i) {
+        if (!mask(i)) return;
+        force(i) = 0;
+        value(i) = values(i);
       });
 }
 
 }  // namespace
 
-/// What modules and conditions ask for at time t, [block], by the ghosts that are there.
+/// What modules ask for at time t at x, [block], and after all of these the values that conditions prescribe.
 BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
   set_time(t, dt);
-  auto all = fields::create_like(x);
-  const auto views = rows(all);
+  refresh_ghosts(x, false);
+  auto all = fields::create_like(x), prescribed = fields::create_like(x);
+  const auto views = rows(all), values = rows(prescribed);
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     if (modules_[m]->constant_load()) continue;
     auto s = state(static_cast<int>(m));
@@ -79,27 +86,26 @@ BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
   }
   for (std::size_t b = 0; b < all.size(); ++b)
     if (!constraints_[b].conditions().empty())
-      put_prescribed(constraints_[b].mask(), constraints_[b].values(), views[b]);
+      take_prescribed(constraints_[b].mask(), constraints_[b].values(), views[b], values[b]);
+  all.insert(all.end(), prescribed.begin(), prescribed.end());
   return all;
 }
 
 Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
   const Real begin = t - dt;
-  const auto at = [&](Real time) {
-    refresh_ghosts(x, false);
-    return loads(x, time, dt);
-  };
-  const auto first = at(begin), last = at(t);
+  const auto scales = scales_;  // the step to t may not be taken
+  const auto first = loads(x, begin, dt), last = loads(x, t, dt);
   for (std::size_t b = 0; b < last.size(); ++b) last[b]->update(-1, *first[b], 1);
   std::vector<Real> bend(last.size(), 0);
   const Real off = std::sqrt(0.15);  // of points of Gauss, which periods of loads meet by chance alone
   for (const Real s : {0.5 - off, 0.5, 0.5 + off}) {
-    const auto between = at(begin + s * dt);
+    const auto between = loads(x, begin + s * dt, dt);
     for (std::size_t b = 0; b < last.size(); ++b) {
       between[b]->update(-1, *first[b], -s, *last[b], 1);
       bend[b] = std::max<Real>(bend[b], between[b]->norm2());
     }
   }
+  scales_ = scales;
   Real largest = 0;
   for (std::size_t b = 0; b < last.size(); ++b) {
     load_change_[b] = std::max({load_change_[b], static_cast<Real>(last[b]->norm2()), bend[b]});

@@ -10,6 +10,7 @@ namespace sprekk::fields {
 
 /// A relative error, of order `order` in the length of steps.
 struct StepError {
+  static constexpr Real unknown = 0;  ///< an order: not known of this step
   std::string name;
   Real value = 0, order = 1;
 };

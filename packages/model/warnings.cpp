@@ -53,15 +53,29 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
 
 }  // namespace
 
+/// At which loads are looked at: the ends of steps; where these are chosen, some times between, and knots.
+std::vector<Real> looked_at(const Scene& scene) {
+  auto times = scene.time.times();
+  if (!scene.time.chooses_steps()) return times;
+  const Real start = scene.time.start, end = times.back();
+  constexpr int n = 50;
+  for (int k = 1; k < n; ++k) times.push_back(start + (end - start) * k / n);
+  const auto turns = knots(scene, end);
+  times.insert(times.end(), turns.begin(), turns.end());
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
 std::vector<std::string> scene_warnings(const Model& model) {
   const auto& scene = model.scene();
+  const auto times = looked_at(scene);
   std::vector<std::string> all;
   const auto add = [&](const std::vector<std::string>& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(physics::conditions_that_hold_nowhere(scene, model.mesh()));
   add(physics::properties_passed_over(scene, model.mesh()));
   physics::for_each_physics([&](auto physics) { add(physics.doubts(model.setting(), true)); });
   physics::for_each_physics([&](auto physics) { add(physics.warnings(model.setting())); });
-  physics::for_each_physics([&](auto physics) { add(physics.plausibility(model.setting(), scene.time.times())); });
+  physics::for_each_physics([&](auto physics) { add(physics.plausibility(model.setting(), times)); });
   add(steps_across_knots(scene));
   return all;
 }

@@ -31,6 +31,7 @@ Real StepControl::end_of_step(Real t) const {
 StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& errors, int newton_iterations) {
   Real worst = 0, factor = options_.tolerance && errors.empty() ? 1 : options_.most_growth;
   for (const auto& error : errors) {
+    if (options_.tolerance && error.order == fields::StepError::unknown) factor = std::min<Real>(factor, 1);
     if (!options_.tolerance || !(error.value > 0)) continue;
     worst = std::max(worst, error.value / *options_.tolerance);
     factor = std::min(factor, std::pow(aim * *options_.tolerance / error.value, 1 / error.order));
@@ -52,7 +53,7 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
   }
   if (again) factor = std::min<Real>(factor, 1);
   const Real next = dt * std::max(factor, most_shrink);
-  dt_ = bounded(dt < dt_ && factor >= 1 ? std::max(next, dt_) : next);
+  dt_ = bounded(dt < dt_ && factor >= 1 ? std::min(std::max(next, dt_), options_.most_growth * dt) : next);
   return Verdict::accepted;
 }
 

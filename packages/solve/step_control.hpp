@@ -16,9 +16,10 @@ struct StepControlOptions {
 };
 
 /// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
-/// suggest dt (wanted/n)^(1/2). Steps with an error above the tolerance are to be rejected, unless a shorter one was
-/// tried and is hardly better: what jumps at a time does so in steps of any length. Stops, increasing, are met; the
-/// last two steps before one are equal, so that none is tiny.
+/// suggest dt (wanted/n)^(1/2); where an error is unknown a step is no longer than the one before. Steps with an error
+/// above the tolerance are to be rejected, unless a shorter one was tried and is hardly better: what jumps at a time
+/// does so in steps of any length. Stops, increasing, are met; the last two steps before one are equal, so that none is
+/// tiny.
 class StepControl {
  public:
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
@@ -40,7 +41,7 @@ class StepControl {
 
   /// What goes on after a restart, to any bit.
   Real length() const { return dt_; }
-  void resume(Real length) { dt_ = length; }
+  void resume(Real length) { dt_ = bounded(length); }
 
  private:
   std::vector<Real>::const_iterator next_stop(Real t) const;

@@ -131,7 +131,9 @@ void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
     mesh::Vector nearest{};
     Real distance = std::numeric_limits<Real>::infinity();
     for (const auto& face : mesh.boundary_faces) {
-      if (face.boundary != condition.boundary) continue;
+      if (face.boundary != condition.boundary ||
+          (condition.region >= 0 && mesh.cell_region[face.cell] != condition.region))
+        continue;
       const auto nodes = mesh::nodes_of_face(mesh, face.cell, face.local_face);
       for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
         const auto x = mesh::point(mesh, nodes[k]);

@@ -103,11 +103,20 @@ bool has_solid_pressure(const Scene& scene, int order = 1) {
   for_each_physics([&](auto physics) {
     if constexpr (!std::is_same_v<decltype(physics), Mechanics>) alone = alone && !physics.needs_facets(scene);
   });
-  return alone && std::any_of(scene.materials.begin(), scene.materials.end(), [order](const auto& material) {
-           const auto& rock = material.second;
-           return rock.type == "elastic" && rock.has_elasticity() && rock.is_uniformly_elastic() &&
-                  VolumetricSplit(rock.elasticity({}), order).modulus > 0;
-         });
+  const auto needs = [&](const std::string& name) {
+    const auto rock = scene.materials.find(name);
+    if (rock == scene.materials.end() || !rock->second.has_elasticity() || !rock->second.is_uniformly_elastic())
+      return false;
+    try {
+      return VolumetricSplit(rock->second.elasticity({}), order).modulus > 0;
+    } catch (const Error&) {  // told where materials are looked at
+      return false;
+    }
+  };
+  return alone && (needs(scene.bulk.material) ||
+                   std::any_of(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
+                     return region.second.material && needs(*region.second.material);
+                   }));
 }
 
 /// Splits the elasticity of cells of an order.

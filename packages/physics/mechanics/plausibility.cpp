@@ -308,18 +308,24 @@ std::string tension_doubt(const Setting& setting) {
       "check signs and, of a \"lithostatic stress\", the \"surface\", of an \"in-situ stress\" the \"datum\"");
 }
 
-/// Horizontal stresses whose names are exchanged at the datum or at the foot, and a vertical one that is not the
-/// weight.
+/// Horizontal stresses whose names are exchanged at the foot of the mesh, and a vertical one that is not the weight.
+/// Collective.
 std::string in_situ_doubt(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto& stress = scene.bulk.in_situ_stress;
   if (!stress) return "";
   const auto place = scene.origin + ": Sprekk > Bulk > in-situ stress";
-  const Real differs = stress->largest.value - stress->smallest.value,
-             grows = stress->largest.gradient - stress->smallest.gradient;
-  if (differs < 0 || (differs == 0 && grows < 0))
-    return implausible(place, "SHmax is below Shmin", "it is the largest horizontal stress",
-                       "exchange them, and turn the \"azimuth\" by 90 degrees");
+  Real depth = -std::numeric_limits<Real>::max();
+  const int dim = mesh.dim();
+  for (LocalIndex node = 0; node < mesh.n_nodes(); ++node)
+    depth = std::max(depth, stress->datum - mesh.coordinates[node * dim + dim - 1]);
+  depth = base::max_over_ranks(*mesh.comm, depth);
+  const auto at_foot = [&](const PrincipalStress::Component& one) { return one.value + one.gradient * depth; };
+  if (at_foot(stress->largest) < at_foot(stress->smallest))
+    return implausible(place,
+                       fmt::format("SHmax is below Shmin, {:.4g} and {:.4g} Pa in a depth of {:.4g} m",
+                                   at_foot(stress->largest), at_foot(stress->smallest), depth),
+                       "it is the largest horizontal stress", "exchange them, and turn the \"azimuth\" by 90 degrees");
   const auto& gravity = scene.bulk.gravity;
   const auto& density = scene.material_of("bulk").density;
   if (gravity.empty() || !density || !density->is_constant()) return "";

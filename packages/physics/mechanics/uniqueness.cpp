@@ -80,13 +80,15 @@ std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& 
 
 using PerPiece = std::vector<int>;
 
-/// [3 piece + component]: whether a displacement in this direction is given, or sides that are apart in it are tied.
+/// [3 piece + component]: whether a displacement in this direction is given on faces, or sides that are apart in it are
+/// tied.
 PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   PerPiece held(3 * mesh.n_pieces, 0);
   for (const auto& [name, condition] : scene.boundary_conditions)
     for (const auto& face : mesh.boundary_faces)
       for (std::size_t i = 0; i < condition.displacement.size(); ++i)
-        if (mesh.boundary_names[face.boundary] == condition.boundary && condition.displacement[i].text() != "free" &&
+        if (condition.lower_corner.empty() && mesh.boundary_names[face.boundary] == condition.boundary &&
+            condition.displacement[i].text() != "free" &&
             (!condition.region || mesh.region_names[mesh.cell_region[face.cell]] == *condition.region))
           held[3 * mesh.cell_piece[face.cell] + i] = 1;
   const int dim = mesh.dim();
