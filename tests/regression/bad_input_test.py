@@ -483,7 +483,22 @@ class Scenes(BadInput):
         xml = self.scene_with(('      <Parameter name="friction coefficient" type="double" value="1"/>\n', ""))
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
-        self.refuse_set(['"fracture": goes without "displacement" and "traction"'], "Boundary conditions.moved.fracture=fracture")
+        self.refuse_set(['"fracture": goes without "displacement", "traction" and "confining pressure"'], "Boundary conditions.moved.fracture=fracture")
+
+    def test_measured_loads(self):
+        moved, stress = "Boundary conditions.moved.", "Bulk.in-situ stress."
+        self.refuse_set(['moved: give either "displacement" or "confining pressure"'], moved + "confining pressure=1")
+        self.refuse_set(['moved > "lower corner": no node of boundary', "is in the box; the nearest to its middle is at (0, 1, 0)"],
+                        moved + "lower corner={0.001, 1}")
+        self.refuse_set(['moved > "lower corner": has 3 values, must have 2'], moved + "lower corner={0, 1, 0}")
+        self.refuse_set(['moved > "upper corner": goes with a "lower corner"'], moved + "upper corner={0, 1}")
+        self.refuse_set(['moved > "upper corner": [1] is 0.5, must be at least 1, that of "lower corner"'], moved + "lower corner={0, 1}",
+                        moved + "upper corner={0, 0.5}")
+        self.refuse_set(['in-situ stress > "datum" (m): missing; it is required'], stress + "Sv=1")
+        self.refuse_set(['in-situ stress > "azimuth": is 30 degrees; in 2D SHmax lies in the section, 90, or across it, 0'], stress + "datum=0",
+                        stress + "azimuth=30")
+        self.refuse_set(['Bulk: give one of "initial stress", "lithostatic stress" and "in-situ stress"'], stress + "datum=0",
+                        "Bulk.initial stress={-1, -1, -1, 0}")
 
     def test_tables(self):
         table = ["Tables.ramp.arguments={0, 1}", "Tables.ramp.values={0, 1}"]
