@@ -69,9 +69,9 @@ TEST(Units, what_measures_something_else_is_refused) {
   const auto refusal = [](const std::string& text, const std::string& unit) {
     return message_of([&] { value_of(text, unit); });
   };
-  EXPECT_EQ(
-      refusal("30 m", "Pa"),
-      "has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", \"bar\" and what else measures the same");
+  EXPECT_EQ(refusal("30 m", "Pa"),
+            "has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", \"bar\", \"psi\" and what else "
+            "measures the same");
   EXPECT_CONTAINS(refusal("30 MPa", "Pa/m"), "has the unit \"MPa\"; allowed are \"Pa/m\", \"kPa/m\", \"MPa/m\"");
   EXPECT_CONTAINS(refusal("30 kg", "kg/m^3"), "allowed are \"kg/m^3\", \"g/m^3\" and");
   EXPECT_CONTAINS(refusal("1 s", "m/s^2"), "allowed are \"m/s^2\", \"km/s^2\"");
@@ -158,10 +158,10 @@ TEST(Units, are_read_from_the_command_line) {
 }
 
 TEST(Units, errors_name_the_entry_the_value_and_what_is_allowed) {
-  EXPECT_EQ(
-      refusal("modulus", "double", "30 m"),
-      "f: R > \"modulus\": is \"30 m\", has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", \"bar\" "
-      "and what else measures the same");
+  EXPECT_EQ(refusal("modulus", "double", "30 m"),
+            "f: R > \"modulus\": is \"30 m\", has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", "
+            "\"bar\", \"psi\" "
+            "and what else measures the same");
   EXPECT_EQ(refusal("ratio", "double", "0.2 mm"),
             "f: R > \"ratio\": is \"0.2 mm\", has the unit \"mm\", must be a number without a unit");
   EXPECT_EQ(refusal("modulus", "double", "30 GPaa"),
