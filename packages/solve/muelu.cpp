@@ -175,7 +175,12 @@ std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std
   const bool has_places = blocks.size() == 1 && !first.coordinates.is_null();
   auto list =
       multigrid_defaults(blocks.size() == 1 ? first.n_components : 1, first.map->getComm()->getSize(), has_places);
-  if (first.advected) list.set("smoother: type", "ILUT");  // Chebyshev's polynomials grow where advection dominates
+  if (first.advected) {
+    list.set("smoother: type", "ILUT");  // Chebyshev's polynomials grow where advection dominates
+    // Sums over aggregates of an M-matrix are one; with smoothed prolongators coarse matrices of a strong flow are not,
+    // and cycles may grow without bound.
+    list.set("multigrid algorithm", "unsmoothed");
+  }
   if (first.advected || given.isParameter("smoother: type")) list.remove("smoother: params");
   list.setParameters(given);
   return std::make_unique<MueLuMultigrid>(first.name, list);
