@@ -81,7 +81,7 @@ constexpr std::array<Prefix, 10> prefixes{{{"", 0},
                                            {"n", -9}}};
 
 /// What a user is offered in place of the first symbol of a unit.
-constexpr std::array<std::array<const char*, 6>, 10> offered{{{"Pa", "kPa", "MPa", "GPa", "bar", "psi"},
+constexpr std::array<std::array<const char*, 6>, 11> offered{{{"Pa", "kPa", "MPa", "GPa", "bar", "psi"},
                                                               {"m", "km", "cm", "mm", "um", "ft"},
                                                               {"s", "min", "h", "day", "year"},
                                                               {"min", "s", "h", "day", nullptr},
@@ -89,6 +89,7 @@ constexpr std::array<std::array<const char*, 6>, 10> offered{{{"Pa", "kPa", "MPa
                                                               {"kg", "g", nullptr, nullptr, nullptr},
                                                               {"J", "kJ", "MJ", nullptr, nullptr},
                                                               {"W", "kW", "MW", nullptr, nullptr},
+                                                              {"mD", "D", nullptr, nullptr, nullptr},
                                                               {"K", nullptr, nullptr, nullptr, nullptr},
                                                               {"degree", "rad", nullptr, nullptr, nullptr}}};
 

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int format = 3;  ///< of what is written; the first had no number
+constexpr int format = 4;  ///< of what is written; the first had no number
 
 /// The seal of what has the seal `before`, and then `content`.
 Seal seal_of(const std::string& content, const Seal& before = {}) {

@@ -61,6 +61,12 @@ void Time::describe_choice(base::Section& s) const {
   if (smallest_step && largest_step && *smallest_step > *largest_step)
     s.fail("smallest step",
            fmt::format("is {} s, must be at most the \"largest step\", {} s", *smallest_step, *largest_step));
+  if (first_step && smallest_step && *first_step < *smallest_step)
+    s.fail("first step",
+           fmt::format("is {} s, must be at least the \"smallest step\", {} s", *first_step, *smallest_step));
+  if (first_step && largest_step && *first_step > *largest_step)
+    s.fail("first step",
+           fmt::format("is {} s, must be at most the \"largest step\", {} s", *first_step, *largest_step));
 }
 
 std::vector<Real> Time::times() const {

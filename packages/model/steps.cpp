@@ -112,11 +112,13 @@ StepTaken Steps::choose() {
 
 nlohmann::json Steps::memory() const {
   if (!control_) return nullptr;
-  return control_->length();
+  const auto& memory = control_->memory();
+  return {memory.length, memory.judged, memory.judged_iterations};
 }
 
 void Steps::resume(const nlohmann::json& memory) {
-  if (control_ && !memory.is_null()) control_->resume(memory.get<Real>());
+  if (control_ && !memory.is_null())
+    control_->resume({memory[0].get<Real>(), memory[1].get<Real>(), memory[2].get<int>()});
   find_next();
 }
 

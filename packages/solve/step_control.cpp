@@ -24,8 +24,8 @@ Real StepControl::bounded(Real dt) const { return std::clamp(dt, options_.smalle
 Real StepControl::end_of_step(Real t) const {
   const Real stop = *next_stop(t), rest = stop - t;
   constexpr Real slightly = 1.05;  // longer is better than one step more
-  if (rest <= slightly * dt_) return stop;
-  return t + (rest < 2 * dt_ ? rest / 2 : dt_);
+  if (rest <= slightly * memory_.length) return stop;
+  return t + (rest < 2 * memory_.length ? rest / 2 : memory_.length);
 }
 
 StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& errors, int newton_iterations) {
@@ -40,32 +40,51 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
   if (worst > 1 && helped && dt > options_.smallest) {
     worst_ = worst;
     rejected_dt_ = dt;
-    dt_ = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+    memory_.length = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
     return Verdict::rejected;
   }
   const bool again = rejected_dt_ > 0;
   rejected_dt_ = worst_ = 0;
-  if (options_.iterations)
-    factor = std::min(factor, std::sqrt(static_cast<Real>(*options_.iterations) / std::max(1, newton_iterations)));
+  if (options_.iterations) factor = std::min(factor, factor_by_iterations(dt, newton_iterations));
   if (worst > 1) {
-    dt_ = bounded(dt);
+    memory_.length = bounded(dt);
     return Verdict::jumped;
   }
   if (again) factor = std::min<Real>(factor, 1);
   const Real next = dt * std::max(factor, most_shrink);
-  dt_ = bounded(dt < dt_ && factor >= 1 ? std::min(std::max(next, dt_), options_.most_growth * dt) : next);
+  memory_.length = bounded(
+      dt < memory_.length && factor >= 1 ? std::min(std::max(next, memory_.length), options_.most_growth * dt) : next);
   return Verdict::accepted;
+}
+
+/// Where steps a tenth as long take about as many, the length stays.
+Real StepControl::factor_by_iterations(Real dt, int n) {
+  constexpr Real harder = 1.5, much_shorter = 0.1;
+  const Real factor = std::sqrt(static_cast<Real>(*options_.iterations) / std::max(1, n));
+  const bool alike =
+      factor < 1 && dt <= memory_.judged && n >= memory_.judged_iterations && n < harder * memory_.judged_iterations;
+  if (alike && dt < much_shorter * memory_.judged) return 1;
+  if (!alike) {
+    memory_.judged = dt;
+    memory_.judged_iterations = n;
+  }
+  return factor;
+}
+
+void StepControl::resume(const Memory& memory) {
+  memory_ = memory;
+  memory_.length = bounded(memory.length);
 }
 
 void StepControl::shorten(Real dt, Real bend) {
   const Real factor = std::sqrt(aim * options_.tolerance.value_or(bend) / bend);
-  dt_ = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+  memory_.length = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
 }
 
 void StepControl::be_careful(Real t) {
   constexpr Real of_last = 0.2, of_rest = 0.02;
   if (const auto stop = next_stop(t); stop != stops_.end())
-    dt_ = bounded(std::min(of_last * dt_, of_rest * (*stop - t)));
+    memory_.length = bounded(std::min(of_last * memory_.length, of_rest * (*stop - t)));
 }
 
 }  // namespace sprekk::solve

@@ -16,14 +16,15 @@ struct StepControlOptions {
 };
 
 /// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
-/// suggest dt (wanted/n)^(1/2); where an error is unknown a step is no longer than the one before. Steps with an error
+/// suggest dt (wanted/n)^(1/2), but no shorter one where a tenth of the length has not saved any; where an error is
+/// unknown a step is no longer than the one before. Steps with an error
 /// above the tolerance are to be rejected, unless a shorter one was tried and is hardly better: what jumps at a time
 /// does so in steps of any length. Stops, increasing, are met; the last two steps before one are equal, so that none is
 /// tiny.
 class StepControl {
  public:
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
-      : options_(options), stops_(std::move(stops)), dt_(options.first) {}
+      : options_(options), stops_(std::move(stops)), memory_{options.first} {}
 
   /// The end of the next step, from t.
   Real end_of_step(Real t) const;
@@ -40,16 +41,22 @@ class StepControl {
   void be_careful(Real t);
 
   /// What goes on after a restart, to any bit.
-  Real length() const { return dt_; }
-  void resume(Real length) { dt_ = bounded(length); }
+  struct Memory {
+    Real length;                ///< that the next step is to have
+    Real judged = 0;            ///< the longest step of the last that took about as many iterations
+    int judged_iterations = 0;  ///< those of it
+  };
+  const Memory& memory() const { return memory_; }
+  void resume(const Memory& memory);
 
  private:
   std::vector<Real>::const_iterator next_stop(Real t) const;
   Real bounded(Real dt) const;
+  Real factor_by_iterations(Real dt, int n);
 
   StepControlOptions options_;
   std::vector<Real> stops_;
-  Real dt_;               // that the next step is to have
+  Memory memory_;
   Real worst_ = 0;        // error over tolerance of the attempt that was rejected last, in this step; or 0
   Real rejected_dt_ = 0;  // its length
 };

@@ -344,6 +344,8 @@ class Scenes(BadInput):
                              ("smallest step=0", '"smallest step": is 0, must be positive'), ("target Newton iterations=0", "must be between 1 and 1000")):
             self.refuse([words], "check", chosen, "--set", f"Time.{entry}")
         self.refuse(['"smallest step": is 7200 s, must be at most the "largest step", 3600 s'], "check", chosen, "--set", "Time.smallest step=2 h", "--set", "Time.largest step=1 h")
+        self.refuse(['"first step": is 60 s, must be at least the "smallest step", 3600 s'], "check", chosen, "--set", "Time.smallest step=1 h", "--set", "Time.first step=1 min")
+        self.refuse(['"first step": is 7200 s, must be at most the "largest step", 3600 s'], "check", chosen, "--set", "Time.first step=2 h", "--set", "Time.largest step=1 h")
         text = self.scene("point/cyclic_shear.xml").read_text().replace('"steps" type="int"', '"target Newton iterations" type="int"')
         (self.folder / "a.xml").write_text(text)
         self.refuse(['"target Newton iterations", which needs a mesh'], "point", "a.xml")
@@ -495,7 +497,7 @@ class Scenes(BadInput):
         self.refuse_set(['moved > "upper corner": [1] is 0.5, must be at least 1, that of "lower corner"'], moved + "lower corner={0, 1}",
                         moved + "upper corner={0, 0.5}")
         self.refuse_set(['in-situ stress > "datum" (m): missing; it is required'], stress + "Sv=1")
-        self.refuse_set(['in-situ stress > "azimuth": is 30 degrees; in 2D SHmax lies in the section, 90, or across it, 0'], stress + "datum=0",
+        self.refuse_set(['in-situ stress > "azimuth": is 30 degrees; in 2D SHmax lies in the section, 90 or 270, or across it, 0 or 180'], stress + "datum=0",
                         stress + "azimuth=30")
         self.refuse_set(['Bulk: give one of "initial stress", "lithostatic stress" and "in-situ stress"'], stress + "datum=0",
                         "Bulk.initial stress={-1, -1, -1, 0}")

@@ -56,6 +56,18 @@ class Materials(ProgramTest):
                 self.assertTrue(2000 <= rock["density"] <= 3300, rock)
                 self.assertTrue(1500 <= math.sqrt((K + 4 * G / 3) / rock["density"]) <= 7500, rock)
 
+    def test_pores_of_grains_of_one_mineral(self):
+        """Those at constant strain grow by (alpha - phi)/K_s, K_s = K/(1 - alpha), with a fluid's pressure."""
+        n = 0
+        for name, rock in self.library("elastic").items():
+            if "Biot coefficient" in rock:
+                E, nu, G = (rock.get(entry) for entry in ("Young's modulus", "Poisson's ratio", "shear modulus"))
+                K = E / (3 * (1 - 2 * nu)) if E else rock["Lame's first parameter"] + 2 * G / 3
+                alpha, phi = rock["Biot coefficient"], rock["porosity"]
+                self.assertAlmostEqual(rock["compressibility of pores"] * K / ((alpha - phi) * (1 - alpha)), 1, delta=1e-3, msg=name)
+                n += 1
+        self.assertGreaterEqual(n, 4)
+
     def test_values_against_other_forms_of_their_sources(self):
         rocks = self.library("elastic")
         for name, compression, shear in (("granite", 3700, 2353), ("shale", 3292, 1768), ("sandstone", 4206, 2664)):  # waves, m/s

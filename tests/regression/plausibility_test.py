@@ -44,6 +44,8 @@ class Plausibility(ProgramTest):
             (["Materials.rough joint.damage=isotropic"], 'rough joint > "damage": is "isotropic"', "damages nothing", '"damage length of friction"'),
             (["Time.steps=1"], 'Sprekk > Time: 1 step goes over knots of the table "ramp", the first at t = 1 s', "loads count at the ends of steps", '"schedule"'),
             ([*STRESS, "Bulk.initial stress={0, 5e6, 0, 0}"], "the initial stress is tension in 100 % of the cells, 5e+06 Pa", "negative sign", "check signs"),
+            ([f"Bulk.in-situ stress.{entry}" for entry in ("datum=0", "Sv=5e6", "Shmin=3e6")], "SHmax is 0 Pa in a depth of", "there Sv is 5e+06 Pa", 'give "SHmax" or "SHmax gradient"'),
+            (["Boundary conditions.confinement.confining pressure=-5e6"], '> confinement > "confining pressure": is -5e+06 Pa', "pulls at the rock", "compression is positive"),
             ([*STRESS, "Bulk.initial stress={0, -5e6, 0, 4e6}"], 'a fracture is beyond the strength of the joint (100 % of the area): "shear plane"',
              "slip or open in the first step", "check the initial stress"),
         ]

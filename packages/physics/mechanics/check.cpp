@@ -3,6 +3,7 @@
 #include "physics/comparison.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -100,9 +101,10 @@ void compare_lithostatic_stress(Comparison& c) {
 
 void compare_in_situ_stress(Comparison& c) {
   const auto& stress = c.scene().bulk.in_situ_stress;
-  if (!stress || !c.names().dim || *c.names().dim == 3 || stress->azimuth == 0 || stress->azimuth == 90) return;
+  if (!stress || !c.names().dim || *c.names().dim == 3 || std::fmod(stress->azimuth, 90) == 0) return;
   c.fail("Bulk > in-situ stress > \"azimuth\"",
-         fmt::format("is {} degrees; in 2D SHmax lies in the section, 90, or across it, 0", stress->azimuth));
+         fmt::format("is {} degrees; in 2D SHmax lies in the section, 90 or 270, or across it, 0 or 180",
+                     stress->azimuth));
 }
 
 /// The conditions that could be read and fit to the mesh.

@@ -178,6 +178,26 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
                      E < 1e4 ? "write the unit behind the modulus, as in \"50 GPa\"" : "check both units");
 }
 
+/// Confining pressures that pull. Collective.
+std::string confining_doubt(const Setting& setting, const std::vector<Real>& times) {
+  const auto& [scene, mesh, start] = setting;
+  for (const auto& [name, condition] : scene.boundary_conditions) {
+    if (!condition.confining_pressure) continue;
+    Real pull = 0;
+    looking([&, &mesh = mesh, &condition = condition] {
+      for_each_face_of(mesh, condition, [&](const mesh::Vector& x, int) {
+        for (const Real t : times) pull = std::max(pull, -(*condition.confining_pressure)(x, t));
+      });
+    });
+    pull = base::max_over_ranks(*mesh.comm, pull);
+    if (pull > 0)
+      return implausible(
+          fmt::format("{}: Sprekk > Boundary conditions > {} > \"confining pressure\"", scene.origin, name),
+          fmt::format("is {:.4g} Pa", -pull), "that pulls at the rock", "compression is positive here");
+  }
+  return "";
+}
+
 /// What is doubted of an entry of a joint.
 struct Doubt {
   std::string entry, what, why, advice;
@@ -321,6 +341,13 @@ std::string in_situ_doubt(const Setting& setting) {
     depth = std::max(depth, stress->datum - mesh.coordinates[node * dim + dim - 1]);
   depth = base::max_over_ranks(*mesh.comm, depth);
   const auto at_foot = [&](const PrincipalStress::Component& one) { return one.value + one.gradient * depth; };
+  const std::pair<const char*, const PrincipalStress::Component&> horizontal[] = {{"SHmax", stress->largest},
+                                                                                  {"Shmin", stress->smallest}};
+  for (const auto& [name, component] : horizontal)
+    if (at_foot(component) == 0 && at_foot(stress->vertical) > 0)
+      return implausible(place, fmt::format("{} is 0 Pa in a depth of {:.4g} m", name, depth),
+                         fmt::format("there Sv is {:.4g} Pa", at_foot(stress->vertical)),
+                         fmt::format("give \"{0}\" or \"{0} gradient\"", name));
   if (at_foot(stress->largest) < at_foot(stress->smallest))
     return implausible(place,
                        fmt::format("SHmax is below Shmin, {:.4g} and {:.4g} Pa in a depth of {:.4g} m",
@@ -374,8 +401,8 @@ std::string strength_doubt(const Setting& setting) {
 std::vector<std::string> Mechanics::plausibility(const Setting& setting, const std::vector<Real>& times) {
   if (!is_in(setting.scene)) return {};
   const auto some = some_of(times);
-  std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some), tension_doubt(setting),
-                                  in_situ_doubt(setting)};
+  std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some),
+                                  confining_doubt(setting, some), tension_doubt(setting), in_situ_doubt(setting)};
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(joint_doubts(setting));
   if (!setting.mesh.fracture_names.empty()) all.push_back(strength_doubt(setting));

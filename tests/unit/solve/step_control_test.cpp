@@ -35,6 +35,25 @@ TEST(StepControl, TakesStepsInverseToTheErrorToThePowerOfTheOrder) {
   }
 }
 
+/// A step takes five iterations however short it is, three are wanted, and one that is hard takes ten if it is long.
+TEST(StepControl, DoesNotShortenStepsInVain) {
+  StepControl control({.tolerance = {}, .iterations = 3, .first = 0.1, .smallest = 1e-9, .largest = 1}, {100});
+  Real t = 0;
+  const auto go = [&](int n_steps, const auto& iterations) {
+    for (int k = 0; k < n_steps; ++k) {
+      const Real end = control.end_of_step(t);
+      EXPECT_EQ(control.judge(end - t, {}, iterations(end - t)), Verdict::accepted);
+      t = end;
+    }
+    return control.memory().length;
+  };
+  const Real length = go(100, [](Real) { return 5; });
+  EXPECT_GT(length, 0.005);
+  const Real hard = go(100, [](Real dt) { return dt > 1e-3 ? 10 : 3; });
+  EXPECT_LE(hard, 1e-3);
+  EXPECT_GT(hard, 1e-4);
+}
+
 TEST(StepControl, FollowsErrorsThatComeAndGo) {
   const StepControl control({.tolerance = 1e-2, .first = 0.01, .smallest = 1e-9, .largest = 1}, {10});
   const auto error = [](Real t, Real dt) { return dt * (std::abs(t - 5) < 1 ? 1 : 0.01); };
@@ -70,29 +89,29 @@ TEST(StepControl, EndsStepsAtAllStopsAndMakesTheLastTwoBeforeThemEqual) {
 TEST(StepControl, GrowsNoFasterThanItMayAndNotAfterARejection) {
   StepControl control({.tolerance = 1e-2, .first = 0.01, .smallest = 1e-9, .largest = 1, .most_growth = 2}, {1});
   EXPECT_EQ(control.judge(0.01, {{"error", 1e-9, 1}}, 1), Verdict::accepted);
-  EXPECT_DOUBLE_EQ(control.length(), 0.02);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.02);
   EXPECT_EQ(control.judge(0.02, {{"error", 0.04, 1}}, 1), Verdict::rejected);
-  EXPECT_DOUBLE_EQ(control.length(), 0.004);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
   EXPECT_EQ(control.judge(0.004, {{"error", 0.001, 1}}, 1), Verdict::accepted);
-  EXPECT_DOUBLE_EQ(control.length(), 0.004);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
   EXPECT_EQ(control.judge(0.004, {}, 1), Verdict::accepted);  // nothing is known
-  EXPECT_DOUBLE_EQ(control.length(), 0.004);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
 }
 
 TEST(StepControl, AcceptsWhatNoShorterStepMakesBetter) {
   StepControl control({.tolerance = 1e-2, .first = 0.1, .smallest = 1e-9, .largest = 1}, {1});
   EXPECT_EQ(control.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::rejected);
-  EXPECT_EQ(control.judge(control.length(), {{"error", 0.5, 1}}, 1), Verdict::jumped);
+  EXPECT_EQ(control.judge(control.memory().length, {{"error", 0.5, 1}}, 1), Verdict::jumped);
   StepControl smallest({.tolerance = 1e-2, .first = 0.1, .smallest = 0.1, .largest = 1}, {1});
   EXPECT_EQ(smallest.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::jumped);
 }
 
 TEST(StepControl, AimsAtACountOfNewtonIterations) {
-  StepControl control({.iterations = 8, .first = 0.1, .smallest = 1e-9, .largest = 1}, {1});
+  StepControl control({.tolerance = {}, .iterations = 8, .first = 0.1, .smallest = 1e-9, .largest = 1}, {1});
   EXPECT_EQ(control.judge(0.1, {}, 2), Verdict::accepted);
-  EXPECT_DOUBLE_EQ(control.length(), 0.2);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.2);
   EXPECT_EQ(control.judge(0.1, {}, 32), Verdict::accepted);
-  EXPECT_DOUBLE_EQ(control.length(), 0.05);
+  EXPECT_DOUBLE_EQ(control.memory().length, 0.05);
 }
 
 }  // namespace
