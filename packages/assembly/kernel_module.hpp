@@ -4,6 +4,7 @@
 #include "assembly/assembler.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -17,6 +18,7 @@ struct Description {
   std::vector<Unknown> unknowns = {};
   Scales scales = {};
   bool linear = false, holds_bodies = false;
+  std::optional<std::vector<contact::Support>> supports = {};
   Real merit_weight = 0;  ///< of the rows of the own unknowns, if not linear: see Module::merit_weights
 };
 
@@ -32,6 +34,7 @@ class KernelModule final : public Module {
   std::string name() const override { return description_.name; }
   std::string fingerprint() const override { return description_.fingerprint; }
   bool holds_bodies() const override { return description_.holds_bodies; }
+  std::optional<std::vector<contact::Support>> supports() const override { return description_.supports; }
 
   Declaration declare(const mesh::Mesh&) const override {
     Declaration d;

@@ -206,6 +206,9 @@ class Module {
 
   /// Its forces may hold bodies that boundary conditions leave free to move, which is an error without it.
   virtual bool holds_bodies() const { return false; }
+  /// What of it they hold, of nodes that are local; nothing: that is not known, and nobody looks for loose pieces of
+  /// rock.
+  virtual std::optional<std::vector<contact::Support>> supports() const { return std::nullopt; }
   /// The sizes of what it prescribes at time t, or starts with, by the scales that they count for, on this rank.
   virtual Scales loads(Real t) const { return {}; }
   /// The residual at x = 0 is the same at all times.

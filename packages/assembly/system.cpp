@@ -390,15 +390,26 @@ void System::set_merit_weights() {
   }
 }
 
+/// What conditions and modules hold of the displacement, owned.
+std::vector<contact::Support> System::supports_of(int displacement) const {
+  auto all = constraints_[displacement].supports();
+  const auto n_owned = static_cast<LocalIndex>(base::n_local_elements(*layouts_[displacement].owned()));
+  for (const auto& module : modules_)
+    for (const auto& support : module->supports().value_or(std::vector<contact::Support>()))
+      if (support.unknown < n_owned) all.push_back(support);
+  return all;
+}
+
 void System::watch_contact() {
-  const bool held = std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies(); });
+  const bool held =
+      std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies() && !m->supports(); });
   int& displacement = contact_blocks_.displacement;
   for (int b = 0; b < static_cast<int>(blocks_.size()) && !held; ++b)
     if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement = b;
   std::unique_ptr<contact::LoosePieces> pieces;
   if (displacement >= 0)
-    pieces = std::make_unique<contact::LoosePieces>(mesh_, layouts_[displacement],
-                                                    constraints_[displacement].supports(), cell_volumes(*mesh_));
+    pieces = std::make_unique<contact::LoosePieces>(mesh_, layouts_[displacement], supports_of(displacement),
+                                                    cell_volumes(*mesh_));
   const bool loose = pieces && pieces->possible();
   if (!loose && contact_blocks_.traction < 0) return;
   if (loose) pieces->set_stiffness(*diagonals_[displacement]);

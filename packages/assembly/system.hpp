@@ -121,6 +121,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void assemble_balances();
   void set_merit_weights();
   void find_exchanges();
+  std::vector<contact::Support> supports_of(int displacement) const;
   void watch_contact();
   State state(int module) const;
   bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }

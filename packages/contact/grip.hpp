@@ -21,6 +21,12 @@ struct Grip {
   mesh::Vector slip{};              ///< plastic tangential jump since the last accepted state, m, global
 };
 
+/// An unknown of the displacement that is held.
+struct Support {
+  LocalIndex unknown;  ///< owned
+  int component;
+};
+
 /// What faces are told so that Newton's method converges; solutions do not depend on it, but for the tether.
 struct Regularisation {
   ConstView<Real*> damping = {};       ///< [owned fracture face], see Globalisation::damp(); empty: zero

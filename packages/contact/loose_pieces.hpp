@@ -15,12 +15,6 @@
 
 namespace sprekk::contact {
 
-/// An unknown of the displacement that is held.
-struct Support {
-  LocalIndex unknown;  ///< owned
-  int component;
-};
-
 /// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
 /// Jacobian is singular. Here such motions are found, from sums over faces of how pairs of pieces hold each other; a
 /// face acts at its centre. All members are collective unless they return stored data.

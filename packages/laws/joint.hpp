@@ -97,6 +97,7 @@ struct JointLaw {
   Bond bond = {};
   Damage damage = {};
   Driver driver = {};
+  Real strength = 1;            ///< what friction and bond bear over what they would
   Real sliding_compliance = 0;  ///< mu tan(theta)/K_t, m/Pa: less slip, and so less dilation, under more compression
 
   /// The gap (14) below which the faces touch, m: g = g0 + dilation + closure, the latter negative under compression.
@@ -120,7 +121,7 @@ struct JointLaw {
   /// That of friction alone.
   template <class T>
   KOKKOS_INLINE_FUNCTION T friction_bound(const Contact<T>& at) const {
-    return wears() ? worn_friction(at) : unworn_friction(at);
+    return strength * (wears() ? worn_friction(at) : unworn_friction(at));
   }
   /// Friction's bound b and what a bond adds to it; under tension never below 0.
   template <class T>
@@ -137,7 +138,11 @@ struct JointLaw {
   }
   template <class T>
   KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
-    return at.after(before_bond(), [&](const auto& own) { return bond.cohesion(own); });
+    auto all = at.after(before_bond(), [&](const auto& own) { return bond.cohesion(own); });
+    all.shear *= strength;
+    all.strength *= strength;
+    all.tension *= strength;
+    return all;
   }
   /// What damage leaves of friction and dilation.
   template <class T>

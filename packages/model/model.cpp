@@ -118,6 +118,15 @@ void Model::start_solver() {
 
 solve::StepReport Model::step_to(Real t) {
   SPREKK_CHECK(t > time_, "a step to t = {} is no step forward: the model is at t = {}", t, time_);
+  return advance(t);
+}
+
+solve::StepReport Model::find_equilibrium() {
+  SPREKK_CHECK(!system_->has_rates(), "what the model stores takes time to change: take a step");
+  return advance(time_);
+}
+
+solve::StepReport Model::advance(Real t) {
   const auto scope = timers_->scope("time steps");
   beginning_ = beginning();
   auto report = stepper_->advance(x_, time_, t);

@@ -41,6 +41,10 @@ class Model {
   /// Error is thrown, the state is the last that did, at time().
   solve::StepReport step_to(Real t);
 
+  /// An equilibrium at time() with what has changed since the last: entries of the scene, fields, what modules of a
+  /// host do. Otherwise as step_to(). Error: something is stored, which takes time to change.
+  solve::StepReport find_equilibrium();
+
   /// Goes back to where the last step began, to take it again under other loads: so a host that solves for a part of
   /// the problem itself iterates within a step. The solver keeps what it has, and modules what they keep outside of
   /// their histories. Error: there was no step since the model,
@@ -59,6 +63,10 @@ class Model {
   io::Checkpoint save();
   /// Goes back to what save() gave on any number of ranks. Error: it is of another scene; the message says in what.
   void restore(const io::Checkpoint& checkpoint);
+
+  /// A line for each thing of the scene that is allowed and hardly meant: conditions that hold nowhere, columns that
+  /// are passed over, what each physics doubts, steps that pass over knots of a table.
+  std::vector<std::string> warnings() const;
 
   Real time() const { return time_; }
   const Scene& scene() const { return scene_; }
@@ -80,6 +88,7 @@ class Model {
     assembly::System::Memory memory;
     Real time;
   };
+  solve::StepReport advance(Real t);
   void start_solver();
   Beginning beginning();
 

@@ -9,7 +9,6 @@
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
 #include "model/steps.hpp"
-#include "model/warnings.hpp"
 
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -102,7 +101,7 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
       has_scene = true;
       auto model = std::make_unique<Model>(scene, comm);
       const Probes probes(*model);  // whose places must be there
-      if (options.strict) base::throw_errors(scene_warnings(*model));
+      if (options.strict) base::throw_errors(model->warnings());
       return model;
     });
   } catch (const Error& error) {
@@ -253,7 +252,7 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   task =
       fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
   describe(*model, log);
-  for (const auto& warning : scene_warnings(*model)) log.warning("{}", warning);
+  for (const auto& warning : model->warnings()) log.warning("{}", warning);
   Steps steps(*model);
   Checkpointing checkpoints(*model, steps, directory, log);
   if (!options.restart) checkpoints.start_anew();
@@ -284,7 +283,7 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
     Model model(scene, comm);
     model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
     const Probes probes(model);
-    const auto warnings = scene_warnings(model);
+    const auto warnings = model.warnings();
     if (options.strict) base::throw_errors(warnings);
     base::Log log(*comm, base::Log::Level::quiet);
     for (const auto& warning : warnings) log.warning("{}", warning);

@@ -1,6 +1,7 @@
-#include "model/warnings.hpp"
+// What may be wrong with a scene that has no errors.
 
 #include "model/knots.hpp"
+#include "model/model.hpp"
 #include "physics/comparison.hpp"
 
 #include <algorithm>
@@ -51,8 +52,6 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
   return all;
 }
 
-}  // namespace
-
 /// At which loads are looked at: the ends of steps; where these are chosen, some times between, and knots.
 std::vector<Real> looked_at(const Scene& scene) {
   auto times = scene.time.times();
@@ -66,17 +65,18 @@ std::vector<Real> looked_at(const Scene& scene) {
   return times;
 }
 
-std::vector<std::string> scene_warnings(const Model& model) {
-  const auto& scene = model.scene();
-  const auto times = looked_at(scene);
+}  // namespace
+
+std::vector<std::string> Model::warnings() const {
+  const auto times = looked_at(scene_);
   std::vector<std::string> all;
   const auto add = [&](const std::vector<std::string>& some) { all.insert(all.end(), some.begin(), some.end()); };
-  add(physics::conditions_that_hold_nowhere(scene, model.mesh()));
-  add(physics::properties_passed_over(scene, model.mesh()));
-  physics::for_each_physics([&](auto physics) { add(physics.doubts(model.setting(), true)); });
-  physics::for_each_physics([&](auto physics) { add(physics.warnings(model.setting())); });
-  physics::for_each_physics([&](auto physics) { add(physics.plausibility(model.setting(), times)); });
-  add(steps_across_knots(scene));
+  add(physics::conditions_that_hold_nowhere(scene_, mesh()));
+  add(physics::properties_passed_over(scene_, mesh()));
+  physics::for_each_physics([&](auto physics) { add(physics.doubts(setting(), true)); });
+  physics::for_each_physics([&](auto physics) { add(physics.warnings(setting())); });
+  physics::for_each_physics([&](auto physics) { add(physics.plausibility(setting(), times)); });
+  add(steps_across_knots(scene_));
   return all;
 }
 

@@ -67,7 +67,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   auto committed = fields::create_like(x);
   fields::copy(x, committed);
   // in units of the smallest substep, so that substeps end exactly at t_to
-  const long long whole = 1LL << options_.max_halvings;
+  const long long whole = t_to > t ? 1LL << options_.max_halvings : 1;
   const Real t_from = t;
   std::string loose;  // in the last substep that failed and in which something was
   const long long tethered = problem_.stores() ? std::max(1LL, whole >> least_cuts) : whole;

@@ -2,8 +2,8 @@
 // of its own count in everything, and its unknowns are solved for with the others.
 #include "assembly/jacobian_check.hpp"
 #include "base/xml.hpp"
-#include "examples/elastic_foundation.hpp"
 #include "hosts/grout.hpp"
+#include "physics/mechanics/elastic_foundation.hpp"
 #include "solve/local_elimination.hpp"
 #include "unit/io/scratch.hpp"
 #include "verification/scenes.hpp"
@@ -365,7 +365,7 @@ TEST(OwnModules, MayHoldTheRock) {
   const Real k = 1e9;
   const auto springs = [&](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> modules;
-    modules.push_back(examples::make_elastic_foundation(mesh, {2, {k, k, k}}));  // 2: south
+    modules.push_back(physics::make_elastic_foundation(mesh, {2, {k, k, k}}));  // 2: south
     return modules;
   };
   model::Model model(scene, Tpetra::getDefaultComm(), springs);

@@ -1,10 +1,9 @@
 // A bar on springs: the module's Jacobian, and the displacement against a solution by hand.
-#include "examples/elastic_foundation.hpp"
-
 #include "assembly/jacobian_check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/distribute.hpp"
 #include "physics/mechanics/bulk_momentum.hpp"
+#include "physics/mechanics/elastic_foundation.hpp"
 #include "solve/newton.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -38,7 +37,7 @@ std::unique_ptr<assembly::System> bar(const std::tuple<std::string, int>& cell_a
   rock.tractions = {{east, traction}};
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(physics::make_bulk_momentum(mesh->shape, rock));
-  modules.push_back(make_elastic_foundation(*mesh, {west, {k, k, k}}));
+  modules.push_back(physics::make_elastic_foundation(*mesh, {west, {k, k, k}}));
 
   std::vector<assembly::DirichletCondition> rollers{{"south", "displacement", south, {std::nullopt, 0.0}}};
   if (dim == 3) {

@@ -64,11 +64,13 @@ void compare_conditions(Comparison& c) {
     const std::string section = "Boundary conditions > " + name;
     c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
     c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
+    c.check_length(section + " > \"foundation stiffness\"", condition.foundation_stiffness.size(), c.names().dim);
     c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
     c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
     const bool given = condition.Mechanics::BoundaryCondition::is_given();
     if (given && condition.fracture)
-      c.fail(section + " > \"fracture\"", "goes without \"displacement\", \"traction\" and \"confining pressure\"");
+      c.fail(section + " > \"fracture\"",
+             "goes without \"displacement\", \"traction\", \"confining pressure\" and \"foundation stiffness\"");
     if (given && !Mechanics::is_in(c.scene()))
       c.fail(section, "moves or loads the rock, which " + rigid_entry(c.scene()) + " says does not deform");
   }
@@ -116,10 +118,23 @@ std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c)
     if (c.is_sound("Boundary conditions > " + name) && has(*c.names().boundaries, condition.boundary) &&
         (!condition.region || has(*c.names().regions, *condition.region)) &&
         (!condition.fracture || has(*c.names().fractures, *condition.fracture)) && fits(n) &&
-        fits(condition.lower_corner.size()) && fits(condition.upper_corner.size()))
+        fits(condition.foundation_stiffness.size()) && fits(condition.lower_corner.size()) &&
+        fits(condition.upper_corner.size()))
       result.emplace(name, condition);
   }
   return result;
+}
+
+/// Conditions on displacements that hold what those do and springs.
+std::vector<assembly::DirichletCondition> with_springs(const Comparison& c,
+                                                       std::map<std::string, BoundaryCondition> conditions) {
+  for (auto& [name, condition] : conditions) {
+    const auto& k = condition.foundation_stiffness;
+    if (std::any_of(k.begin(), k.end(), [](Real k) { return k > 0; }))
+      for (const Real k_i : k)
+        condition.displacement.push_back(k_i > 0 ? base::Expression(0) : base::Expression("free"));
+  }
+  return dirichlet_conditions(conditions, {}, c.names(), "displacement");
 }
 
 /// Of conditions in boxes: that a node of the boundary is in each, or which one is nearest to its middle.
@@ -175,7 +190,7 @@ void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
   const bool all = conditions.size() == c.scene().boundary_conditions.size() &&
                    (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
   check_boxes(c, mesh, held());
-  if (is_in(c.scene()) && all) c.fail_unheld(assembly::unheld(mesh, held()));
+  if (is_in(c.scene()) && all) c.fail_unheld(assembly::unheld(mesh, with_springs(c, conditions)));
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);
   for (const auto& conflict : assembly::find_conflicts(mesh, held(), c.begin().value_or(0))) c.add(conflict);

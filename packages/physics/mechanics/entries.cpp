@@ -126,6 +126,8 @@ void Mechanics::BoundaryCondition::describe(base::Section& s) {
       confining_pressure, "confining pressure", "Pa", base::any(),
       "force per area into the body along the normal of its faces, a value or an expression of x, y, z, t; is added "
       "to a \"traction\"");
+  s.entry(foundation_stiffness, "foundation stiffness", "Pa/m", base::at_least(0),
+          "of springs between the boundary and rigid ground, per direction: the traction -k_i u_i is added");
 }
 
 void Mechanics::BoundaryCondition::check(base::Section& s) const {
@@ -135,8 +137,10 @@ void Mechanics::BoundaryCondition::check(base::Section& s) const {
       s.fail("upper corner", fmt::format("[{}] is {}, must be at least {}, that of \"lower corner\"", i,
                                          upper_corner[i], lower_corner[i]));
   if (displacement.empty() && !lower_corner.empty()) s.fail("lower corner", "goes with a \"displacement\"");
-  if (!displacement.empty() && is_loaded())
-    s.fail(fmt::format("give either \"displacement\" or \"{}\"", traction.empty() ? "confining pressure" : "traction"));
+  if (!displacement.empty() && (is_loaded() || !foundation_stiffness.empty()))
+    s.fail(fmt::format("give either \"displacement\" or \"{}\"", !traction.empty()    ? "traction"
+                                                                 : confining_pressure ? "confining pressure"
+                                                                                      : "foundation stiffness"));
 }
 
 std::vector<Prescribed> Mechanics::BoundaryCondition::prescribed() const {

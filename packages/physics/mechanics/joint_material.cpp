@@ -316,6 +316,8 @@ void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
     describe_role(s, *this, role, of_all_kinds, described);
   }
   s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
+  s.entry(strength_reduction, "strength reduction factor", "-", base::positive(),
+          "F: the joint bears 1/F of the shear and of the tension that it would by its friction and its bond");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
     if (!value->constant_in_time())
       s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
@@ -390,6 +392,7 @@ JointParameters JointMaterial::joint(const Point& x) const {
   set_part(joint.law.damage, laws::DamageKinds(), damage, *this, x);
   set_part(joint.law.driver, laws::DriverKinds(), damage_driver, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
+  joint.law.strength = 1 / strength_reduction;
   const Real zero = 0;  // all that laws have kept
   laws::Contact<Real> at_rest;
   at_rest.history = {&zero, 0};

@@ -31,6 +31,7 @@ struct JointMaterial {
       normal_stiffness;
   std::map<std::string, std::optional<Value>> more;  ///< of all other entries of kinds, by their names
   Value initial_gap = 0, initial_aperture = 0;
+  Real strength_reduction = 1;  ///< F: friction and bond bear 1/F of what they would
 
   JointMaterial();
   std::optional<Value>& entry(const std::string& name);  ///< of a kind, e.g. "friction angle"

@@ -143,10 +143,17 @@ MechanicsParameters parameters_of(const Setting& setting) {
                                 .value = condition.traction,
                                 .pressure = condition.confining_pressure,
                                 .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  if (mesh.fracture_names.empty()) return {.bulk = bulk, .solid_modulus = modulus};
+  std::vector<ElasticFoundationParameters> foundations;
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (const auto& k = condition.foundation_stiffness; !k.empty())
+      foundations.push_back({.boundary = index_of(mesh.boundary_names, condition.boundary),
+                             .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
+                             .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+  if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
   return {.bulk = bulk,
+          .foundations = foundations,
           .solid_modulus = modulus,
           .joints = joints(scene, mesh),
           .fluid_pressure = unknown ? FluidPressure() : fluid,
@@ -302,6 +309,10 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
 
 std::string Mechanics::no_error_estimate(const Scene& scene) {
   if (!is_in(scene)) return "is of stress and jumps, and the rock does not deform";
+  const auto& conditions = scene.boundary_conditions;
+  if (std::any_of(conditions.begin(), conditions.end(),
+                  [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))
+    return "is of boundaries whose tractions or displacements are given; not available with \"foundation stiffness\"";
   return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
 }
 

@@ -79,15 +79,18 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   struct BoundaryCondition : Physics::BoundaryCondition {
-    static constexpr const char* kinds = "either \"displacement\", or \"traction\", \"confining pressure\" or both";
+    static constexpr const char* kinds =
+        "either \"displacement\", or \"traction\", \"confining pressure\", \"foundation stiffness\" or several of "
+        "these";
     std::vector<base::Expression> displacement;    ///< per component; the text "free" leaves one free
     std::vector<Real> lower_corner, upper_corner;  ///< displacements only at nodes in this box; empty: everywhere
     std::vector<base::Expression> traction;
     std::optional<base::Expression> confining_pressure;  ///< along the inward normal
+    std::vector<Real> foundation_stiffness;              ///< of springs to rigid ground, per direction
     void describe(base::Section& section);
     void check(base::Section& section) const;
     bool is_loaded() const { return !traction.empty() || confining_pressure; }
-    bool is_given() const { return !displacement.empty() || is_loaded(); }
+    bool is_given() const { return !displacement.empty() || is_loaded() || !foundation_stiffness.empty(); }
     std::vector<Prescribed> prescribed() const;
   };
 

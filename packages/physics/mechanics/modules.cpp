@@ -57,6 +57,7 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   const auto& fluid = parameters.fluid_pressure;
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(make_bulk_momentum(mesh.shape, bulk));
+  for (const auto& foundation : parameters.foundations) modules.push_back(make_elastic_foundation(mesh, foundation));
   if (!parameters.solid_modulus.values.empty())
     modules.push_back(make_solid_pressure(mesh, {.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
   if (mesh.fracture_names.empty()) return modules;

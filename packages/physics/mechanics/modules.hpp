@@ -2,12 +2,14 @@
 #pragma once
 
 #include "physics/mechanics/bulk_momentum.hpp"
+#include "physics/mechanics/elastic_foundation.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
 namespace sprekk::physics {
 
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
+  std::vector<ElasticFoundationParameters> foundations = {};
   Properties<Real> solid_modulus = {};      ///< of cells, see SolidPressureParameters; empty: no rock has one
   Properties<JointParameters> joints = {};  ///< of owned fracture faces, in groups by fractures
   FluidPressure fluid_pressure = {};
@@ -20,8 +22,8 @@ struct MechanicsParameters {
 /// Of the module for jumps.
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
 
-/// What a mesh needs: the momentum of the bulk, with a solid pressure where rock is nearly incompressible; with
-/// fractures, the traction balance of their sides and the split of their jumps; with enriched tips
+/// What a mesh needs: the momentum of the bulk, with springs under boundaries and a solid pressure where rock is nearly
+/// incompressible; with fractures, the traction balance of their sides and the split of their jumps; with enriched tips
 /// (mesh::Mesh::enriched), the functions around them. Collective.
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
                                                               const MechanicsParameters& parameters);

@@ -56,6 +56,61 @@ TEST(ConfiningPressure, OnATurnedBlockHeldAtPoints) {
     }
 }
 
+/// A block in two parts, one on the other, that only springs hold: under a pressure p on its top it sinks by p/k.
+TEST(ElasticFoundation, HoldsABlockWithAJoint) {
+  constexpr Real k = 50, p = 3, E = 1000;
+  for (const int dim : {2, 3})
+    for (const auto& cells : discretisations(dim)) {
+      SCOPED_TRACE(cells.name());
+      const int up = dim - 1;
+      auto scene = box_of_rock(cells, std::vector<Real>(dim, 2), std::vector<int>(dim, 2), "1000");
+      auto lower = std::vector<Real>(dim, 0), upper = std::vector<Real>(dim, 2);
+      lower[up] = upper[up] = 1;
+      scene.mesh.fractures["joint"] = {lower, upper, {}, false};
+      auto& joint = scene.materials["rough"];
+      joint.type = "joint";
+      joint.tangential_stiffness = base::Expression(1e3);
+      joint.friction_coefficient = base::Expression(0.6);
+      scene.fractures["joint"].material = "rough";
+      const std::string foot = dim == 2 ? "south" : "bottom", top = dim == 2 ? "north" : "top";
+      auto& springs = scene.boundary_conditions["springs"];
+      springs.boundary = foot;
+      springs.foundation_stiffness.assign(dim, k);
+      confine(scene, top, "3");
+      model::Model model(scene, Tpetra::getDefaultComm());
+      expect_displacement(model, 1e-11, [&](const Vector3& x, const std::string&) {
+        Vector3 u{};
+        u[up] = -p / k - p * x[up] / E;
+        return u;
+      });
+    }
+}
+
+/// Springs that are softer under one half, in a region: the block turns until their forces and moments balance its load.
+TEST(ElasticFoundation, TurnsABlockOnUnequalSprings) {
+  constexpr Real k = 40, p = 3;
+  for (const auto& cells : discretisations(2)) {
+    SCOPED_TRACE(cells.name());
+    auto scene = box_of_rock(cells, {2, 2}, {2, 2}, "1e8");  // rigid beside the springs
+    scene.mesh.regions["right"] = {{1, 0}, {2, 2}};
+    const std::pair<const char*, Real> halves[] = {{"bulk", k}, {"right", k / 3}};
+    for (const auto& [region, stiffness] : halves) {
+      auto& springs = scene.boundary_conditions[region];
+      springs.boundary = "south";
+      springs.region = region;
+      springs.foundation_stiffness = {stiffness, stiffness};
+    }
+    confine(scene, "north", "3");
+    // v(x) = a + b x: int k v = -2 p and int k v x = -2 p over 0..2, k and k/3 on the halves
+    const Real m0 = k + k / 3, m1 = k / 2 + k / 3 * 1.5, m2 = k / 3 + k / 3 * 7 / 3;
+    const Real b = (-2 * p * m0 + 2 * p * m1) / (m0 * m2 - m1 * m1), a = (-2 * p - m1 * b) / m0;
+    model::Model model(scene, Tpetra::getDefaultComm());
+    expect_displacement(model, 1e-6, [&](const Vector3& x, const std::string&) {
+      return Vector3{-b * x[1], a + b * x[0], 0};
+    });
+  }
+}
+
 /// A plate bent by its own sides: along one edge it is held as a hinge, and a pressure that grows along it is what a
 /// traction would be.
 TEST(ConfiningPressure, IsTheTractionAlongTheNormal) {

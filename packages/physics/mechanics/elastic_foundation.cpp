@@ -1,10 +1,13 @@
-#include "examples/elastic_foundation.hpp"
+#include "physics/mechanics/elastic_foundation.hpp"
 
 #include "assembly/kernel_module.hpp"
 
 #include <fmt/ranges.h>
 
-namespace sprekk::examples {
+#include <set>
+#include <utility>
+
+namespace sprekk::physics {
 
 namespace {
 
@@ -44,23 +47,47 @@ struct SprungFace {
   }
 };
 
-/// integral N_a N_b over each face of a boundary, [face, node, node]; zero for the faces of others.
+/// Calls use(number, face) for the faces that springs are under.
+template <class Use>
+void for_each_sprung(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters, const Use& use) {
+  for (std::size_t f = 0; f < mesh.boundary_faces.size(); ++f) {
+    const auto& face = mesh.boundary_faces[f];
+    const bool here = parameters.region < 0 || mesh.cell_region[face.cell] == parameters.region;
+    if (face.boundary == parameters.boundary && here) use(f, face);
+  }
+}
+
+/// integral N_a N_b over each of these faces, [face, node, node]; zero for others.
 template <mesh::Shape shape>
-View<Real***> boundary_mass(const mesh::Mesh& mesh, int boundary) {
+View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
   constexpr int n = mesh::n_face_nodes(shape);
   const View<Real***> mass("mass", mesh.boundary_faces.size(), n, n);
   const auto host = Kokkos::create_mirror_view(mass);
-  for (std::size_t f = 0; f < mesh.boundary_faces.size(); ++f) {
-    const auto& face = mesh.boundary_faces[f];
-    if (face.boundary != boundary) continue;
+  for_each_sprung(mesh, parameters, [&](std::size_t f, const auto& face) {
     const auto add = [&](const auto& N, Real area, const auto&) {
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b) host(f, a, b) += area * N[a] * N[b];
     };
     assembly::for_each_face_point<shape>(mesh, face.cell, face.local_face, add);
-  }
+  });
   Kokkos::deep_copy(mass, host);
   return mass;
+}
+
+/// The components of the displacement that have a spring, of local nodes.
+std::vector<contact::Support> supports(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
+  std::set<std::pair<LocalIndex, int>> held;
+  for_each_sprung(mesh, parameters, [&](std::size_t, const auto& face) {
+    for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
+      const int corner = mesh::face_nodes(mesh.shape)[face.local_face][k];
+      const LocalIndex node = mesh.free_node(mesh.cells[face.cell * mesh.nodes_per_cell() + corner]);
+      for (int i = 0; i < mesh.dim(); ++i)
+        if (parameters.stiffness[i] > 0) held.emplace(node * mesh.dim() + i, i);
+    }
+  });
+  std::vector<contact::Support> all;
+  for (const auto& [unknown, component] : held) all.push_back({unknown, component});
+  return all;
 }
 
 }  // namespace
@@ -68,14 +95,15 @@ View<Real***> boundary_mass(const mesh::Mesh& mesh, int boundary) {
 std::unique_ptr<assembly::Module> make_elastic_foundation(const mesh::Mesh& mesh,
                                                           const ElasticFoundationParameters& parameters) {
   const auto& k = parameters.stiffness;
-  assembly::Description foundation{"elastic foundation",
-                                   fmt::format("{}: {}", parameters.boundary, fmt::join(k, ", "))};
+  assembly::Description foundation{
+      "elastic foundation", fmt::format("{}, {}: {}", parameters.boundary, parameters.region, fmt::join(k, ", "))};
   foundation.linear = true;
   foundation.holds_bodies = true;
+  foundation.supports = supports(mesh, parameters);
   return mesh::for_shape(mesh.shape, [&](auto shape) {
-    const auto mass = boundary_mass<shape()>(mesh, parameters.boundary);
+    const auto mass = boundary_mass<shape()>(mesh, parameters);
     return assembly::make_kernel_module(foundation, SprungFace<shape()>{mass, {k[0], k[1], k[2]}});
   });
 }
 
-}  // namespace sprekk::examples
+}  // namespace sprekk::physics

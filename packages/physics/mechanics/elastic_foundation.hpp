@@ -1,4 +1,4 @@
-// A module as an example: springs under a boundary (Winkler's foundation).
+// Springs under a boundary (Winkler's foundation).
 #pragma once
 
 #include "assembly/module.hpp"
@@ -6,11 +6,12 @@
 #include <array>
 #include <memory>
 
-namespace sprekk::examples {
+namespace sprekk::physics {
 
 struct ElasticFoundationParameters {
   int boundary;                   ///< index into the mesh's boundary_names
   std::array<Real, 3> stiffness;  ///< k, Pa/m, per direction
+  int region = -1;                ///< only at cells of this one
 };
 
 /// Springs between a boundary and rigid ground: the traction -k_i u_i acts on the body. Adds to the displacement rows
@@ -18,4 +19,4 @@ struct ElasticFoundationParameters {
 std::unique_ptr<assembly::Module> make_elastic_foundation(const mesh::Mesh& mesh,
                                                           const ElasticFoundationParameters& parameters);
 
-}  // namespace sprekk::examples
+}  // namespace sprekk::physics
