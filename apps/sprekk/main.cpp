@@ -3,14 +3,17 @@
 #include "base/heap.hpp"
 #include "base/memory.hpp"
 #include "physics/material_library.hpp"
+#include "model/factor_of_safety.hpp"
 #include "model/network.hpp"
 #include "model/point.hpp"
 #include "model/run.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <Tpetra_Core.hpp>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <unistd.h>
@@ -46,6 +49,7 @@ struct Arguments {
   std::string mesh_file;
   std::vector<std::string> fractures;
   bool schema = false;
+  model::SafetyOptions safety;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -63,8 +67,13 @@ void declare(CLI::App& app, Arguments& arguments) {
   mesh_info->add_option("--fractures", arguments.fractures, "physical groups that are fractures, a,b,c")
       ->delimiter(',');
   auto* network = app.add_subcommand("network", "print a scene's fracture network, checked and with all defaults");
+  auto* safety = app.add_subcommand("safety", "reduce the strength of joints until a scene has no equilibrium");
+  safety->add_option("--tolerance", arguments.safety.tolerance, "of the factor, relative; default 1e-3")
+      ->check(CLI::Range(1e-12, 1.0));
+  safety->add_option("--most", arguments.safety.most, "factor that is of interest; default 100")
+      ->check(CLI::Range(1.0, 1e6));
   auto* directory = app.add_subcommand("directory", "print the directory that run writes to without --output");
-  for (auto* command : {run, check, point, network, directory}) {
+  for (auto* command : {run, check, point, network, safety, directory}) {
     command->add_option("scene", options.scene, "XML file")->required();
     command->add_option("--set", options.overrides, "Path.To.Entry=value, replaces or adds an entry of the scene")
         ->allow_extra_args(false);
@@ -107,6 +116,27 @@ void drive_points(const model::RunOptions& options, const Comm& comm) {
   SPREKK_CHECK(failures.empty(), "{}", failures);
 }
 
+/// Prints each factor that is tried, and at last between which two the factor of safety is.
+void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
+  auto options = arguments.safety;
+  options.scene = arguments.options.scene;
+  options.overrides = arguments.options.overrides;
+  const bool speaks = comm->getRank() == 0;
+  const auto found = model::factor_of_safety(options, comm, [&](const model::Reduction& one) {
+    if (speaks)
+      fmt::print("{:<14.10g} {}\n", one.factor,
+                 one.stands ? fmt::format("equilibrium after {} Newton iterations", one.iterations)
+                            : "no equilibrium: " + one.reason);
+    std::fflush(stdout);
+  });
+  if (!speaks) return;
+  if (found.lost)
+    fmt::print("factor of safety: {:.8g} (equilibrium at {:.10g}, none found at {:.10g})\n",
+               (found.least + *found.lost) / 2, found.least, *found.lost);
+  else
+    fmt::print("factor of safety: at least {:.8g}\n", found.least);
+}
+
 /// Runs the command; the exit status.
 int execute(const std::string& command, const Arguments& arguments, RCP<const Comm> comm) {
   const auto& options = arguments.options;
@@ -119,6 +149,7 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
       if (speaks) std::cout << model::mesh_info(arguments.mesh_file, arguments.fractures);
     });
   if (command == "point") drive_points(options, *comm);
+  if (command == "safety") find_safety(arguments, comm);
   if (command == "network") {
     const auto description = model::network_description(*comm, options.scene, options.overrides);
     if (speaks) std::cout << description;

@@ -1,0 +1,71 @@
+// Factors of safety of blocks on one and two planes against limit equilibrium.
+#include "model/factor_of_safety.hpp"
+#include "verification/loads/block.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace sprekk::tests {
+namespace {
+
+constexpr Real tolerance = 1e-6, rounding = 1e-8;
+
+model::FactorOfSafety safety(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  return model::factor_of_safety({source_dir() + "/xml/slopes/" + scene, overrides, tolerance},
+                                 Tpetra::getDefaultComm());
+}
+
+void expect_between(const model::FactorOfSafety& found, Real exact) {
+  ASSERT_TRUE(found.lost);
+  EXPECT_LE(found.least, exact * (1 + rounding));
+  EXPECT_GE(*found.lost, exact * (1 - rounding));
+  EXPECT_LE(*found.lost, found.least * (1 + tolerance));
+  for (const auto& reduction : found.reductions) {
+    EXPECT_EQ(reduction.stands, reduction.factor <= found.least) << reduction.factor;
+    if (!reduction.stands) EXPECT_THAT(reduction.reason, testing::HasSubstr("nothing holds it"));
+  }
+}
+
+Real tan_of(Real degrees) { return std::tan(degrees * M_PI / 180); }
+
+TEST(FactorOfSafety, OfABlockOnAPlane) {
+  expect_between(safety("plane_2d.xml"), tan_of(40) / tan_of(30));
+  expect_between(safety("plane_2d.xml", {"Mesh.cell=triangle", "Materials.joint.friction angle=32"}),
+                 tan_of(32) / tan_of(30));
+}
+
+/// c A and W cos(30) tan(phi) over W sin(30).
+TEST(FactorOfSafety, OfABlockWithCohesion) {
+  const Real cohesion = 10e3, weight = 2700 * 9.81 * 10 * 2;
+  expect_between(safety("plane_2d.xml", {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=10 kPa"}),
+                 (cohesion * 10 + weight * std::cos(M_PI / 6) * tan_of(40)) / (weight / 2));
+}
+
+TEST(FactorOfSafety, OfAWedgeOnTwoPlanes) {
+  expect_between(safety("wedge_3d.xml"), (7.7 * tan_of(35) + 4 * tan_of(25)) / 4);
+}
+
+TEST(FactorOfSafety, WhereNothingSlides) {
+  const auto found =
+      safety("plane_2d.xml", {"Bulk.gravity={0, -9.81}", "Materials.joint.friction angle=1", "Mesh.cells={4, 4}"});
+  EXPECT_FALSE(found.lost);
+  EXPECT_EQ(found.least, 100);
+}
+
+TEST(FactorOfSafety, Refuses) {
+  const auto message = [](const std::vector<std::string>& overrides) -> std::string {
+    try {
+      safety("plane_2d.xml", overrides);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message({"Materials.joint.friction angle=20", "Mesh.cells={4, 4}"}),
+              testing::HasSubstr("has no equilibrium with its own strength"));
+  EXPECT_THAT(message({"Materials.joint.strength reduction factor=0"}), testing::HasSubstr("must be positive"));
+}
+
+}  // namespace
+}  // namespace sprekk::tests
