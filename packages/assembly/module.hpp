@@ -224,6 +224,9 @@ class Module {
   virtual void start_step(const State& state) {}
   /// Moves the histories on to `state`.
   virtual void commit(State& state) const {}
+  /// Called where a system takes over the state of another one, with what is out of balance there, [field](owned row),
+  /// zero in rows of prescribed unknowns.
+  virtual void take_unbalanced(State& state, const Rows& residual) const {}
   /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
   /// Schur complement, for preconditioners and for sizes of rows.
   virtual void add_schur(const State& state, const Rows& diagonals) const {}

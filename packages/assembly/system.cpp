@@ -484,6 +484,24 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   if (rate_errors_) resume_errors(x, memory.errors);
 }
 
+void System::tell_unbalanced(const BlockVector& x) {
+  auto r = fields::create_like(x);
+  residual(x, r);
+  for (std::size_t b = 0; b < r.size(); ++b) {
+    const auto mask = constraints_[b].mask();
+    const auto row = r[b]->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "prescribed", Kokkos::RangePolicy<Execution>(0, mask.extent(0)), KOKKOS_LAMBDA(int i) {
+          if (mask(i)) row(i, 0) = 0;
+        });
+  }
+  const auto views = rows(r);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    auto s = state(static_cast<int>(m));
+    modules_[m]->take_unbalanced(s, views);
+  }
+}
+
 System::Memory System::memory() const {
   std::vector<Real> errors = load_change_;
   if (rate_errors_)

@@ -81,6 +81,9 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
+  /// Lets modules know what is out of balance at x, which comes with its histories from another system. Collective.
+  void tell_unbalanced(const fields::BlockVector& x);
+
   /// From now on each commit finds what its step errs in; to be called at the initial state. Collective.
   void watch_errors(Real duration);
   /// Rates count: some modules store something from step to step.

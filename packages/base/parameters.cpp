@@ -23,6 +23,19 @@ void Section::passthrough(Teuchos::ParameterList& target, const std::string& nam
   }
 }
 
+void Section::other_sections(Teuchos::ParameterList& target, const std::string& meaning) {
+  if (mode_ == Mode::document) specification_.sections.push_back({"", meaning, {}, {}, true});
+  if (mode_ == Mode::write) output_->setParameters(target);
+  if (mode_ != Mode::read) return;
+  for (const auto& name : unknown_names())
+    if (input_->isSublist(name)) {
+      names_.push_back(name);
+      const auto& list = input_->sublist(name);
+      for (const auto& message : unreadable(list)) report_->errors.push_back(message);
+      target.sublist(name).setParameters(list);
+    }
+}
+
 void Section::refuse_units(const Teuchos::ParameterList& list, const std::string& path) {
   for (const auto& named_entry : list) {
     const auto& name = named_entry.first;

@@ -95,6 +95,9 @@ class Section {
   /// A section that is handed on as it is.
   void passthrough(Teuchos::ParameterList& target, const std::string& name, const std::string& meaning);
 
+  /// All sections that are not described before, handed on as they are.
+  void other_sections(Teuchos::ParameterList& target, const std::string& meaning);
+
   /// What to say of names that are unknown here but common elsewhere, compared without_separators(): `Did you mean
   /// "normal stiffness"?` of "kn".
   void hint(const std::vector<std::string>& names, const std::string& what);

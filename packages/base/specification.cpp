@@ -32,7 +32,8 @@ std::string to_markdown(const SectionSpecification& section, const std::string& 
   for (const auto& entry : section.entries) rows += row(entry);
   for (const auto& child : section.sections) {
     if (child.open)
-      rows += fmt::format("| {} | section | - | as it is | any | {} |\n", child.name, cell(child.meaning));
+      rows += fmt::format("| {} | section | - | as it is | any | {} |\n", child.name.empty() ? "NAME" : child.name,
+                          cell(child.meaning));
     else
       inner += to_markdown(child, fmt::format("{} > {}", path, child.name.empty() ? "NAME" : child.name));
   }

@@ -54,12 +54,29 @@ GlobalIndex global_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
   }
 }
 
-RCP<const Map> map_of(const Field& field, const mesh::Mesh& mesh, LocalIndex n) {
+GlobalIndex whole_id(const mesh::Mesh& mesh, Entity entity, LocalIndex i) {
+  if (mesh.origin.is_null()) return global_id(mesh, entity, i);
+  switch (entity) {
+    case Entity::node:
+      return mesh.origin->nodes[i];
+    case Entity::cell:
+      return mesh.origin->cells[i];
+    case Entity::enriched_node:
+      return mesh.origin->enriched[i];
+    case Entity::facet:
+      return mesh.origin->facets[i];
+    default:
+      return mesh.origin->fracture_faces[i];
+  }
+}
+
+using Numbers = GlobalIndex (*)(const mesh::Mesh&, Entity, LocalIndex);
+
+RCP<const Map> map_of(const Field& field, const mesh::Mesh& mesh, LocalIndex n, Numbers id = global_id) {
   std::vector<GlobalIndex> ids;
   ids.reserve(static_cast<std::size_t>(n) * field.n_components);
   for (LocalIndex i = 0; i < n; ++i)
-    for (int c = 0; c < field.n_components; ++c)
-      ids.push_back(global_id(mesh, field.entity, i) * field.n_components + c);
+    for (int c = 0; c < field.n_components; ++c) ids.push_back(id(mesh, field.entity, i) * field.n_components + c);
   return make_map(ids, mesh.comm);
 }
 
@@ -73,6 +90,10 @@ RCP<const Map> map_with_ghosts(const Field& field, const mesh::Mesh& mesh, const
 
 RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh) {
   return map_of(field, mesh, n_entities(mesh, field.entity, false));
+}
+
+RCP<const Map> whole_map(const Field& field, const mesh::Mesh& mesh) {
+  return map_of(field, mesh, n_entities(mesh, field.entity, false), whole_id);
 }
 
 Layout::Layout(const Field& field, const mesh::Mesh& mesh)

@@ -52,6 +52,9 @@ class Layout {
 /// The numbers of a field's unknowns on owned entities. Collective.
 RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh);
 
+/// The same by their numbers in the mesh that this one is a part of, see mesh::Mesh::origin. Collective.
+RCP<const Map> whole_map(const Field& field, const mesh::Mesh& mesh);
+
 /// Number of entities of a kind with unknowns of their own on this rank, owned only or with ghosts.
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts);
 

@@ -292,14 +292,14 @@ class Distributor {
   }
 };
 
-/// Calls put(x) for each member of a mesh but its communicator and its facets, which come later; a new member that is
-/// not listed here does not compile.
+/// Calls put(x) for each member of a mesh but its communicator, its facets and its origin, which come later; a new
+/// member that is not listed here does not compile.
 template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
          cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,
          boundary_names, fracture_names, single_fractures, n_global_nodes, n_global_cells, n_global_fracture_faces,
-         n_pieces, tip, enriched, enriched_id, n_owned_enriched, n_global_enriched, partition, facets] = mesh;
+         n_pieces, tip, enriched, enriched_id, n_owned_enriched, n_global_enriched, partition, facets, origin] = mesh;
   const auto put_all = [&](auto&... members) { (put(members), ...); };
   put_all(shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
           cell_owner, coordinates, cells, cell_region, cell_piece, fracture_faces, boundary_faces, region_names,

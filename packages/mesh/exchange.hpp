@@ -42,8 +42,8 @@ class GhostExchange {
   mutable Vector owned_, all_;  // one component
 };
 
-/// For each of this rank's entities the sum of the counts of all entities, on any rank, with lower numbers. Each of the
-/// numbers 0 ... n-1 is in `ids` of one rank, which are ascending. Independent of who has which. Collective.
+/// For each of this rank's entities the sum of the counts of all entities, on any rank, with lower numbers. No number
+/// is in `ids` of two ranks, which are ascending. Independent of who has which. Collective.
 std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& counts,
                                      const RCP<const Comm>& comm);
 

@@ -150,6 +150,11 @@ struct Mesh {
   GlobalIndex n_global_enriched = 0;
   PartitionReport partition{};  ///< of the whole mesh
   RCP<const Facets> facets;     ///< null where no field lives on them, see with_facets()
+  /// Of a part of a mesh: the numbers that local entities have in the whole, see without_regions().
+  struct Origin {
+    std::vector<GlobalIndex> nodes, cells, fracture_faces, enriched, facets;
+  };
+  RCP<const Origin> origin;  ///< null: it is whole
 
   int dim() const { return dimension(shape); }
   int nodes_per_cell() const { return mesh::n_nodes(shape); }

@@ -11,6 +11,7 @@ EarlierResults Checkpointing::restore() {
   std::vector<std::string> damage;
   auto checkpoint = checkpoints_.read(damage);
   for (const auto& what : damage) log_.warning("{}", what);
+  steps_.go_to_stage_at(checkpoint.content.at("time"));
   model_.restore(checkpoint);
   steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
   log_.info("going on from t = {}", model_.time());
@@ -42,6 +43,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["restarts"] = results.restarts();
   checkpoint.content["probes"] = results.probes_begun();
   checkpoint.content["steps"] = steps_.memory();
+  checkpoint.content["stage"] = steps_.stage();
   checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);

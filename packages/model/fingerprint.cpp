@@ -60,7 +60,7 @@ json unknowns(const assembly::System& system) {
 
 /// Whether a section may be another one where a run goes on, or is compared otherwise.
 bool is_free(const std::string& section) {
-  constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output", "Probes"};
+  constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output", "Probes", "Stages"};
   return std::find(std::begin(free), std::end(free), section) != std::end(free);
 }
 
@@ -113,7 +113,7 @@ void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
   SPREKK_CHECK(
       different.empty(),
       "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver, Output and Probes "
-      "may change, and tables get more points at their end",
+      "may change, and tables get more points at their end; what is to change at its time or later makes a stage of it",
       fmt::join(different, ", "));
 }
 

@@ -6,6 +6,8 @@
 #include "mesh/distribute.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/number_facets.hpp"
+#include "mesh/without_regions.hpp"
+#include "model/change.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
 
@@ -75,36 +77,100 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
 }  // namespace
 
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
-    : timers_(rcp(new base::Timers)), time_(scene.time.start) {
+    : more_modules_(more_modules), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
-  RCP<const mesh::Mesh> mesh;
   std::string unheld;  // by the scene, but perhaps by modules; known where the whole mesh is
   {
     const auto scope = timers_->scope("mesh");
-    mesh = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
-    mesh = draft.value.refined(mesh);
+    whole_mesh_ = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
+    whole_mesh_ = draft.value.refined(whole_mesh_);
     bool facets = false;
     physics::for_each_physics([&](auto physics) { facets = facets || physics.needs_facets(draft.value); });
-    if (facets) mesh = mesh::with_facets(mesh);
+    if (facets) whole_mesh_ = mesh::with_facets(whole_mesh_);
   }
-  scene_ = std::move(draft.value);
-  check_ends(scene_, *mesh);
-  base::collectively(*comm, [&] { scene_.own_joints = physics::own_joints(scene_, *mesh); });
-  std::vector<std::unique_ptr<assembly::Module>> modules;
-  base::collectively(*comm, [&] {
-    modules = make_modules(scene_, *mesh);
-    if (more_modules)
-      for (auto& module : more_modules(*mesh)) modules.push_back(std::move(module));
-    const bool held = std::any_of(modules.begin(), modules.end(), [](const auto& m) { return m->holds_bodies(); });
-    SPREKK_CHECK(unheld.empty() || held, "{}: {}", scene_.origin, unheld);
-  });
-  const auto conditions =
-      physics::dirichlet_conditions(scene_.boundary_conditions, scene_.regions, physics::names_of(*mesh));
-  system_ = std::make_unique<assembly::System>(
-      mesh, std::move(modules), conditions, timers_,
-      scene_.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
-  if (scene_.time.chooses_steps()) system_->watch_errors(scene_.time.times().back() - time_);
+  auto made = drafted(std::move(draft.value), unheld);
+  scene_ = made.scene;
+  system_ = make_system(std::move(made));
   x_ = system_->initial();
+  check_stages();
+  start_solver();
+}
+
+/// `unheld`: what of the rock modules must hold, empty: all is held.
+Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
+  const auto& comm = *whole_mesh_->comm;
+  Draft draft{std::move(scene), mesh::without_regions(whole_mesh_, draft.scene.excavated()), {}};
+  const auto& mesh = *draft.mesh;
+  check_ends(draft.scene, mesh);
+  base::collectively(comm, [&] { draft.scene.own_joints = physics::own_joints(draft.scene, mesh); });
+  base::collectively(comm, [&] {
+    draft.modules = make_modules(draft.scene, mesh);
+    if (more_modules_)
+      for (auto& module : more_modules_(mesh)) draft.modules.push_back(std::move(module));
+    const bool held =
+        std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& m) { return m->holds_bodies(); });
+    SPREKK_CHECK(unheld.empty() || held, "{}: {}", draft.scene.origin, unheld);
+  });
+  return draft;
+}
+
+std::unique_ptr<assembly::System> Model::make_system(Draft draft) {
+  const auto& scene = draft.scene;
+  const auto mesh = draft.mesh;
+  const auto conditions =
+      physics::dirichlet_conditions(scene.boundary_conditions, scene.regions, physics::names_of(*mesh));
+  auto system = std::make_unique<assembly::System>(
+      mesh, std::move(draft.modules), conditions, timers_,
+      scene.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
+  if (scene.time.chooses_steps()) system->watch_errors(scene.time.times().back() - scene.time.start);
+  return system;
+}
+
+/// Throws what is wrong with a change.
+Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) const {
+  auto prepared = model::prepared(changed);
+  const auto refuse = [&](const std::vector<std::string>& reasons) {
+    std::vector<std::string> lines;
+    for (const auto& reason : reasons)
+      lines.push_back(fmt::format("{}: {}; a live model cannot follow this", changed.origin, reason));
+    base::throw_errors(lines);
+  };
+  auto errors = prepared.report.errors;
+  for (const auto& line : misfits(prepared, physics::names_of(*whole_mesh_))) errors.push_back(line);
+  base::throw_errors(errors);
+  refuse(refused_changes(before, prepared.value));
+  auto draft = drafted(std::move(prepared.value));
+  auto now = drafted(before);  // modules tell their storage before they are bound
+  refuse(misfits(storage_of(now.modules, *now.mesh), storage_of(draft.modules, *draft.mesh)));
+  return draft;
+}
+
+/// So that none fails when its time has come.
+void Model::check_stages() const {
+  const Scene* before = &scene_;
+  const auto stages = staged_scenes(scene_);
+  for (const auto& stage : stages) {
+    base::throw_errors(stage.draft.report.errors);
+    drafted_change(*before, stage.draft.value);
+    before = &stage.draft.value;
+  }
+}
+
+void Model::change(const Scene& changed) {
+  const auto scope = timers_->scope("changes of the scene");
+  auto draft = drafted_change(scene_, changed);
+  if (same_entries(scene_, draft.scene)) return;
+  auto scene = draft.scene;
+  auto system = make_system(std::move(draft));
+  auto x = system->initial();
+  carry_over(*system_, x_, *system, x);
+  system->tell_unbalanced(x);
+  scene_ = std::move(scene);
+  stepper_.reset();
+  newton_.reset();
+  beginning_.reset();
+  system_ = std::move(system);
+  x_ = std::move(x);
   start_solver();
 }
 

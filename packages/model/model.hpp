@@ -41,6 +41,12 @@ class Model {
   /// Error is thrown, the state is the last that did, at time().
   solve::StepReport step_to(Real t);
 
+  /// Goes on as `changed` from time() on: materials, loads, conditions and laws may be others, regions excavated. The
+  /// state stays, and what no longer balances is in the next step, or is released as "release" of Bulk says. Where both
+  /// scenes say the same nothing is done, and no bit changes. Errors name what a live model cannot follow, and leave it
+  /// as it was.
+  void change(const Scene& changed);
+
   /// An equilibrium at time() with what has changed since the last: entries of the scene, fields, what modules of a
   /// host do. Otherwise as step_to(). Error: something is stored, which takes time to change.
   solve::StepReport find_equilibrium();
@@ -81,6 +87,17 @@ class Model {
   base::Timers& timers() { return *timers_; }
 
  private:
+  /// What equations are made of.
+  struct Draft {
+    Scene scene;
+    RCP<const mesh::Mesh> mesh;
+    std::vector<std::unique_ptr<assembly::Module>> modules;
+  };
+  Draft drafted(Scene scene, const std::string& unheld = "") const;
+  Draft drafted_change(const Scene& before, const Scene& changed) const;
+  void check_stages() const;
+  std::unique_ptr<assembly::System> make_system(Draft draft);
+
   /// What a step begins with.
   struct Beginning {
     fields::BlockVector x;
@@ -92,7 +109,9 @@ class Model {
   void start_solver();
   Beginning beginning();
 
+  ModuleFactory more_modules_;
   Scene scene_;
+  RCP<const mesh::Mesh> whole_mesh_;  ///< with what is excavated
   RCP<base::Timers> timers_;
   std::unique_ptr<assembly::System> system_;
   std::unique_ptr<solve::Newton> newton_;

@@ -124,6 +124,25 @@ Probes::Probes(const Model& model) : model_(model) {
   base::throw_errors(errors);
 }
 
+void Probes::look_again() {
+  const auto before = std::exchange(tables_, {});
+  auto looks = std::exchange(looks_, {});
+  if (before.empty()) return;
+  const Known known(model_);
+  for (std::size_t t = 0; t < before.size(); ++t) {
+    try {
+      add(before[t].name, model_.scene().probes.at(before[t].name), known);
+    } catch (const Error&) {  // the same on all ranks
+      looks_.back().clear();
+      for (const auto& column : before[t].columns) {
+        const auto n = before[t].n_places();
+        looks_.back().push_back([n, column](const Observation&) { return std::vector<Real>(n, none); });
+      }
+    }
+    tables_.back() = before[t];
+  }
+}
+
 void Probes::add(const std::string& name, const Probe& probe, const Known& known) {
   const auto& mesh = model_.mesh();
   tables_.push_back({name});

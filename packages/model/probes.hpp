@@ -27,6 +27,9 @@ class Probes {
   /// what there is. Collective.
   explicit Probes(const Model& model);
 
+  /// Looks at the changed mesh of the model from now on; what has no place there any more sees nothing. Collective.
+  void look_again();
+
   bool empty() const { return tables_.empty(); }
   /// What each table tells of a state, [table][place * columns + column], the same on every rank. Collective.
   std::vector<std::vector<Real>> values(const Observation& observation);

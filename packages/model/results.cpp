@@ -249,12 +249,14 @@ bool Results::fields_are_due(const StepTaken& step) const {
 
 std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   const auto& report = taken.report;
+  if (taken.begins_stage) begin_stage(taken.stage, taken.begin);
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
                {"linear_iterations", solve::iterations(report.linear_solves)},
                {"substeps", report.substeps},
                {"cuts", report.cuts},
                {"converged", report.converged}};
+  if (!taken.stage.empty()) step["stage"] = taken.stage;
   if (model_.scene().time.chooses_steps()) {
     step["length"] = report.time - taken.begin;
     step["rejected"] = taken.n_rejected;
@@ -321,6 +323,18 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
     for (const auto& fracture : fractures) largest = std::max(largest, fracture.at("error_of_" + name).get<Real>());
     json_["error_bounds"][name] = error_bounds_[output.summary.name] = largest;
   }
+}
+
+/// The model has another scene, and may have another mesh.
+void Results::begin_stage(const std::string& name, Real time) {
+  const auto& mesh = model_.mesh();
+  probes_.look_again();
+  if (estimator_) estimator_.emplace(model_);
+  json_["stages"].push_back({{"name", name},
+                             {"time", time},
+                             {"nodes", mesh.n_global_nodes},
+                             {"cells", mesh.n_global_cells},
+                             {"fracture_faces", mesh.n_global_fracture_faces}});
 }
 
 /// Those of conditions, by boundaries or regions, and what modules have to tell.

@@ -140,6 +140,8 @@ void Scene::describe(base::Section& s) {
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");
+  s.named_sections(stages, "Stages", "by names of your choice: what of the scene changes when, see docs/stages.md");
+  if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
 }
 
@@ -191,6 +193,12 @@ Scene read_scene(const Comm& comm, const std::string& path, const std::vector<st
   base::collectively(comm, [&] {
     const bool is_wrong = !draft.report.errors.empty() || !misfits(draft, names_in_scene(draft)).empty();
     if (is_wrong && comm.getRank() == 0) checked_mesh(draft);
+    if (is_wrong) return;
+    std::vector<std::string> wrong;
+    for (const auto& staged : staged_scenes(draft.value))
+      for (const auto& errors : {staged.draft.report.errors, misfits(staged.draft, names_in_scene(staged.draft))})
+        wrong.insert(wrong.end(), errors.begin(), errors.end());
+    base::throw_errors(wrong);
   });
   return std::move(draft.value);
 }

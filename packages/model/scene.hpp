@@ -5,6 +5,7 @@
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
 #include "model/network.hpp"
+#include "model/stages.hpp"
 #include "physics/scene.hpp"
 #include "solve/newton.hpp"
 #include "solve/time_stepping.hpp"
@@ -79,6 +80,7 @@ struct Scene : physics::Scene {
   Time time;
   solve::NewtonOptions solver;
   Output output;
+  Stages stages;
 
   void describe(base::Section& section);
   /// The global mesh of either kind; if it is to be refined, as refined() takes it. Not collective.
@@ -98,9 +100,19 @@ struct Scene : physics::Scene {
 /// collective.
 base::Draft<Scene> prepared(const Scene& scene);
 
+/// A stage with the scene that it begins.
+struct StagedScene {
+  std::string name;
+  Real time;
+  base::Draft<Scene> draft;  ///< `SCENE: stage "NAME"` opens its messages
+};
+
+/// All stages of a scene by their times. Not collective.
+std::vector<StagedScene> staged_scenes(const Scene& scene);
+
 /// Reads a scene file, applies overrides "Path.To.Entry=value", checks its entries, and makes the expressions ready.
 /// Where an entry is wrong, the mesh is made to check the rest as well; throws one Error with a line for each thing
-/// that is wrong, see checked_mesh(). Collective.
+/// that is wrong, see checked_mesh(). So it does for the scenes of its stages, without a mesh. Collective.
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
 
 }  // namespace sprekk::model

@@ -94,8 +94,11 @@ MeshNames names_in_scene(const Draft& draft) {
 
 namespace {
 
-/// Compares a draft with a mesh, if there is one, or with what it says of its mesh.
-Comparison compared(const Draft& draft, const MeshNames& names) {
+/// Compares a draft with a mesh, if there is one, or with what it says of its mesh; walls are boundaries.
+Comparison compared(const Draft& draft, MeshNames names) {
+  if (names.boundaries)
+    for (const auto& wall : draft.value.excavated())
+      if (!physics::has(*names.boundaries, wall)) names.boundaries->push_back(wall);
   Comparison comparison(draft.value, draft.report, names, tied_boundaries(draft.value), end_of_first_step(draft));
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);

@@ -27,27 +27,68 @@ solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
 
 }  // namespace
 
-Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()) {
+Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()), stages_(staged_scenes(model.scene())) {
   const auto& scene = model.scene();
+  const auto end = times_.back();
+  for (auto& stage : stages_)
+    if (stage.time < end) add_time(stage.time);
   find_next();
   if (!scene.time.chooses_steps()) return;
-  const Real end = times_.back();
   knots_ = knots(scene, end);
+  for (const auto& stage : stages_)
+    for (const Real knot : knots(stage.draft.value, end))
+      if (knot > stage.time) knots_.push_back(knot);
+  for (const auto& [name, stage] : scene.stages)
+    if (stage.release && stage.time + *stage.release < end) knots_.push_back(stage.time + *stage.release);
+  std::sort(knots_.begin(), knots_.end());
   for (Real& knot : knots_)  // of rounding alone none differs from a time
     for (const Real t : times_)
-      if (std::abs(knot - t) <= 1e-12 * (end - scene.time.start)) knot = t;
+      if (is_close(knot, t)) knot = t;
   auto stops = times_;
   stops.insert(stops.end(), knots_.begin(), knots_.end());
   std::sort(stops.begin(), stops.end());
   control_.emplace(options_of(scene.time, end, model.system().has_rates()), stops);
 }
 
-/// The first time ahead of the model; what rounding leaves of a step is none.
-void Steps::find_next() {
-  const Real t = model_.time(), start = std::abs(model_.scene().time.start);
-  const auto is_ahead = [&](Real end) { return end - t > 1e-14 * std::max(std::abs(end), start); };
-  while (next_ < times_.size() && !is_ahead(times_[next_])) ++next_;
+namespace {
+
+/// What rounding leaves of a step is none.
+bool is_ahead(Real end, Real t, Real start) { return end - t > 1e-14 * std::max(std::abs(end), std::abs(start)); }
+
+}  // namespace
+
+bool Steps::is_close(Real a, Real b) const {
+  return std::abs(a - b) <= 1e-12 * (times_.back() - model_.scene().time.start);
 }
+
+/// To those that must be met, unless it is one of them but for rounding; then it becomes that.
+void Steps::add_time(Real& t) {
+  for (const Real other : times_)
+    if (is_close(t, other)) {
+      t = other;
+      return;
+    }
+  times_.insert(std::upper_bound(times_.begin(), times_.end(), t), t);
+}
+
+/// The first time ahead of the model.
+void Steps::find_next() {
+  while (next_ < times_.size() && !is_ahead(times_[next_], model_.time(), model_.scene().time.start)) ++next_;
+}
+
+/// Those before t; with `also_now` the one at t, too. Whether there was any.
+bool Steps::begin_stages(Real t, bool also_now) {
+  const auto before = n_begun_;
+  const Real start = model_.scene().time.start;
+  for (; n_begun_ < stages_.size(); ++n_begun_) {
+    const auto& stage = stages_[n_begun_];
+    if (is_ahead(stage.time, t, start) || (!also_now && !is_ahead(t, stage.time, start))) break;
+    model_.change(stage.draft.value);
+  }
+  return n_begun_ > before;
+}
+
+void Steps::go_to_stage_at(Real t) { begin_stages(t, false); }
 
 Real Steps::share_done() const {
   const auto& time = model_.scene().time;
@@ -56,11 +97,26 @@ Real Steps::share_done() const {
 }
 
 StepTaken Steps::take() {
-  if (control_) return choose();
-  StepTaken step{.begin = model_.time(), .end = times_[next_]};
-  step.report = model_.step_to(step.end);
-  find_next();
+  const bool begins = begin_stages(model_.time(), true);
+  StepTaken step;
+  if (control_) {
+    if (begins) change_course();
+    step = choose();
+  } else {
+    step = {.begin = model_.time(), .end = times_[next_]};
+    step.report = model_.step_to(step.end);
+    find_next();
+  }
+  step.stage = stage();
+  step.begins_stage = begins;
   return step;
+}
+
+/// Of steps that are chosen: loads jump, or turn.
+void Steps::change_course() {
+  if (!model_.system().has_rates()) return;
+  control_->be_careful(model_.time());
+  model_.system().forget_rates(true);
 }
 
 /// Loads are taken for straight within a step: where they are not it becomes shorter, unless that does not help. The

@@ -52,6 +52,18 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
   return all;
 }
 
+std::vector<std::string> stages_after_the_end(const Scene& scene) {
+  std::vector<std::string> all;
+  const Real end = scene.time.times().back();
+  for (const auto& [name, stage] : scene.stages)
+    if (stage.time >= end)
+      all.push_back(
+          physics::implausible(fmt::format("{}: Sprekk > Stages > {} > \"time\"", scene.origin, name),
+                               fmt::format("is {:.6g} s, and the last step ends at {:.6g} s", stage.time, end),
+                               "the stage never begins", "let the run end later, or leave the stage out"));
+  return all;
+}
+
 /// At which loads are looked at: the ends of steps; where these are chosen, some times between, and knots.
 std::vector<Real> looked_at(const Scene& scene) {
   auto times = scene.time.times();
@@ -77,6 +89,7 @@ std::vector<std::string> Model::warnings() const {
   physics::for_each_physics([&](auto physics) { add(physics.warnings(setting())); });
   physics::for_each_physics([&](auto physics) { add(physics.plausibility(setting(), times)); });
   add(steps_across_knots(scene_));
+  add(stages_after_the_end(scene_));
   return all;
 }
 

@@ -107,6 +107,11 @@ struct Physics {
   static std::vector<Carried> carried(const Scene&) { return {}; }
   /// The field on facets whose balance in fractures gets the power that their sliding dissipates; empty: none.
   static std::string takes_friction_power(const Scene&) { return ""; }
+  /// Names of entries that stay what they are where the scene of a live model changes: its state is measured from what
+  /// they say of the start, or would mean something else with other values.
+  static std::vector<std::string> fixed_entries() { return {}; }
+  /// Why a live model cannot follow a change of its scene, a line for each reason that fixed_entries() do not tell.
+  static std::vector<std::string> refuses_change(const Scene& before, const Scene& after) { return {}; }
   /// Reports what does not fit together.
   static void compare(Comparison&) {}
   /// The same of conditions on a mesh that has all of their names; not collective.

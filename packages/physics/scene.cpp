@@ -33,10 +33,12 @@ void Bulk::describe(base::Section& s) {
 void Region::describe(base::Section& s) {
   s.entry(material, "material", "-",
           "name of an elastic material, of this scene or of the library; absent: that of \"Bulk\"");
+  s.entry(excavated, "excavated", "-",
+          "its cells are taken away; its walls are a boundary of the same name, and fractures end there");
   describe_parts(s);
   if (!s.complete()) return;
   check_parts(s);
-  if (!material && !is_any_given()) s.fail("has no entry; give a \"material\" or another one");
+  if (!material && !excavated && !is_any_given()) s.fail("has no entry; give a \"material\" or another one");
 }
 
 void Fracture::describe(base::Section& s) {
@@ -124,6 +126,13 @@ void Scene::describe_physics(base::Section& s) {
 const Material& Scene::material_of(const std::string& region) const {
   const auto found = regions.find(region);
   return materials.at(found == regions.end() ? bulk.material : found->second.material.value_or(bulk.material));
+}
+
+std::vector<std::string> Scene::excavated() const {
+  std::vector<std::string> names;
+  for (const auto& [name, region] : regions)
+    if (region.excavated) names.push_back(name);
+  return names;
 }
 
 namespace {

@@ -113,6 +113,7 @@ struct Bulk : OfAll<detail::Bulks> {
 /// What a part of the rock has of its own, in place of what Bulk says.
 struct Region : OfAll<detail::Regions> {
   std::optional<std::string> material;
+  bool excavated = false;  ///< its cells are not there; its walls are a boundary of the same name
   void describe(base::Section& section);
 };
 
@@ -159,6 +160,7 @@ struct Scene : OfAll<detail::Sections> {
   /// Takes over from another scene what is no entry.
   void keep(const Scene& other) { keep_parts(other); }
   const Material& material_of(const std::string& region) const;
+  std::vector<std::string> excavated() const;  ///< regions that are
 };
 
 /// Materials of the single fractures of a mesh that have properties of their own: that of the set, or the one that

@@ -107,6 +107,7 @@ struct Flow : Physics<Flow> {
   };
 
   static bool is_in(const Scene& scene);
+  static std::vector<std::string> fixed_entries() { return {"initial pressure"}; }
   static bool needs_facets(const Scene& scene);
   static bool has_rates(const Scene& scene);
   static bool has_initial_state(const Scene& scene);

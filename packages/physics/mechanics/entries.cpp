@@ -73,11 +73,15 @@ void Mechanics::Bulk::describe(base::Section& s) {
             "initial stress of rock at rest under gravity along the last coordinate");
   s.section(in_situ_stress, "in-situ stress",
             "initial stress given by the vertical one and two horizontal ones, compression positive");
+  s.entry(release, "release", "s", base::any(),
+          "two times, set by \"release\" of a stage: forces out of balance at the first are let go until the second");
 }
 
 void Mechanics::Bulk::check(base::Section& s) const {
   if (!initial_stress.empty() + lithostatic_stress.has_value() + in_situ_stress.has_value() > 1)
     s.fail("give one of \"initial stress\", \"lithostatic stress\" and \"in-situ stress\"");
+  if (!release.empty() && (release.size() != 2 || !(release[1] > release[0])))
+    s.fail("release", "must be two times, the second after the first");
 }
 
 void Lithostatic::describe(base::Section& s) {

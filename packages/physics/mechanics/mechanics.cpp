@@ -4,6 +4,7 @@
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
 #include "physics/mechanics/modules.hpp"
+#include "physics/mechanics/release.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/uniqueness.hpp"
 #include "physics/entry_of_place.hpp"
@@ -277,6 +278,8 @@ void Mechanics::add_modules(const Setting& setting, Modules& modules) {
   MechanicsParameters parameters;
   base::collectively(*setting.mesh.comm, [&] { parameters = parameters_of(setting); });
   for (auto& module : make_mechanics(setting.mesh, parameters)) modules.push_back(std::move(module));
+  if (const auto& release = setting.scene.bulk.release; !release.empty())
+    modules.push_back(make_release(release[0], release[1]));
 }
 
 std::vector<std::string> Mechanics::warnings(const Setting& setting) {

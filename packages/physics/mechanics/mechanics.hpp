@@ -62,6 +62,7 @@ struct Mechanics : Physics<Mechanics> {
     std::vector<base::Expression> initial_stress;   ///< XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D
     std::optional<Lithostatic> lithostatic_stress;  ///< or this
     std::optional<PrincipalStress> in_situ_stress;  ///< or this
+    std::vector<Real> release;                      ///< begin and end, see make_release(); empty: none
     void describe(base::Section& section);
     void check(base::Section& section) const;
   };
@@ -103,6 +104,8 @@ struct Mechanics : Physics<Mechanics> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene);
   static std::string no_error_estimate(const Scene& scene);
+  static std::vector<std::string> fixed_entries();
+  static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);

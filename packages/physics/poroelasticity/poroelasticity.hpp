@@ -13,6 +13,7 @@ struct Poroelasticity : Physics<Poroelasticity> {
   };
 
   static bool is_in(const Scene& scene);
+  static std::vector<std::string> fixed_entries() { return {"Biot coefficient"}; }
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
 };

@@ -1,0 +1,286 @@
+#!/usr/bin/env python3
+"""Scenes that change in stages: stages_test.py PROGRAM ROOT MPIEXEC"""
+import csv
+import json
+import math
+import subprocess
+import xml.etree.ElementTree as ET
+
+import program
+from program import ProgramTest, main
+
+CYCLIC = "verification/cyclic_2d.xml"  # sliding and sticking in turn
+QUIET = "Output.vtu=false"
+E, NU, P1, P2 = 10e9, 0.25, -10e6, -5e6  # Pa; stress far from the gallery, along x and y
+G = E / (2 * (1 + NU))
+
+
+def entries(parent, values):
+    """Nested dictionaries as lists of parameters."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            entries(ET.SubElement(parent, "ParameterList", name=name), value)
+            continue
+        text = "{" + ", ".join(map(str, value)) + "}" if isinstance(value, (list, tuple)) else str(value)
+        one = value[0] if isinstance(value, (list, tuple)) and value else value
+        kind = {int: "int", float: "double", bool: "bool"}.get(type(one), "string")
+        if isinstance(value, (list, tuple)):
+            kind = f"Array({kind})"
+        ET.SubElement(parent, "Parameter", name=name, type=kind, value=text.lower() if kind == "bool" else text)
+
+
+def kirsch_displacement(x, y):
+    """Of rock that loses a disc of radius 1 (Kirsch 1898): plane strain, m."""
+    r2, s, d = x * x + y * y, P1 + P2, P1 - P2
+    cos, sin = (x * x - y * y) / r2, 2 * x * y / r2  # of twice the angle
+    radial = (s + d * (4 * (1 - NU) - 1 / r2) * cos) / (4 * G)  # times r
+    around = -d * (2 * (1 - 2 * NU) + 1 / r2) * sin / (4 * G)
+    return [(radial * x - around * y) / r2, (radial * y + around * x) / r2]
+
+
+def kirsch_stress(x, y):
+    """XX, YY, XY of the same, with the stress before, Pa."""
+    r2, s, d = x * x + y * y, (P1 + P2) / 2, (P1 - P2) / 2
+    cos, sin = (x * x - y * y) / r2, 2 * x * y / r2
+    rr = s * (1 - 1 / r2) + d * (1 - 4 / r2 + 3 / r2**2) * cos
+    tt = s * (1 + 1 / r2) - d * (1 + 3 / r2**2) * cos
+    rt = -d * (1 + 2 / r2 - 3 / r2**2) * sin
+    return [(rr + tt) / 2 + (rr - tt) / 2 * cos - rt * sin, (rr + tt) / 2 - (rr - tt) / 2 * cos + rt * sin,
+            (rr - tt) / 2 * sin + rt * cos]
+
+
+def exact_far(share):
+    """The displacement as expressions."""
+    d, s = P1 - P2, P1 + P2
+    radial = f"(({s}) + ({d})*({4 * (1 - NU)} - 1/r2)*(x^2 - y^2)/r2)/({4 * G})"
+    around = f"(-({d})*({2 * (1 - 2 * NU)} + 1/r2)*2*x*y/r2)/({4 * G})"
+    return {"r2": "x^2 + y^2", "ux": f"({share})*(({radial})*x - ({around})*y)/r2",
+            "uy": f"({share})*(({radial})*y + ({around})*x)/r2"}
+
+
+class Stages(ProgramTest):
+    def write(self, values, name="scene.xml"):
+        root = ET.Element("ParameterList", name="Sprekk")
+        entries(root, values)
+        path = self.folder / name
+        path.write_bytes(ET.tostring(root))
+        return str(path)
+
+    def mesh(self, n, dim):
+        """A disc of radius 1, "gallery", in one of radius 4; n cells along a quarter of the wall; in 3D a slab."""
+        path = self.folder / f"kirsch_{dim}_{n}.msh"
+        if not path.exists():
+            subprocess.run(["gmsh", f"-{dim}", "-order", "2", "-format", "msh22", "-setnumber", "n", str(n), "-setnumber", "dim",
+                            str(dim), str(program.ROOT / "tests/data/meshes/gallery.geo"), "-o", str(path)], check=True,
+                           capture_output=True)
+        return str(path)
+
+    def gallery(self, n=8, dim=2, steps=1, release=True):
+        """A round gallery in rock under stress. With `release` it takes as long as all steps after it."""
+        share = "max(min(t - 1, 1), 0)" if release else "t < 1.5 ? 0 : 1"
+        free = ["0"] if dim == 3 else []
+        times = [1] + [1 + (k + 1) / steps for k in range(steps)] + [3]
+        held = {"far": {"boundary": "far", "displacement": ["ux", "uy"] + (["0"] if dim == 3 else [])}}
+        if dim == 3:
+            for side in ("front", "back"):
+                held[side] = {"boundary": side, "displacement": ["free", "free", "0"]}
+        stress = [P1, P2, NU * (P1 + P2), 0.0] + ([0.0, 0.0] if dim == 3 else [])
+        h = 0.25 / 2
+        angles = [0.5 * math.pi * k / 4 for k in range(5)]
+        places = {f"wall {k}": [math.cos(a), math.sin(a)] for k, a in enumerate(angles)}
+        return {
+            "Mesh file": {"path": self.mesh(n, dim)},
+            "Materials": {"rock": {"type": "elastic", "Young's modulus": E, "Poisson's ratio": NU}},
+            "Expressions": exact_far(share),
+            "Bulk": {"material": "rock", "initial stress": stress},
+            "Boundary conditions": held,
+            "Probes": {name: {"point": x + ([0.0] if dim == 3 else []), "outputs": ["displacement", "stress"]}
+                       for name, x in places.items()},
+            "Stages": {"excavation": {"time": 1.0, "excavate": ["gallery"], **({"release": 1.0} if release else {})}},
+            "Time": {"schedule": [float(t) for t in times]},
+            "Output": {"vtu": False}}
+
+    def probe(self, name, output="out"):
+        """Rows of its table."""
+        with open(self.folder / output / f"probes/{name}.csv") as file:
+            return list(csv.reader(file))[1:]
+
+    def wall_cells(self, n, dim):
+        """The centres of some cells of the rock that have a face on the wall."""
+        with open(self.mesh(n, dim)) as file:
+            lines = iter(file.read().splitlines())
+        nodes, cells = {}, []
+        for line in lines:
+            if line.startswith("$Nodes"):
+                for _ in range(int(next(lines))):
+                    number, *x = next(lines).split()
+                    nodes[number] = [float(v) for v in x]
+            elif line.startswith("$Elements"):
+                for _ in range(int(next(lines))):
+                    words = next(lines).split()
+                    if int(words[1]) == {2: 9, 3: 11}[dim]:
+                        cells.append([nodes[k] for k in words[3 + int(words[2]):]])
+        centres = []
+        for cell in cells:
+            corners = dim + 1
+            on_wall = sum(abs(math.hypot(x[0], x[1]) - 1) < 1e-9 for x in cell[:corners])
+            inside = max(math.hypot(x[0], x[1]) for x in cell[:corners]) < 1 + 1e-9
+            if on_wall == dim and not inside:
+                weights = [1 / 9 - 2 / 9 if dim == 2 else -1 / 8] * corners + [4 / 9 if dim == 2 else 1 / 4] * (len(cell) - corners)
+                centres.append([sum(w * x[i] for w, x in zip(weights, cell)) for i in range(dim)])
+        return centres[::max(1, len(centres) // 24)]
+
+    def last(self, output="out"):
+        """What the last checkpoint holds: its content and the bytes of its values."""
+        folder = max((f for f in (self.folder / output / "checkpoints").glob("*") if f.name.isdigit()), key=lambda f: int(f.name))
+        content = json.loads((folder / "manifest.json").read_text())["sealed"]["content"]
+        return content, [piece.read_bytes() for piece in sorted(folder.glob("piece_*.h5"))]
+
+    def test_nothing_changes_no_bit(self):
+        """A stage without a change, and one that says what is so already."""
+        options = [QUIET, "Output.checkpoints.steps=100"]
+        plain = self.run_scene(CYCLIC, *options, output="plain")
+        staged = self.run_scene(CYCLIC, *options, "Stages.none.time=3", "Stages.same.time=5",
+                                "Stages.same.Materials.joint.friction coefficient=0.6", output="staged")
+        self.assertEqual([step.pop("stage", "") for step in staged["steps"]], [""] * 3 + ["none"] * 2 + ["same"] * 3)
+        self.assertEqual(plain["steps"], staged["steps"])
+        self.assertEqual(self.last("plain")[1], self.last("staged")[1])
+        other = self.run_scene(CYCLIC, *options, "Stages.same.time=5", "Stages.same.Materials.joint.friction coefficient=0.5")
+        self.assertNotEqual(plain["steps"][5]["fractures"], other["steps"][5]["fractures"])
+
+    def test_weaker_joint(self):
+        """A block that slides loses friction: by hand, its shear stress is what is left of it, and the rest is slip."""
+        weak = ["Stages.weak.time=2", "Stages.weak.Materials.joint.friction coefficient=0.3",
+                "Stages.weak.Tables.shear.values={0, 0.066666666666666667, 0.09, 0.09, 0.09, 0.09, 0.09, 0.09, 0.09}"]
+        for ranks in (1, 3):
+            steps = self.run_scene(CYCLIC, *weak, QUIET, "Time.schedule={1, 2, 3}", "Mesh.cells={4, 4}", ranks=ranks)["steps"]
+            before, after = (step["fractures"]["fracture"] for step in steps[1:])
+            self.assertAlmostEqual(before["mean_traction"]["local"][1], 0.18, delta=1e-9)
+            self.assertAlmostEqual(after["mean_traction"]["local"][0], -0.3, delta=1e-9)
+            self.assertAlmostEqual(after["mean_traction"]["local"][1], 0.09, delta=1e-9)
+            self.assertAlmostEqual(after["mean_slip"], 0.5 - 0.09 / 1 - 0.09 / 2, delta=1e-9)
+
+    def test_conditions_end_and_begin(self):
+        """A displacement gives way to a traction."""
+        scene = self.scene(CYCLIC)
+        values = ["Stages.pull.time=1", "Stages.pull.without={Boundary conditions > moved}",
+                  "Stages.pull.Boundary conditions.pulled.boundary=north",
+                  "Stages.pull.Boundary conditions.pulled.traction={0.15, -0.3}",
+                  "Stages.pull.Tables.shear.values={0, 0.15, 0.15, 0.15, 0.15, 0.15, 0.15, 0.15, 0.15}"]
+        steps = self.run_scene(scene, *values, QUIET, "Time.schedule={1, 2}")["steps"]
+        self.assertIn("north", steps[0]["reactions"])
+        self.assertNotIn("north", steps[1]["reactions"])
+        self.assertAlmostEqual(steps[1]["fractures"]["fracture"]["mean_traction"]["local"][1], 0.15, delta=1e-9)
+
+    def expect_same_bits(self, a, b):
+        self.assertEqual(self.results(a)["status"], "completed")
+        self.assertEqual(self.results(a)["steps"], self.results(b)["steps"])
+        of_a, of_b = self.last(a), self.last(b)
+        for content, _ in (of_a, of_b):
+            content.pop("restarts")
+        self.assertEqual(of_a, of_b)
+
+    def test_restart_within_and_across_stages(self):
+        scene = self.write(self.gallery(n=4, steps=4))
+        options = ["Output.checkpoints.steps=1", "Stages.support.time=2",
+                   "Stages.support.Boundary conditions.shotcrete.boundary=gallery",
+                   "Stages.support.Boundary conditions.shotcrete.confining pressure=1e6"]
+        whole = "1, 1.25, 1.5, 1.75, 2, 3"
+        for ranks in (1, 3):
+            self.run_scene(scene, *options, f"Time.schedule={{{whole}}}", ranks=ranks, output="whole")
+            for until in ("1", "1, 1.25", "1, 1.25, 1.5, 1.75, 2"):
+                with self.subTest(ranks=ranks, until=until):
+                    self.run_scene(scene, *options, f"Time.schedule={{{until}}}", ranks=ranks, output="parts")
+                    sets = [word for option in [*options, f"Time.schedule={{{whole}}}"] for word in ("--set", option)]
+                    self.call("run", scene, "--output", "parts", "--restart", *sets, ranks=ranks)
+                    self.expect_same_bits("whole", "parts")
+
+    def test_restart_into_changed_stages(self):
+        """Later stages may be others; what has been may not, and the message says how to change it."""
+        first = ["Output.checkpoints.steps=1", QUIET, "Stages.a.time=2", "Stages.a.Materials.joint.friction coefficient=0.5"]
+        self.run_scene(CYCLIC, *first, "Time.schedule={1, 2, 3, 4}")
+        b = ["Stages.b.time=4", "Stages.b.Materials.joint.friction coefficient=0.4"]
+        def go(*options, expect=0):
+            sets = [word for option in options for word in ("--set", option)]
+            return self.call("run", self.scene(CYCLIC), "--output", "out", "--restart", *sets, expect=expect)[1]
+        whole = self.run_scene(CYCLIC, *first, *b, "Time.schedule={1, 2, 3, 4, 5}", output="whole")
+        go(*first, *b, "Time.schedule={1, 2, 3, 4, 5}")
+        self.assertEqual(self.results()["steps"], whole["steps"])
+        self.assertEqual([step.get("stage") for step in whole["steps"]], [None, None, "a", "a", "b"])
+        error = go(*first, "Materials.joint.tangential stiffness=3", expect=1)
+        self.assertIn("they differ in: Materials", error)
+        self.assertIn("what is to change at its time or later makes a stage of it", error)
+        error = go(*first[:-1], "Stages.a.Materials.joint.friction coefficient=0.55", expect=1)
+        self.assertIn("they differ in: Materials", error)
+
+    def test_errors_come_first(self):
+        """They name the stage, the place, the value, and what is allowed; nothing has been computed."""
+        for options, message in (
+                (["Stages.s.time=-1"], 'Sprekk > Stages > s > "time": is -1 s: must be after the "start" of "Time", 0 s'),
+                (["Stages.s.without={}"], 'Sprekk > Stages > s > "time" (s): missing; it is required'),
+                (["Stages.s.time=2", "Stages.r.time=2"], 'is 2 s: the stage "r" begins then'),
+                (["Stages.s.time=2", "Stages.s.Materials.joint.friction coeficient=0.3"],
+                 'stage "s": Sprekk > Materials > joint > "friction coeficient": unknown. Did you mean "friction coefficient"?'),
+                (["Stages.s.time=2", "Stages.s.Materials.joint.friction coefficient=-1"],
+                 'stage "s": Sprekk > Materials > joint > "friction coefficient": is -1'),
+                (["Stages.s.time=2", "Stages.s.Mesh.cells={4, 4}"], "Sprekk > Stages > s > Mesh: a stage cannot change it"),
+                (["Stages.s.time=2", "Stages.s.without={Boundary conditions > mooved}"],
+                 'stage "s": "without": names "Boundary conditions > mooved", which the scene does not have at this time. Did you mean "moved"?'),
+                (["Stages.s.time=2", "Stages.s.Fractures.material=other"],
+                 'Sprekk > Stages > s > Fractures > "material": a stage changes that of fractures by their names'),
+                (["Stages.s.time=2", "Stages.s.Materials.rock.shear modulus=2"],
+                 'stage "s": the rock of "bulk": "shear modulus": is 2, was 1; a live model cannot follow this'),
+                (["Stages.s.time=2", "Stages.s.excavate={galery}"], 'stage "s": Sprekk > Regions > "galery": is "galery", must be one of'),
+                (["Stages.s.time=2", "Stages.s.Flow.viscosity=1e-3"], 'stage "s": Sprekk > Materials > rock > "permeability": missing'),
+                (["Stages.s.time=2", "Stages.s.excavate={bulk}"], "all cells of the mesh would be excavated"),
+                (["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",
+                  "Materials.joint.residual part of friction=0.5", "Stages.s.time=2", "Stages.s.Materials.plain.type=joint",
+                  "Stages.s.Materials.plain.friction coefficient=0.6", "Stages.s.Fractures.fracture.material=plain"],
+                 "its laws that remember become")):
+            with self.subTest(options=options):
+                sets = [word for option in options for word in ("--set", option)]
+                error = self.call("run", self.scene(CYCLIC), "--output", "out", *sets, expect=1)[1]
+                self.assertIn(message, error)
+                self.assertEqual(self.results()["steps"] if (self.folder / "out/results.json").exists() else [], [])
+        warning = self.call("check", self.scene(CYCLIC), "--set", "Stages.s.time=9")[1]
+        self.assertIn("is 9 s, and the last step ends at 8 s: the stage never begins", warning)
+
+    def test_kirsch(self):
+        """A round gallery, order 2: displacements of the wall to 0.1 % and stress beside it to 1 % of the largest."""
+        for n, dim, ranks in ((16, 2, 1), (16, 2, 3), (16, 3, 1)):
+            with self.subTest(n=n, dim=dim, ranks=ranks):
+                values = self.gallery(n, dim)
+                centres = self.wall_cells(n, dim)
+                for k, x in enumerate(centres):
+                    values["Probes"][f"cell {k}"] = {"point": x, "outputs": ["stress"]}
+                self.run_scene(self.write(values), ranks=ranks)
+                largest = math.hypot(*kirsch_displacement(1, 0))
+                for name, place in values["Probes"].items():
+                    seen = [float(v) for v in self.probe(name)[-1][1:]]
+                    x, y = place["point"][:2]
+                    if name.startswith("wall"):
+                        error = math.dist(seen[:2], kirsch_displacement(x, y)) / largest
+                        self.assertLess(error, 1e-3, name)
+                    else:
+                        seen = [seen[0], seen[1], seen[3]]
+                        error = math.dist(seen, kirsch_stress(x, y)) / abs(3 * P1 - P2)
+                        self.assertLess(error, 1e-2, (name, x, y, seen))
+
+    def test_end_does_not_depend_on_steps(self):
+        """Where nothing slips: at once, in one step and in five."""
+        ends = []
+        for steps, release in ((1, False), (1, True), (5, True)):
+            self.run_scene(self.write(self.gallery(4, steps=steps, release=release)))
+            ends.append([float(v) for k in range(5) for v in self.probe(f"wall {k}")[-1][1:]])
+        self.run_scene(self.write(self.gallery(4, steps=4)), "Time.schedule={1, 1.5}")
+        half = [float(v) for k in range(5) for v in self.probe(f"wall {k}")[-1][1:3]]
+        for end in ends[1:]:
+            for a, b in zip(ends[0], end):
+                self.assertAlmostEqual(a, b, delta=1e-10 * max(1, abs(a)))
+        whole = [v for k in range(5) for v in ends[0][6 + 2 - 8 + k * (len(ends[0]) // 5):][:2]]
+        for a, b in zip(half, whole):
+            self.assertAlmostEqual(a, b / 2, delta=1e-12)
+
+
+if __name__ == "__main__":
+    main()
