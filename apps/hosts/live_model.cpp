@@ -45,8 +45,8 @@ int run(RCP<const Comm> comm) {
   model::Scene scene = model::read_scene(*comm, "../../xml/slopes/plane_2d.xml");
   scene.time.stepping.tethers = false;  // a block that slides is no state here
   model::Model model(scene, comm);
-  if (speaks)
-    for (const auto& warning : model.warnings()) std::cerr << warning << '\n';
+  for (const auto& warning : model.warnings())  // collective
+    if (speaks) std::cerr << warning << '\n';
   if (const auto report = model.step_to(1); !report.converged) throw Error(report.reason);
 
   // (W cos(dip) - p A) tan(friction) = W sin(dip)

@@ -32,6 +32,15 @@ void check(const Model& model) {
                scene.origin);
 }
 
+/// What moves, or why Newton's method failed.
+std::string reason_of(const solve::StepReport& report) {
+  if (report.converged) return report.loose;
+  const std::string found = "no equilibrium found: ";
+  const auto& text = report.reason;
+  if (text.rfind(found, 0) != 0) return text;
+  return text.substr(found.size(), text.find("; t = ") - found.size());
+}
+
 void run_to_the_end(Model& model) {
   Steps steps(model);
   while (steps.any()) {
@@ -54,10 +63,7 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
     model.change(reduced(own, factor));
     const auto report = model.find_equilibrium();
     const bool held = report.converged && report.loose.empty();
-    found.reductions.push_back({factor, held, report.newton_iterations,
-                                held               ? ""
-                                : report.converged ? report.loose
-                                                   : report.reason});
+    found.reductions.push_back({factor, held, report.newton_iterations, held ? "" : reason_of(report)});
     if (tell) tell(found.reductions.back());
     return held;
   };

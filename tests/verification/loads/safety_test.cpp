@@ -23,7 +23,7 @@ void expect_between(const model::FactorOfSafety& found, Real exact) {
   EXPECT_LE(*found.lost, found.least * (1 + tolerance));
   for (const auto& reduction : found.reductions) {
     EXPECT_EQ(reduction.stands, reduction.factor <= found.least) << reduction.factor;
-    if (!reduction.stands) EXPECT_THAT(reduction.reason, testing::HasSubstr("nothing holds it"));
+    EXPECT_EQ(reduction.stands, reduction.reason.empty()) << reduction.reason;
   }
 }
 
@@ -47,8 +47,7 @@ TEST(FactorOfSafety, OfAWedgeOnTwoPlanes) {
 }
 
 TEST(FactorOfSafety, WhereNothingSlides) {
-  const auto found =
-      safety("plane_2d.xml", {"Bulk.gravity={0, -9.81}", "Materials.joint.friction angle=1", "Mesh.cells={4, 4}"});
+  const auto found = safety("plane_2d.xml", {"Bulk.gravity={0, -9.81}", "Mesh.cells={4, 4}"});
   EXPECT_FALSE(found.lost);
   EXPECT_EQ(found.least, 100);
 }
