@@ -16,7 +16,8 @@ EarlierResults Checkpointing::restore() {
   steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
-  return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes")};
+  return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes"),
+          checkpoint.content.value("stages", nlohmann::json::array())};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -43,7 +44,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["restarts"] = results.restarts();
   checkpoint.content["probes"] = results.probes_begun();
   checkpoint.content["steps"] = steps_.memory();
-  checkpoint.content["stage"] = steps_.stage();
+  checkpoint.content["stages"] = results.stages();
   checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);

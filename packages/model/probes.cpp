@@ -125,22 +125,12 @@ Probes::Probes(const Model& model) : model_(model) {
 }
 
 void Probes::look_again() {
-  const auto before = std::exchange(tables_, {});
-  auto looks = std::exchange(looks_, {});
-  if (before.empty()) return;
+  if (empty()) return;
+  auto tables = std::exchange(tables_, {});
+  looks_.clear();
   const Known known(model_);
-  for (std::size_t t = 0; t < before.size(); ++t) {
-    try {
-      add(before[t].name, model_.scene().probes.at(before[t].name), known);
-    } catch (const Error&) {  // the same on all ranks
-      looks_.back().clear();
-      for (const auto& column : before[t].columns) {
-        const auto n = before[t].n_places();
-        looks_.back().push_back([n, column](const Observation&) { return std::vector<Real>(n, none); });
-      }
-    }
-    tables_.back() = before[t];
-  }
+  for (const auto& table : tables) add(table.name, model_.scene().probes.at(table.name), known);
+  tables_ = std::move(tables);
 }
 
 void Probes::add(const std::string& name, const Probe& probe, const Known& known) {
@@ -265,7 +255,14 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
     const auto single = std::find_if(mesh.single_fractures.begin(), mesh.single_fractures.end(), named);
     places = {shares_on_fractures(mesh, is_set, is_set ? set : int(single - mesh.single_fractures.begin()))};
   } else {
-    places = shares_at(mesh, output.entity, points_of(probe, mesh.dim()));
+    const auto points = points_of(probe, mesh.dim());
+    try {
+      places = shares_at(mesh, output.entity, points);
+    } catch (const Error&) {  // the same on all ranks
+      if (mesh.origin.is_null()) throw;
+      const std::vector<Real> nothing(points.size() * output.n_components, none);  // the place is excavated
+      return [nothing](const Observation&) { return nothing; };
+    }
   }
   Real whole = 0;
   for (const auto& share : places[0]) whole += share.weight;

@@ -24,10 +24,10 @@ struct Observation {
 class Probes {
  public:
   /// Finds the places and the outputs. Error: a line for each that is not there, naming the probe, what it asks for and
-  /// what there is. Collective.
+  /// what there is. A place that is excavated has no values. Collective.
   explicit Probes(const Model& model);
 
-  /// Looks at the changed mesh of the model from now on; what has no place there any more sees nothing. Collective.
+  /// Looks at the changed mesh of the model from now on. Collective.
   void look_again();
 
   bool empty() const { return tables_.empty(); }

@@ -170,6 +170,7 @@ Results::Results(Model& model, std::string directory, const std::optional<Earlie
   json_["steps"] = json::array();
   if (earlier) {
     for (const auto& entry : earlier->journal) add(entry.at("step"));
+    if (!earlier->stages.empty()) json_["stages"] = earlier->stages;
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());

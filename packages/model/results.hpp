@@ -23,6 +23,7 @@ struct EarlierResults {
   std::vector<nlohmann::json> journal;                ///< what Results::journal() gave for all their steps
   nlohmann::json restarts = nlohmann::json::array();  ///< the times at which they went on
   nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
+  nlohmann::json stages = nlohmann::json::array();    ///< Results::stages()
 };
 
 /// Writes a model's states into a directory, step by step. Everything in it is complete after every write. All members
@@ -38,6 +39,8 @@ class Results {
   /// Of each probe by its name: `definition`, and the `first` row of its table.
   const nlohmann::json& probes_begun() const { return probes_begun_; }
   nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
+  /// Those that have begun, with the mesh that each has.
+  nlohmann::json stages() const { return json_.value("stages", nlohmann::json::array()); }
   int n_steps() const { return n_steps_; }
 
   /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many

@@ -266,6 +266,92 @@ class Stages(ProgramTest):
                         error = math.dist(seen, kirsch_stress(x, y)) / abs(3 * P1 - P2)
                         self.assertLess(error, 1e-2, (name, x, y, seen))
 
+    def square(self, steps, release=True, excavated=False, cell="triangle"):
+        """A square gallery between a fracture that it cuts, one beside it, and one that it takes away."""
+        box = {"cell": cell, "lower corner": [-12.0, -12.0], "upper corner": [12.0, 12.0], "cells": [24, 24],
+               "regions": {"gallery": {"lower corner": [-2.0, -2.0], "upper corner": [2.0, 2.0]}},
+               "fractures": {"cut": {"lower corner": [-8.0, 0.0], "upper corner": [8.0, 0.0]},
+                             "beside": {"lower corner": [4.0, -6.0], "upper corner": [4.0, 6.0]},
+                             "inside": {"lower corner": [-1.0, -1.0], "upper corner": [1.0, -1.0]}}}
+        joint = {"type": "joint", "friction coefficient": 0.2, "tangential stiffness": 10e9, "dilation angle": "3 deg"}
+        scene = {"Mesh": box, "Materials": {"rock": {"type": "elastic", "Young's modulus": 20e9, "Poisson's ratio": 0.25},
+                                            "joint": joint},
+                 "Bulk": {"material": "rock", "initial stress": [-10e6, -6e6, -8e6, 1e6]}, "Fractures": {"material": "joint"},
+                 "Boundary conditions": {side: {"boundary": side, "displacement": [0.0, 0.0]}
+                                         for side in ("west", "east", "south", "north")},
+                 "Time": {"schedule": [1.0] + [1 + (k + 1) / steps for k in range(steps)]}, "Output": {"vtu": False}}
+        if excavated:
+            return {**scene, "Regions": {"gallery": {"excavated": True}}}
+        return {**scene, "Stages": {"excavation": {"time": 1.0, "excavate": ["gallery"], **({"release": 1.0} if release else {})}}}
+
+    def test_fractures_that_a_gallery_meets(self):
+        """One ends at the wall, one is gone; what slides by more and more ends where it would if the gallery had always
+        been there, whatever the steps and the ranks."""
+        always = self.run_scene(self.write(self.square(1, excavated=True)), "Time.schedule={1}")["steps"][-1]["fractures"]
+        self.assertAlmostEqual(always["cut"]["area"], 12, delta=1e-12)
+        self.assertEqual(always["inside"]["area"], 0)
+        self.assertGreater(always["beside"]["mean_slip"], 1e-5)
+        self.assertGreater(always["cut"]["mean_slip"], 1e-7)
+        for steps, release, ranks in ((1, False, 1), (1, True, 1), (6, True, 1), (3, True, 3)):
+            with self.subTest(steps=steps, release=release, ranks=ranks):
+                results = self.run_scene(self.write(self.square(steps, release)), ranks=ranks)
+                self.assertAlmostEqual(results["steps"][0]["fractures"]["cut"]["area"], 16, delta=1e-12)
+                end = results["steps"][-1]["fractures"]
+                for name, tolerance in (("cut", 1e-13), ("beside", 1e-13), ("inside", 0)):
+                    self.assertEqual(end[name]["area"], always[name]["area"])
+                    for number in ("mean_slip", "max_slip", "mean_opening") if tolerance else ():
+                        self.assertAlmostEqual(end[name][number], always[name][number], delta=tolerance, msg=(name, number))
+
+    def test_order_in_the_step(self):
+        """Where the wall is pressed on and off while it is released, joints slide back and forth, and slip depends on the
+        path: a quarter of the step has less than a quarter of the error."""
+        press = ["Stages.excavation.Boundary conditions.lining.boundary=gallery",
+                 "Stages.excavation.Boundary conditions.lining.confining pressure=1.2e8*max(t-1,0)*(2-t)*(t-1)"]
+        ends = [self.run_scene(self.write(self.square(n)), *press)["steps"][-1]["fractures"] for n in (4, 16, 64, 256)]
+        for name in ("beside", "cut"):
+            slips = [end[name]["mean_slip"] for end in ends]
+            errors = [abs(slip - slips[-1]) for slip in slips[:-1]]
+            self.assertGreater(errors[0], 0.1 * slips[-1])
+            for before, after in zip(errors, errors[1:]):
+                self.assertLess(after, before / 4, name)
+
+    def test_wet_gallery(self):
+        """Water flows to the wall, and as much through the boundary when nothing changes any more."""
+        scene = self.scene("stages/gallery_2d.xml")
+        coarse = [QUIET, "Mesh.cells={30, 30}", "Output.checkpoints.steps=1"]
+        # corners lie on this mesh, too, and the fractures that are odd metres away do not
+        for name, ends in (("roof", "{-20, 4}, {14, 4}"), ("crossing", "{-24, 0}, {22, 0}"), ("wall", "{4, -20}, {4, 18}"),
+                           ("steep", "{-2, 2}, {-2, 24}"), ("gallery", "{-4, -4}, {4, 2}")):
+            lower, upper = ends.split("}, ")
+            section = "regions" if name == "gallery" else "fractures"
+            coarse += [f"Mesh.{section}.{name}.lower corner={lower}}}", f"Mesh.{section}.{name}.upper corner={upper}"]
+        coarse.append("Probes.crown.point={0, 2}")
+        results = self.run_scene(scene, *coarse)
+        steps = results["steps"]
+        self.assertEqual([stage["name"] for stage in results["stages"]], ["excavation", "lining", "decay"])
+        inflows = steps[-1]["inflows"]
+        self.assertLess(inflows["gallery"], -1e-8)
+        self.assertAlmostEqual(sum(inflows.values()), 0, delta=2e-3 * abs(inflows["gallery"]))
+        face = self.probe("face")
+        self.assertTrue(all(math.isfinite(float(v)) for v in face[1][1:]))
+        self.assertTrue(all(not math.isfinite(float(v or "nan")) for row in face[2:] for v in row[1:]))
+        crown = [float(row[2]) for row in self.probe("crown")]  # displacement y
+        at = {step["time"] / 86400: value for step, value in zip(steps, crown[1:])}
+        self.assertLess(at[5], at[2])
+        self.assertGreater(at[20], at[10])  # the lining lifts it
+        self.assertLess(at[60], at[30])
+        other = self.run_scene(scene, *coarse, ranks=3, output="three")
+        for a, b in zip(steps, other["steps"]):
+            for name, value in a["inflows"].items():
+                self.assertAlmostEqual(value, b["inflows"][name], delta=1e-8 * abs(inflows["gallery"]))
+        until = "86400, 172800, 259200"
+        for ranks in (1, 3):
+            self.run_scene(scene, *coarse, f"Time.schedule={{{until}}}", ranks=ranks, output="parts")
+            sets = [word for option in coarse for word in ("--set", option)]
+            self.call("run", scene, "--output", "parts", "--restart", *sets, ranks=ranks)
+            self.expect_same_bits({1: "out", 3: "three"}[ranks], "parts")
+            self.assertEqual(self.results("parts")["stages"], results["stages"])
+
     def test_end_does_not_depend_on_steps(self):
         """Where nothing slips: at once, in one step and in five."""
         ends = []
