@@ -27,9 +27,7 @@ void check(const Model& model) {
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
                scene.origin);
   SPREKK_CHECK(!model.system().has_rates(),
-               "{}: stores fluid or heat, and so has no equilibrium at a time: leave out what stores, or give the "
-               "fluid's pressure (\"fluid pressure\" of fractures)",
-               scene.origin);
+               "{}: stores something, and so has no equilibrium at a time: leave out what stores", scene.origin);
 }
 
 /// What moves, or why Newton's method failed.

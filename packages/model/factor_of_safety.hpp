@@ -30,10 +30,10 @@ struct FactorOfSafety {
   std::vector<Reduction> reductions;  ///< in the order in which they were tried
 };
 
-/// Runs the scene to its end, then divides what friction and bonds of all joints bear by a factor F that grows, at the
-/// loads of the end, and bisects between the largest F with an equilibrium and the least one with none (Zienkiewicz,
-/// Humpheson and Lewis 1975). Every trial goes on from the state of the largest F that stands. `tell` is called after
-/// each one. Error: a scene without joints, that stores something, or that has no equilibrium with F = 1. Collective.
+/// Runs the scene to its end, then reduces the strength of all joints by a factor F that grows, at the loads of the
+/// end, and bisects between the largest F with an equilibrium and the least one with none (Zienkiewicz, Humpheson and
+/// Lewis 1975). Every trial goes on from the state of the largest F that stands. `tell` is called after each one.
+/// Error: a scene without joints, that stores something, or that has no equilibrium with F = 1. Collective.
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
                                 const std::function<void(const Reduction&)>& tell = {});
 
