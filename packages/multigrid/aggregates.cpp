@@ -1,7 +1,6 @@
 #include "multigrid/aggregates.hpp"
 
 #include "base/check.hpp"
-#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +12,8 @@ namespace {
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
 constexpr Real strong = 0.02;        // a coupling, relative to the geometric mean of the diagonals
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
 constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
-constexpr Real flattest = 100;
 
 /// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
 View<Real*> diagonal_sizes(const NodeMatrix& A) {
@@ -31,14 +30,21 @@ View<Real*> diagonal_sizes(const NodeMatrix& A) {
   return size;
 }
 
-Real distance(const std::array<Real, 3>& a, const std::array<Real, 3>& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
+Real distance(const Real* a, const Real* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+Real distance(const std::array<Real, 3>& a, const std::array<Real, 3>& b) { return distance(a.data(), b.data()); }
 
 Real largest(const Real* values, int n) {
   Real result = 0;
   for (int k = 0; k < n; ++k) result = std::fmax(result, std::fabs(values[k]));
   return result;
+}
+
+/// [node] by their places, ghosts' included. Collective.
+View<Real*> all_places(const NodeGraph& graph, const std::vector<std::array<Real, 3>>& owned) {
+  const View<Real*> all("places", static_cast<std::size_t>(graph.columns->n_all()) * 3);
+  for (std::size_t i = 0; i < owned.size(); ++i) std::copy_n(owned[i].data(), 3, &all(3 * i));
+  graph.columns->exchange(all, 3);
+  return all;
 }
 
 /// Sorted without what is there twice.
@@ -87,6 +93,8 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
     for (LocalIndex i = 0; i < n_rows; ++i)
       for (std::size_t k = 0; k < x.extent(1); ++k) nodes.place[i][k] = x(i, k);
   }
+  nodes.nearest.assign(n_rows, infinite);
+  const auto place = all_places(graph, nodes.place);
   std::vector<bool> prescribed(size);
   if (modes.is_null()) nodes.weak.assign(graph.n_entries(), false);
   for (LocalIndex i = 0; i < n_rows; ++i) {
@@ -109,6 +117,8 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
       }
       nodes.free[i] = true;
       if (j < n_rows) nodes.neighbours.node.push_back(j);
+      if (j != i && !places.is_null())
+        nodes.nearest[i] = std::fmin(nodes.nearest[i], distance(&place(3 * i), &place(3 * j)));
     }
     nodes.neighbours.start.push_back(nodes.neighbours.node.size());
     for (int r = 0; r < size; ++r)
@@ -125,32 +135,14 @@ void Nodes::add_smoothed(std::size_t n) {
   if (before > 0) motion.resize(motion.size() / before * n, 0);
   free.resize(n, false);
   if (!place.empty()) place.resize(n);
+  nearest.resize(n, infinite);
   neighbours.start.resize(n + 1, neighbours.node.size());
 }
 
 std::vector<Real> reach(const Nodes& nodes) {
-  std::vector<Real> result(nodes.free.size(), std::numeric_limits<Real>::infinity());
-  for (std::size_t i = 0; i < nodes.place.size(); ++i)
-    for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
-      result[i] = std::fmin(result[i], steps * distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
+  auto result = nodes.nearest;
+  for (Real& r : result) r *= steps;
   return result;
-}
-
-Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm) {
-  constexpr std::size_t third = 2;
-  std::array<Real, 2> here{};  // sum, number
-  std::vector<Real> far;
-  for (std::size_t i = 0; i < nodes.place.size(); ++i) {
-    far.clear();
-    for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
-      if (const Real r = distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]); r > 0) far.push_back(r);
-    if (far.size() <= third) continue;
-    std::sort(far.begin(), far.end());
-    here[0] += std::fmin(far[third] / far[0], flattest);
-    ++here[1];
-  }
-  const auto all = base::sum_over_ranks(comm, here);
-  return all[1] > 0 ? all[0] / all[1] : 1;
 }
 
 Aggregates aggregate(const Nodes& nodes, std::size_t enough) {
@@ -227,6 +219,15 @@ std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& ag
       for (LocalIndex i : members[I])
         for (int k = 0; k < 3; ++k) coarse.place[I][k] += nodes.place[i][k] / static_cast<Real>(members[I].size());
   }
+  coarse.nearest.assign(aggregates.n, infinite);
+  for (std::size_t I = 0; I < coarse.place.size(); ++I)
+    for (std::size_t k = coarse.neighbours.start[I]; k < coarse.neighbours.start[I + 1]; ++k)
+      coarse.nearest[I] =
+          std::fmin(coarse.nearest[I], distance(coarse.place[I], coarse.place[coarse.neighbours.node[k]]));
+  coarse.contact_edge.assign(aggregates.n, 0);
+  for (std::size_t i = 0; i < nodes.contact_edge.size(); ++i)
+    if (const Real edge = nodes.contact_edge[i]; edge > 0 && aggregates.of[i] >= 0)
+      if (Real& to = coarse.contact_edge[aggregates.of[i]]; to == 0 || edge < to) to = edge;
   coarse.motion.assign(static_cast<std::size_t>(aggregates.n) * m * m, 0);
   for (LocalIndex I = 0; I < aggregates.n; ++I) {
     const std::size_t rows = members[I].size() * size;

@@ -21,7 +21,10 @@ struct Nodes {
   std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
   int n_modes = 0;
   std::vector<std::array<Real, 3>> place;  ///< [node] m; empty: not known
+  std::vector<Real> nearest;  ///< [node] m: the distance of the nearest neighbour, on the finest level ghosts included;
+                              ///< infinite without one, or where places are not known
   std::vector<bool> weak;  ///< [entry of the graph] a coupling to do without, besides those that are far; empty: none
+  std::vector<Real> contact_edge;  ///< [node] m: see leave_out_far_contact(); empty: 0
 
   /// Adds nodes until there are n: not free, so they are left to smoothing, and their couplings are none of a
   /// neighbour. Stored data.
@@ -39,10 +42,6 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes,
 /// of the two reaches: in cells that are much longer than wide, those across short edges, where a smoother does little;
 /// what they join is less flat on the next level. Without limit where places are not known. Stored data.
 std::vector<Real> reach(const Nodes& nodes);
-
-/// How flat cells are: the distance of the third nearest neighbour, in distances of the nearest one, at most 100; the
-/// mean over all nodes. It is 1 to 1.4 of cubes and of needles, and 1 where places are not known. Collective.
-Real flatness(const Nodes& nodes, const Teuchos::Comm<int>& comm);
 
 /// The aggregate of each owned node, -1 of one that is not free: a node whose neighbours in reach are all in no
 /// aggregate yet makes one with them, what is left joins the neighbouring aggregate that it touches most (Vanek, Mandel

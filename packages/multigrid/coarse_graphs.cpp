@@ -1,6 +1,9 @@
 #include "multigrid/coarse_graphs.hpp"
 
+#include <array>
 #include <cmath>
+
+#include "base/over_ranks.hpp"
 
 namespace sprekk::multigrid {
 
@@ -45,12 +48,13 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
   return local;
 }
 
-std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
-  auto far = nodes.weak;
-  far.resize(graph.n_entries(), false);
+namespace {
+
+/// [entry] Collective.
+std::vector<bool> out_of_reach(const NodeGraph& graph, const Nodes& nodes, const std::vector<Real>& reaches) {
+  std::vector<bool> far(graph.n_entries(), false);
   const auto& halo = *graph.columns;
   const View<Real*> ball("place and reach", static_cast<std::size_t>(halo.n_all()) * 4);
-  const auto reaches = reach(nodes);
   for (std::size_t i = 0; i < nodes.place.size(); ++i) {
     for (int k = 0; k < 3; ++k) ball(4 * i + k) = nodes.place[i][k];
     ball(4 * i + 3) = reaches[i];
@@ -59,9 +63,52 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   for (LocalIndex i = 0; i < graph.n_rows(); ++i)
     for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
       const Real *const a = &ball(4 * i), *const b = &ball(4 * graph.column(e));
-      far[e] = far[e] || std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
+      far[e] = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > std::fmax(a[3], b[3]);
     }
   return far;
+}
+
+}  // namespace
+
+std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
+  auto far = out_of_reach(graph, nodes, reach(nodes));
+  for (std::size_t e = 0; e < nodes.weak.size(); ++e) far[e] = far[e] || nodes.weak[e];
+  return far;
+}
+
+Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
+  const auto far = out_of_reach(graph, nodes, reach(nodes));
+  const auto& [start, neighbour] = nodes.neighbours;
+  nodes.weak.assign(graph.n_entries(), false);
+  nodes.contact_edge.resize(nodes.free.size(), 0);
+  std::vector<LocalIndex> neighbour_of(graph.n_rows(), -1);
+  std::vector<std::size_t> contact;  // entries of a row
+  std::array<double, 2> here{};      // sum of squares, number
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
+    neighbour_of[i] = i;
+    for (std::size_t k = start[i]; k < start[i + 1]; ++k) neighbour_of[neighbour[k]] = i;
+    contact.clear();
+    bool out = false;
+    for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
+      const LocalIndex j = graph.column(e);
+      if (j >= graph.n_rows() || neighbour_of[j] == i || !nodes.free[i] || !nodes.free[j]) continue;
+      contact.push_back(e);
+      out = out || far[e];
+    }
+    Real& edge = nodes.contact_edge[i];
+    if (out) {
+      for (const std::size_t e : contact) nodes.weak[e] = true;
+      if (edge == 0) edge = nodes.nearest[i];
+    } else {
+      if (edge > 0 && std::isfinite(nodes.nearest[i])) {
+        here[0] += std::pow(nodes.nearest[i] / edge, 2);
+        ++here[1];
+      }
+      edge = 0;
+    }
+  }
+  const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
+  return all[1] > 0 ? std::sqrt(all[0] / all[1]) : 0;
 }
 
 }  // namespace sprekk::multigrid

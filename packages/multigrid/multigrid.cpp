@@ -5,6 +5,7 @@
 
 #include "base/over_ranks.hpp"
 #include "multigrid/block_sizes.hpp"
+#include "multigrid/coarse_graphs.hpp"
 
 namespace sprekk::multigrid {
 namespace {
@@ -16,7 +17,7 @@ constexpr Real raise = 1e-8;
 
 constexpr Real most_growth = 5;  // of the residual in a cycle
 constexpr int most_widenings = 4;
-constexpr int most_degree = 24;
+constexpr int most_degree = 200, most_finest_degree = 24;
 
 /// Levels end where there are more coarse nodes than this share of the fine ones: all alone, or one on each rank.
 constexpr Real least_coarsening = 0.8;
@@ -40,11 +41,12 @@ std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   return share * all[0] < all[1] ? enough : 0;
 }
 
-/// Of the smoother on the finest level. Jumps that alternate along the long edges of fractures do no work on contact,
-/// which is as stiff as the short edges of flat cells: the diagonal is too large for them by the square of the aspect
-/// ratio, and aggregates do not represent them. On that level it costs least to smooth them.
+/// Of the smoother. Jumps that alternate along the long edges of fractures do no work on contact, which is as stiff as
+/// the short edges of flat cells: the diagonal is too large for them by up to the square of the aspect ratio. As long
+/// as cells are coarsened across short edges coarse nodes represent them; on the level on which that ends only the
+/// smoother knows them.
 int degree_for(Real flatness, int degree) {
-  return std::max(degree, static_cast<int>(std::lround(std::min<Real>(1.2 * flatness, most_degree))));
+  return std::max(degree, static_cast<int>(std::lround(std::min<Real>(2 * flatness, most_degree))));
 }
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
@@ -70,10 +72,11 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     : map_(matrix->row_map()), finest_(matrix), size_(n_components), options_(options) {
   add_level(node_matrix(*matrix, size_));
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
-  degree_ = std::max(options.degree, options.finest_degree);
-  flat_degree_ = modes.is_null() ? degree_ : degree_for(flatness(nodes, *map_->getComm()), degree_);
+  levels_.front().degree = std::max(options.degree, options_.finest_degree);
   while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
     const auto& A = levels_.back().A;
+    if (!modes.is_null())
+      levels_.back().degree = degree_for(leave_out_far_contact(A.graph, nodes), levels_.back().degree);
     const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, *map_->getComm()) : 0);
     Nodes coarse;
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
@@ -86,12 +89,15 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
       nodes = nodes_of(galerkin->coarse(), modes);
       nodes.motion = std::move(coarse.motion);
       nodes.place = std::move(coarse.place);
+      nodes.nearest = std::move(coarse.nearest);
     } else {
       nodes = std::move(coarse);
     }
     levels_.back().to_coarse = std::move(galerkin);
     add_level(levels_.back().to_coarse->coarse());
   }
+  for (const auto& level : levels_)
+    levels_.front().degree = std::max(levels_.front().degree, std::min(level.degree, most_finest_degree));
   std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
   for (const auto& level : levels_) here[1] += level.A.value.extent(0);
   const auto all = base::sum_over_ranks(*map_->getComm(), here);
@@ -101,8 +107,13 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
 void Multigrid::add_level(const NodeMatrix& A) {
   const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
   const auto& halo = *A.graph.columns;
-  levels_.push_back(
-      {A, {}, {}, vector(levels_.empty() ? 0 : halo.n_owned()), vector(halo.n_all()), vector(halo.n_all())});
+  levels_.push_back({A,
+                     {},
+                     {},
+                     vector(levels_.empty() ? 0 : halo.n_owned()),
+                     vector(halo.n_all()),
+                     vector(halo.n_all()),
+                     options_.degree});
 }
 
 void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful) {
@@ -117,9 +128,8 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
   finest_ = matrix;
   for (auto& level : levels_) {
     if (!level.to_coarse) continue;
-    const bool finest = &level == &levels_.front();
-    const int degree = symmetric ? flat_degree_ : degree_;
-    level.smoother->update(level.A, finest ? degree : options_.degree);
+    const int least = &level == &levels_.front() ? options_.finest_degree : 0;
+    level.smoother->update(level.A, symmetric ? level.degree : std::max(options_.degree, least));
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
   }
   factor_last(symmetric);
@@ -169,7 +179,7 @@ void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Re
 }
 
 void Multigrid::cycle(std::size_t level, const ConstView<Real*>& b) const {
-  const auto& [A, smoother, to_coarse, _, x, r] = levels_[level];
+  const auto& [A, smoother, to_coarse, _, x, r, degree] = levels_[level];
   if (!to_coarse) return solve_last(b);
   smoother->apply(b, x, false);
   residual(A, x, b, r);

@@ -52,6 +52,7 @@ class Multigrid : public fields::Operator {
     std::unique_ptr<Chebyshev> smoother;
     std::unique_ptr<Galerkin> to_coarse;
     View<Real*> b, x, r;  // [owned], none on the finest level; [all], [all]
+    int degree;           // of the smoother, of a symmetric matrix
   };
 
   void add_level(const NodeMatrix& A);
@@ -64,7 +65,6 @@ class Multigrid : public fields::Operator {
   RCP<const Matrix> finest_;
   int size_;
   Options options_;
-  int degree_, flat_degree_;  // of the smoother on the finest level; of a symmetric matrix
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
   std::vector<Level> levels_;

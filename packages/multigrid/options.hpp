@@ -4,7 +4,7 @@
 namespace sprekk::multigrid {
 
 struct Options {
-  int degree = 4;         ///< of Chebyshev's polynomial, at least 1; in flat cells the finest level takes a higher one
+  int degree = 4;         ///< of Chebyshev's polynomial, at least 1; flat cells in contact take a higher one
   int finest_degree = 0;  ///< at least, on the finest level
   int coarse_size = 300;  ///< no further level below so many unknowns: a direct solve
 };

@@ -5,6 +5,7 @@
 #include <Tpetra_Core.hpp>
 
 #include "base/check.hpp"
+#include "multigrid/coarse_graphs.hpp"
 #include "truss.hpp"
 
 namespace sprekk::test {
@@ -99,20 +100,115 @@ TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
   }
 }
 
-TEST(Aggregates, TellFlatCellsFromCubesAndNeedles) {
-  const auto flatness = [](Real h, bool placed) {
-    const FlatCells cells(8, h);
-    const auto ones = rcp(new MultiVector(cells.map, 1));
+/// Trilinear elements of the Laplacian in layers of cells 1 x 1 x h that lie on each other, [n, n, 3] nodes each, with
+/// a little of the identity. Closed contact of the layers resists the mean jump on each face, as stiffly as cells.
+struct Layers {
+  Layers(int n_, Real h) : n(n_), map(rcp(new Map(3 * n * n * n_layers, 0, Tpetra::getDefaultComm()))) {
+    bulk = rcp(new CrsMatrix(map, 128));
+    matrix = rcp(new CrsMatrix(map, 128));
+    places = rcp(new MultiVector(map, 3));
+    ones = rcp(new MultiVector(map, 1));
     ones->putScalar(1);
-    const auto nodes =
-        multigrid::nodes_of(multigrid::node_matrix(*cells.matrix, 1), ones, placed ? cells.places : Teuchos::null);
-    return multigrid::flatness(nodes, *cells.map->getComm());
-  };
-  EXPECT_NEAR(flatness(0.1, true), 10, 0.1);
-  EXPECT_NEAR(flatness(1e-3, true), 100, 1e-10);
-  EXPECT_NEAR(flatness(1, true), 1, 0.1);
-  EXPECT_NEAR(flatness(10, true), 1, 0.1);
-  EXPECT_EQ(flatness(0.1, false), 1);
+    for (const GlobalIndex node : base::local_elements(*map)) {
+      const auto p = place(node);
+      for (int k = 0; k < 3; ++k)
+        places->replaceGlobalValue(node, k, k < 2 ? Real(p[k]) : h * static_cast<Real>(p[2] - p[2] / 3));
+      for (const auto& A : {bulk, matrix}) add(*A, node, node, 1e-3);
+    }
+    for (int layer = 0; layer < n_layers; ++layer)
+      for (int x = 0; x + 1 < n; ++x)
+        for (int y = 0; y + 1 < n; ++y) {
+          for (int z = 3 * layer; z < 3 * layer + 2; ++z) add_cell({x, y, z}, h);
+          if (layer > 0) add_face({x, y, 3 * layer - 1}, h);
+        }
+    bulk->fillComplete();
+    matrix->fillComplete();
+  }
+
+  std::array<int, 3> place(GlobalIndex node) const { return {int(node % n), int(node / n % n), int(node / n / n)}; }
+  GlobalIndex corner(const std::array<int, 3>& first, int k) const {
+    return first[0] + k % 2 + n * (first[1] + k / 2 % 2 + GlobalIndex(n) * (first[2] + k / 4));
+  }
+  void add(CrsMatrix& A, GlobalIndex row, GlobalIndex column, Real value) {
+    if (map->isNodeGlobalElement(row)) A.insertGlobalValues(row, 1, &value, &column);
+  }
+  void add_cell(const std::array<int, 3>& first, Real h) {
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b) {
+        Real mass[3], stiffness[3];
+        for (int k = 0; k < 3; ++k) {
+          const bool same = (a >> k & 1) == (b >> k & 1);
+          mass[k] = (same ? 1 / 3.0 : 1 / 6.0) * (k == 2 ? h : 1);
+          stiffness[k] = (same ? 1 : -1) / (k == 2 ? h : 1);
+        }
+        const Real value =
+            stiffness[0] * mass[1] * mass[2] + mass[0] * stiffness[1] * mass[2] + mass[0] * mass[1] * stiffness[2];
+        for (const auto& A : {bulk, matrix}) add(*A, corner(first, a), corner(first, b), value);
+      }
+  }
+  void add_face(const std::array<int, 3>& first, Real h) {
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        add(*matrix, corner(first, a), corner(first, b), ((a < 4) == (b < 4) ? 1 : -1) / (16 * h));
+  }
+
+  static constexpr int n_layers = 4;
+  int n;
+  RCP<const Map> map;
+  RCP<CrsMatrix> bulk, matrix;
+  RCP<MultiVector> places, ones;
+};
+
+/// Of conjugate gradients, to a residual of 1e-8.
+int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
+  Vector x(A.getRowMap()), r(A.getRowMap()), z(A.getRowMap()), p(A.getRowMap()), Ap(A.getRowMap());
+  for (std::size_t i = 0; i < r.getLocalLength(); ++i)
+    r.replaceLocalValue(i, std::cos(static_cast<Real>(A.getRowMap()->getGlobalElement(i))));
+  const Real first = r.norm2();
+  Real rz = 0;
+  for (int k = 0;; ++k) {
+    if (r.norm2() < 1e-8 * first || k == 500) return k;
+    M.apply(r, z, Teuchos::NO_TRANS, 1, 0);
+    const Real before = std::exchange(rz, r.dot(z));
+    p.update(1, z, k > 0 ? rz / before : 0);
+    A.apply(p, Ap);
+    const Real step = rz / p.dot(Ap);
+    x.update(step, p, 1);
+    r.update(-step, Ap, 1);
+  }
+}
+
+/// Contact of flat cells does not resist jumps that alternate along their long edges.
+TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
+  for (const Real h : {1.0, 0.1, 0.01}) {
+    const Layers layers(14, h);
+    multigrid::Multigrid M(wrapped(layers.matrix),
+                           multigrid::nodes_of(multigrid::node_matrix(*layers.bulk, 1), layers.ones, layers.places), 1,
+                           layers.ones);
+    M.setup(wrapped(layers.matrix), true);
+    EXPECT_LE(iterations(*layers.matrix, M), 15) << h;
+  }
+}
+
+/// Only contact out of reach is weak, that of flat cells; without it, and without contact, all is as it was.
+TEST(Aggregates, LeaveOutContactOfFlatCellsOnly) {
+  for (const Real h : {1.0, 0.01}) {
+    const Layers layers(6, h);
+    for (const auto& A : {layers.bulk, layers.matrix}) {
+      auto nodes = multigrid::nodes_of(multigrid::node_matrix(*layers.bulk, 1), layers.ones, layers.places);
+      EXPECT_EQ(multigrid::leave_out_far_contact(multigrid::node_matrix(*A, 1).graph, nodes), 0);
+      const bool some = A == layers.matrix && h < 1;
+      for (std::size_t i = 0; i < nodes.free.size(); ++i) {
+        const int z = layers.place(layers.map->getGlobalElement(static_cast<LocalIndex>(i)))[2];
+        const bool inside = z == 0 || z == 3 * Layers::n_layers - 1 || z % 3 == 1;
+        const bool known = layers.map->getComm()->getSize() == 1;  // else contact may be with nodes of other ranks
+        if (!some || inside || known) {
+          EXPECT_NEAR(nodes.contact_edge[i], some && !inside ? h : 0, 1e-12);
+        }
+      }
+      EXPECT_TRUE(some || std::count(nodes.weak.begin(), nodes.weak.end(), true) == 0);
+    }
+  }
 }
 
 /// The same matrix with the unknowns of a node together, or apart as far as `together` says for this rank.
