@@ -485,7 +485,7 @@ class Scenes(BadInput):
         xml = self.scene_with(('      <Parameter name="friction coefficient" type="double" value="1"/>\n', ""))
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
-        self.refuse_set(['"fracture": goes without "displacement", "traction" and "confining pressure"'], "Boundary conditions.moved.fracture=fracture")
+        self.refuse_set(['"fracture": goes without "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
 
     def test_measured_loads(self):
         moved, stress = "Boundary conditions.moved.", "Bulk.in-situ stress."
