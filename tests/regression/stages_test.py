@@ -353,10 +353,11 @@ class Stages(ProgramTest):
             self.assertEqual(self.results("parts")["stages"], results["stages"])
 
     def test_one_excavation_after_another(self):
-        """Where nothing slips the order does not matter: the state of the first is carried to the mesh of the second."""
-        def scene(excavated):
+        """Where nothing slips the order does not matter, and what is half released is half way; what has slid is carried
+        to the mesh of the second."""
+        def scene(excavated, friction=10.0):
             values = self.square(2, excavated=True)
-            values["Materials"]["joint"]["friction coefficient"] = 10.0
+            values["Materials"]["joint"]["friction coefficient"] = friction
             values["Mesh"]["regions"]["niche"] = {"lower corner": [-10.0, 2.0], "upper corner": [-7.0, 5.0]}
             del values["Mesh"]["fractures"]["inside"]
             values["Regions"] = {name: {"excavated": True} for name in excavated}
@@ -377,8 +378,16 @@ class Stages(ProgramTest):
                         for a, b in zip(numbers[of]["local"], both[name][of]["local"]):
                             self.assertAlmostEqual(a, b, delta=1e-10 * scale)
                 for k in range(4):
-                    for a, b in zip(self.probe(f"at {k}")[-1][1:], self.probe(f"at {k}", "both")[-1][1:]):
-                        self.assertAlmostEqual(float(a), float(b), delta=1e-10 * max(1e-3, abs(float(b))))
+                    begin, half, end = ([float(v) for v in row[1:]] for row in self.probe(f"at {k}")[-3:])
+                    for a, b in zip(end, self.probe(f"at {k}", "both")[-1][1:]):
+                        self.assertAlmostEqual(a, float(b), delta=1e-10 * max(1e-3, abs(float(b))))
+                    for a, b, c in zip(begin, half, end):
+                        self.assertAlmostEqual(b, (a + c) / 2, delta=1e-10 * max(1e-3, abs(c)))
+                slides = self.run_scene(scene([], 0.2), "Time.schedule={1, 2, 2.0001}", ranks=ranks)["steps"]
+                before, after = (step["fractures"]["beside"] for step in slides[-2:])
+                self.assertGreater(before["max_slip"], 1e-5)
+                for number in ("max_slip", "mean_slip"):
+                    self.assertAlmostEqual(after[number], before[number], delta=1e-2 * before[number])
 
     def test_pressures_are_carried(self):
         """A second after more of wet rock is taken away, pressures elsewhere and flow to the first wall are as they were."""
