@@ -352,6 +352,62 @@ class Stages(ProgramTest):
             self.expect_same_bits({1: "out", 3: "three"}[ranks], "parts")
             self.assertEqual(self.results("parts")["stages"], results["stages"])
 
+    def test_one_excavation_after_another(self):
+        """Where nothing slips the order does not matter, and what is half released is half way; what has slid is carried
+        to the mesh of the second."""
+        def scene(excavated, friction=10.0):
+            values = self.square(2, excavated=True)
+            values["Materials"]["joint"]["friction coefficient"] = friction
+            values["Mesh"]["regions"]["niche"] = {"lower corner": [-10.0, 2.0], "upper corner": [-7.0, 5.0]}
+            del values["Mesh"]["fractures"]["inside"]
+            values["Regions"] = {name: {"excavated": True} for name in excavated}
+            values["Probes"] = {f"at {k}": {"point": x, "outputs": ["displacement", "stress"]}
+                                for k, x in enumerate([[3.0, 3.0], [-5.0, -5.0], [9.0, -7.0], [-11.0, 5.0]])}
+            if not excavated:
+                del values["Regions"]
+                values["Stages"] = {"first": {"time": 1.0, "excavate": ["gallery"]},
+                                    "second": {"time": 2.0, "excavate": ["niche"], "release": 0.5}}
+            return self.write(values)
+        both = self.run_scene(scene(["gallery", "niche"]), "Time.schedule={1}", output="both")["steps"][-1]["fractures"]
+        self.assertGreater(abs(both["beside"]["mean_elastic_jump"]["local"][1]), 1e-6)
+        for ranks in (1, 3):
+            with self.subTest(ranks=ranks):
+                steps = self.run_scene(scene([]), "Time.schedule={1, 2, 2.25, 2.5}", ranks=ranks)["steps"]
+                for name, numbers in steps[-1]["fractures"].items():
+                    for of, scale in (("mean_traction", 1e7), ("mean_elastic_jump", 1e-3)):
+                        for a, b in zip(numbers[of]["local"], both[name][of]["local"]):
+                            self.assertAlmostEqual(a, b, delta=1e-10 * scale)
+                for k in range(4):
+                    begin, half, end = ([float(v) for v in row[1:]] for row in self.probe(f"at {k}")[-3:])
+                    for a, b in zip(end, self.probe(f"at {k}", "both")[-1][1:]):
+                        self.assertAlmostEqual(a, float(b), delta=1e-10 * max(1e-3, abs(float(b))))
+                    for a, b, c in zip(begin, half, end):
+                        self.assertAlmostEqual(b, (a + c) / 2, delta=1e-10 * max(1e-3, abs(c)))
+                slides = self.run_scene(scene([], 0.2), "Time.schedule={1, 2, 2.0001}", ranks=ranks)["steps"]
+                before, after = (step["fractures"]["beside"] for step in slides[-2:])
+                self.assertGreater(before["max_slip"], 1e-5)
+                for number in ("max_slip", "mean_slip"):
+                    self.assertAlmostEqual(after[number], before[number], delta=1e-2 * before[number])
+
+    def test_pressures_are_carried(self):
+        """A second after more of wet rock is taken away, pressures elsewhere and flow to the first wall are as they were."""
+        options = [QUIET, "Mesh.cells={60, 60}", "Mesh.regions.niche.lower corner={20, -20}", "Mesh.regions.niche.upper corner={22, -18}",
+                   "Stages.niche.time=4 d", "Stages.niche.excavate={niche}", "Stages.niche.release=1 d",
+                   "Time.schedule={86400, 172800, 345600, 345601}"]
+        places = {"a": "{10.3, 10.2}", "b": "{-15.3, -8.1}", "c": "{6.7, -2.2}"}
+        for name, x in places.items():
+            options += [f"Probes.{name}.point={x}", f"Probes.{name}.outputs={{pressure}}"]
+        for ranks in (1, 3):
+            with self.subTest(ranks=ranks):
+                steps = self.run_scene(self.scene("stages/gallery_2d.xml"), *options, ranks=ranks)["steps"]
+                self.assertEqual([step.get("stage") for step in steps], [None, "excavation", "excavation", "niche"])
+                values = [[float(v) for v in (row[1] for row in self.probe(name)[-2:])] for name in places]
+                for before, after in values:
+                    self.assertAlmostEqual(after, before, delta=1e3)  # of 2 MPa
+                self.assertGreater(max(v[0] for v in values) - min(v[0] for v in values), 1e5)
+                before, after = (step["inflows"]["gallery"] for step in steps[-2:])
+                self.assertAlmostEqual(after, before, delta=0.02 * abs(before))
+
     def test_end_does_not_depend_on_steps(self):
         """Where nothing slips: at once, in one step and in five."""
         ends = []
