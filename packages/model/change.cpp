@@ -12,7 +12,7 @@ namespace {
 
 Teuchos::ParameterList without_free_sections(Scene scene) {  // which describe() could change
   auto list = base::effective(scene, "Sprekk");
-  for (const char* name : {"Time", "Output", "Probes", "Stages"}) list.remove(name, false);
+  for (const char* name : {"Output", "Probes", "Stages"}) list.remove(name, false);
   return list;
 }
 

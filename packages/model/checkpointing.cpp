@@ -11,7 +11,7 @@ EarlierResults Checkpointing::restore() {
   std::vector<std::string> damage;
   auto checkpoint = checkpoints_.read(damage);
   for (const auto& what : damage) log_.warning("{}", what);
-  steps_.go_to_stage_at(checkpoint.content.at("time"));
+  steps_.go_to_stage_at(checkpoint.content.at("time"), checkpoint.content.value("begins stage", false));
   model_.restore(checkpoint);
   steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
   log_.info("going on from t = {}", model_.time());
@@ -45,6 +45,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["probes"] = results.probes_begun();
   checkpoint.content["steps"] = steps_.memory();
   checkpoint.content["stages"] = results.stages();
+  checkpoint.content["begins stage"] = steps_.is_at_begin_of_stage();
   checkpoint.journal = results.journal(n_saved_steps_);
   try {
     checkpoints_.write(checkpoint);

@@ -30,6 +30,8 @@ void check(const Model& model) {
                "{}: stores something, and so has no equilibrium at a time: leave out what stores", scene.origin);
 }
 
+bool stands(const solve::StepReport& report) { return report.converged && report.loose.empty(); }
+
 /// What moves, or why Newton's method failed.
 std::string reason_of(const solve::StepReport& report) {
   if (report.converged) return report.loose;
@@ -41,11 +43,26 @@ std::string reason_of(const solve::StepReport& report) {
 
 void run_to_the_end(Model& model) {
   Steps steps(model);
+  solve::StepReport last;
   while (steps.any()) {
-    const auto taken = steps.take();
-    SPREKK_CHECK(taken.report.converged, "{}: has no equilibrium with its own strength: {}", model.scene().origin,
-                 taken.report.reason);
+    last = steps.take().report;
+    if (!last.converged) break;
   }
+  SPREKK_CHECK(stands(last), "{}: found no equilibrium with its own strength: {}", model.scene().origin,
+               reason_of(last));
+}
+
+/// Leaves the model in the state before where there is no equilibrium.
+Reduction reduce(Model& model, const Scene& own, Real factor) {
+  try {
+    model.change(reduced(own, factor));
+  } catch (const Error& error) {  // the same on every rank: such joints are none
+    return {factor, false, 0, error.what()};
+  }
+  const auto report = model.find_equilibrium();
+  const bool held = stands(report);
+  if (report.converged && !held) model.take_back();
+  return {factor, held, report.newton_iterations, held ? "" : reason_of(report)};
 }
 
 }  // namespace
@@ -57,23 +74,20 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
   run_to_the_end(model);
   const Scene own = model.scene();
   FactorOfSafety found{.least = 1, .lost = {}, .reductions = {}};
-  const auto stands = [&](Real factor) {
-    model.change(reduced(own, factor));
-    const auto report = model.find_equilibrium();
-    const bool held = report.converged && report.loose.empty();
-    found.reductions.push_back({factor, held, report.newton_iterations, held ? "" : reason_of(report)});
+  const auto holds = [&](Real factor) {
+    found.reductions.push_back(reduce(model, own, factor));
     if (tell) tell(found.reductions.back());
-    return held;
+    return found.reductions.back().stands;
   };
   constexpr Real growth = 1.5;
   while (!found.lost && found.least < options.most)
-    if (const Real next = std::min(growth * found.least, options.most); stands(next))
+    if (const Real next = std::min(growth * found.least, options.most); holds(next))
       found.least = next;
     else
       found.lost = next;
   while (found.lost && *found.lost > (1 + options.tolerance) * found.least) {
     const Real middle = (found.least + *found.lost) / 2;
-    (stands(middle) ? found.least : *found.lost) = middle;
+    (holds(middle) ? found.least : *found.lost) = middle;
   }
   return found;
 }

@@ -123,13 +123,12 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
   }
 }
 
-Results::Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier)
+Results::Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier)
     : model_(model), directory_(std::move(directory)), probes_(model) {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
-  Scene scene = model_.scene();
   base::collectively(*comm, [&] {
-    const auto list = base::effective(scene, "Sprekk");
+    const auto list = base::effective(as_read, "Sprekk");
     if (comm->getRank() != 0) return;
     io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
     remove_unsettled(directory_);

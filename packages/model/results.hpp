@@ -31,7 +31,7 @@ struct EarlierResults {
 class Results {
  public:
   /// The steps of `earlier` stay, and those that were written after them go.
-  Results(Model& model, std::string directory, const std::optional<EarlierResults>& earlier = {});
+  Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier = {});
 
   /// The steps from number `begin` on, each with whether its fields were written and what probes saw; none on other
   /// ranks than 0. Stored data.

@@ -256,9 +256,10 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   Steps steps(*model);
   Checkpointing checkpoints(*model, steps, directory, log);
   if (!options.restart) checkpoints.start_anew();
+  const Scene as_read = model->scene();  // before it is brought to a stage
   std::optional<EarlierResults> earlier;
   if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
-  Results results(*model, directory, earlier);
+  Results results(*model, as_read, directory, earlier);
   const auto ending = take_steps(*model, steps, results, checkpoints, log, options.should_stop);
   tell_costs(*model, log);
   for (const auto& line : results.fracture_digest()) log.info("{}", line);

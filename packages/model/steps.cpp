@@ -88,7 +88,12 @@ bool Steps::begin_stages(Real t, bool also_now) {
   return n_begun_ > before;
 }
 
-void Steps::go_to_stage_at(Real t) { begin_stages(t, false); }
+void Steps::go_to_stage_at(Real t, bool begun) {
+  begin_stages(t, begun);
+  begun_before_ = begun;
+}
+
+bool Steps::is_at_begin_of_stage() const { return n_begun_ > 0 && is_close(stages_[n_begun_ - 1].time, model_.time()); }
 
 Real Steps::share_done() const {
   const auto& time = model_.scene().time;
@@ -97,7 +102,8 @@ Real Steps::share_done() const {
 }
 
 StepTaken Steps::take() {
-  const bool begins = begin_stages(model_.time(), true);
+  const bool begins = begin_stages(model_.time(), true) || begun_before_;
+  begun_before_ = false;
   StepTaken step;
   if (control_) {
     if (begins) change_course();

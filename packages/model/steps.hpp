@@ -37,8 +37,11 @@ class Steps {
   /// Takes the next step, and those that are rejected back. Where one fails or is stopped, so says the report.
   StepTaken take();
 
-  /// Brings the model to the stage at time t, of a model that is to be brought to a state there.
-  void go_to_stage_at(Real t);
+  /// Brings the model to the stage at time t, of a model that is to be brought to a state there; `begun`: if a stage
+  /// begins then, to that.
+  void go_to_stage_at(Real t, bool begun);
+  /// Whether the present stage begins at the present time: no step of it is taken.
+  bool is_at_begin_of_stage() const;
   /// The last stage that has begun; empty: none.
   std::string stage() const { return n_begun_ > 0 ? stages_[n_begun_ - 1].name : ""; }
 
@@ -60,6 +63,7 @@ class Steps {
   std::size_t next_ = 0;                       // of times_, that is ahead
   std::vector<StagedScene> stages_;            // by their times
   std::size_t n_begun_ = 0;                    // of them
+  bool begun_before_ = false;                  // the next step begins a stage, to which the model was brought
   std::optional<solve::StepControl> control_;  // of steps that are chosen
 };
 

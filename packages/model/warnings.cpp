@@ -55,12 +55,17 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
 std::vector<std::string> stages_after_the_end(const Scene& scene) {
   std::vector<std::string> all;
   const Real end = scene.time.times().back();
-  for (const auto& [name, stage] : scene.stages)
+  for (const auto& [name, stage] : scene.stages) {
+    const auto place = fmt::format("{}: Sprekk > Stages > {} > ", scene.origin, name);
     if (stage.time >= end)
-      all.push_back(
-          physics::implausible(fmt::format("{}: Sprekk > Stages > {} > \"time\"", scene.origin, name),
-                               fmt::format("is {:.6g} s, and the last step ends at {:.6g} s", stage.time, end),
-                               "the stage never begins", "let the run end later, or leave the stage out"));
+      all.push_back(physics::implausible(
+          place + "\"time\"", fmt::format("is {:.6g} s, and the last step ends at {:.6g} s", stage.time, end),
+          "the stage never begins", "let the run end later, or leave the stage out"));
+    else if (const Real released = stage.time + stage.release.value_or(0); released > end)
+      all.push_back(physics::implausible(
+          place + "\"release\"", fmt::format("lasts to {:.6g} s, and the last step ends at {:.6g} s", released, end),
+          "part of the forces is never let go", "let the run end later, or release in less time"));
+  }
   return all;
 }
 

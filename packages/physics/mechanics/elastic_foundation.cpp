@@ -4,6 +4,7 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -98,7 +99,7 @@ std::unique_ptr<assembly::Module> make_elastic_foundation(const mesh::Mesh& mesh
   assembly::Description foundation{
       "elastic foundation", fmt::format("{}, {}: {}", parameters.boundary, parameters.region, fmt::join(k, ", "))};
   foundation.linear = true;
-  foundation.holds_bodies = true;
+  foundation.holds_bodies = *std::max_element(k.begin(), k.end()) > 0;
   foundation.supports = supports(mesh, parameters);
   return mesh::for_shape(mesh.shape, [&](auto shape) {
     const auto mass = boundary_mass<shape()>(mesh, parameters);

@@ -422,6 +422,7 @@ std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Re
   });
   if (!known) return {};
   laws::Joint law;
+  law.strength = 1 / strength_reduction;
   set_part(law.friction, laws::FrictionKinds(), friction, *this, {});
   Slope slope{-std::numeric_limits<Real>::infinity(), true, 0};
   Real first = 0;

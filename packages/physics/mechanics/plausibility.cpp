@@ -233,7 +233,8 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
                      "that is next to nothing, and an angle in radians would be",
                      "write the unit, as in \"30 deg\" or \"0.52 rad\""});
   const Real phi = number(joint, "friction angle"),
-             slope = phi > 0 ? std::tan(phi * M_PI / 180) : number(joint, "friction coefficient");
+             friction = phi > 0 ? std::tan(phi * M_PI / 180) : number(joint, "friction coefficient"),
+             slope = friction / joint.strength_reduction;
   if (const Real dilation = number(joint, "dilation angle");
       joint.friction == "Coulomb" && slope > 0 && std::tan(dilation * M_PI / 180) > slope)
     all.push_back({"dilation angle", fmt::format("is {:.4g} degrees", dilation),

@@ -178,15 +178,17 @@ int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
   }
 }
 
-/// Contact of flat cells does not resist jumps that alternate along their long edges.
+/// Contact of flat cells does not resist jumps that alternate along their long edges. Where a face is shared by ranks it
+/// is not looked at.
 TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
+  const int most = Tpetra::getDefaultComm()->getSize() == 1 ? 15 : 20;
   for (const Real h : {1.0, 0.1, 0.01}) {
     const Layers layers(14, h);
     multigrid::Multigrid M(wrapped(layers.matrix),
                            multigrid::nodes_of(multigrid::node_matrix(*layers.bulk, 1), layers.ones, layers.places), 1,
                            layers.ones);
     M.setup(wrapped(layers.matrix), true);
-    EXPECT_LE(iterations(*layers.matrix, M), 15) << h;
+    EXPECT_LE(iterations(*layers.matrix, M), most) << h;
   }
 }
 

@@ -62,7 +62,7 @@ TEST(FactorOfSafety, Refuses) {
     return "";
   };
   EXPECT_THAT(message({"Materials.joint.friction angle=20", "Mesh.cells={4, 4}"}),
-              testing::HasSubstr("has no equilibrium with its own strength"));
+              testing::HasSubstr("found no equilibrium with its own strength"));
   EXPECT_THAT(message({"Materials.joint.strength reduction factor=0"}), testing::HasSubstr("must be positive"));
 }
 
