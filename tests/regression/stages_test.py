@@ -3,7 +3,9 @@
 import csv
 import json
 import math
+import signal
 import subprocess
+import time
 import xml.etree.ElementTree as ET
 
 import program
@@ -194,6 +196,32 @@ class Stages(ProgramTest):
                     sets = [word for option in [*options, f"Time.schedule={{{whole}}}"] for word in ("--set", option)]
                     self.call("run", scene, "--output", "parts", "--restart", *sets, ranks=ranks)
                     self.expect_same_bits("whole", "parts")
+
+    def test_stopped_in_the_first_step_of_a_stage(self):
+        """Which takes long, for more iterations are needed than are allowed there; the run goes on with enough of them."""
+        scene = ["Mesh.cells={150, 150}", "Time.maximum halvings=20", "Output.checkpoints.steps=10", "Stages.s.time=3",
+                 "Stages.s.Materials.joint.friction coefficient=0.2", "Time.schedule={1, 2, 3, 4}"]
+        def words(options, *more):
+            sets = [word for option in (*scene, *options) for word in ("--set", option)]
+            return ["run", self.scene(CYCLIC), *sets, *more]
+        slow = ["Stages.s.Solver.maximum iterations=1"]
+        run = subprocess.Popen([str(program.PROGRAM), *map(str, words(slow, "--output", "parts"))], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        while not (self.folder / "parts/bulk_0002.pvtu").exists():  # of the last step before
+            self.assertIsNone(run.poll())
+            time.sleep(0.01)
+        time.sleep(0.3)
+        run.send_signal(signal.SIGTERM)
+        self.assertIn("interrupted after the step to t = 3;", run.stderr.read())
+        self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 4)
+        self.call(*words([], "--output", "parts", "--restart"))
+        self.call(*words([], "--output", "whole"))
+        self.assertEqual(self.results("parts")["steps"], self.results("whole")["steps"])
+        self.assertEqual(self.results("parts")["stages"], self.results("whole")["stages"])
+        self.assertEqual((self.folder / "parts/effective_input.xml").read_text(), (self.folder / "whole/effective_input.xml").read_text())
 
     def test_restart_into_changed_stages(self):
         """Later stages may be others; what has been may not, and the message says how to change it."""
