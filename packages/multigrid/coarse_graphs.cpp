@@ -83,7 +83,7 @@ Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
   nodes.contact_edge.resize(nodes.free.size(), 0);
   std::vector<LocalIndex> neighbour_of(graph.n_rows(), -1);
   std::vector<std::size_t> contact;  // entries of a row
-  std::array<double, 2> here{};      // sum of squares, number
+  std::array<double, 3> here{};      // sum of squares, number, nodes in contact
   for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
     neighbour_of[i] = i;
     for (std::size_t k = start[i]; k < start[i + 1]; ++k) neighbour_of[neighbour[k]] = i;
@@ -95,6 +95,7 @@ Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
       contact.push_back(e);
       out = out || far[e];
     }
+    here[2] += !contact.empty();
     Real& edge = nodes.contact_edge[i];
     if (out) {
       for (const std::size_t e : contact) nodes.weak[e] = true;
@@ -108,7 +109,8 @@ Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
     }
   }
   const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
-  return all[1] > 0 ? std::sqrt(all[0] / all[1]) : 0;
+  constexpr Real few = 0.1;  // as slivers of networks are
+  return all[1] > few * all[2] ? std::sqrt(all[0] / all[1]) : 0;
 }
 
 }  // namespace sprekk::multigrid

@@ -53,7 +53,7 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 /// resist them. Contact is what couples free nodes of this rank that are no neighbours. Puts the shortest edge of such
 /// nodes into `nodes.contact_edge`, that of a finer level where there is one, and 0 of all others; returns how flat
 /// cells are at nodes that are left out now and were not on the finer level: the distance of their nearest neighbour
-/// over that edge, the root of the mean square; 0 without any. Collective.
+/// over that edge, the root of the mean square; 0 if they are less than a tenth of those in contact. Collective.
 Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes);
 
 }  // namespace sprekk::multigrid
