@@ -126,7 +126,7 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
     if (speaks)
       fmt::print("{:<14.10g} {}\n", one.factor,
                  one.stands ? fmt::format("equilibrium after {} Newton iterations", one.iterations)
-                            : "no equilibrium: " + one.reason);
+                            : "none found: " + one.reason);
     std::fflush(stdout);
   });
   if (!speaks) return;

@@ -145,7 +145,7 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   return draft;
 }
 
-/// So that none fails when its time has come.
+/// So that no entry of a stage is found wrong when its time has come.
 void Model::check_stages() const {
   const Scene* before = &scene_;
   const auto stages = staged_scenes(scene_);
