@@ -224,7 +224,12 @@ class Module {
   virtual void start_step(const State& state) {}
   /// Moves the histories on to `state`.
   virtual void commit(State& state) const {}
-  /// Called where a system takes over the state of another one, with what is out of balance there, [field](owned row),
+  /// Appends histories, of owned entities, that the module of this name in another system goes on from where that takes
+  /// over `state`, in place of this one's own of the same names.
+  virtual void pass_on(const State& state, std::vector<std::pair<History, View<Real**>>>& histories) const {}
+  /// Called where a system has taken over the state and the histories of another one.
+  virtual void take_over(State& state) const {}
+  /// Called after that, with what is out of balance there, [field](owned row),
   /// zero in rows of prescribed unknowns.
   virtual void take_unbalanced(State& state, const Rows& residual) const {}
   /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a

@@ -449,10 +449,8 @@ BlockVector System::initial() const {
 std::vector<std::pair<fields::Field, View<Real**>>> System::histories(bool rates) const {
   std::vector<std::pair<fields::Field, View<Real**>>> all;
   for (std::size_t m = 0; m < modules_.size(); ++m)
-    for (std::size_t h = 0; h < history_[m].size(); ++h) {
-      const auto& declared = declarations_[m].history[h];
-      all.push_back({{history_name(m, declared), declared.entity, declared.n_components, ""}, history_[m][h]});
-    }
+    for (std::size_t h = 0; h < history_[m].size(); ++h)
+      all.emplace_back(history_field(m, declarations_[m].history[h]), history_[m][h]);
   for (std::size_t b = 0; b < gains_.size(); ++b) {
     const auto& field = layouts_[b].field();
     if (gains_[b].extent(0) > 0)
@@ -463,8 +461,31 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::histories(bool rates
   return all;
 }
 
+fields::Field System::history_field(std::size_t module, const History& history) const {
+  return {history_name(module, history), history.entity, history.n_components, ""};
+}
+
 std::string System::history_name(std::size_t module, const History& history) const {
   return modules_[module]->name() + ": " + history.name;
+}
+
+std::vector<std::pair<fields::Field, View<Real**>>> System::passed_on(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  std::vector<std::pair<fields::Field, View<Real**>>> all;
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    std::vector<std::pair<History, View<Real**>>> histories;
+    modules_[m]->pass_on(state(static_cast<int>(m)), histories);
+    for (const auto& [history, values] : histories) all.emplace_back(history_field(m, history), values);
+  }
+  return all;
+}
+
+void System::take_over(const BlockVector& x) {
+  refresh_ghosts(x, false);
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    auto s = state(static_cast<int>(m));
+    modules_[m]->take_over(s);
+  }
 }
 
 void System::resume(const BlockVector& x, const Memory& memory) {

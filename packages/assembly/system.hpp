@@ -81,7 +81,12 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
-  /// Lets modules know what is out of balance at x, which comes with its histories from another system. Collective.
+  /// What modules pass on to those of a system that goes on from x in this one's place, by the names of histories().
+  /// Collective.
+  std::vector<std::pair<fields::Field, View<Real**>>> passed_on(const fields::BlockVector& x);
+  /// Lets modules take over x and the histories, which come from another system; before resume(). Collective.
+  void take_over(const fields::BlockVector& x);
+  /// Lets modules know what is out of balance at x after that. Collective.
   void tell_unbalanced(const fields::BlockVector& x);
 
   /// From now on each commit finds what its step errs in; to be called at the initial state. Collective.
@@ -133,6 +138,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void find_errors(const fields::BlockVector& x);
   void resume_errors(const fields::BlockVector& x, const std::vector<Real>& memory);
   fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
+  fields::Field history_field(std::size_t module, const History& history) const;
   std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;

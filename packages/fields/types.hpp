@@ -5,6 +5,7 @@
 #include "base/types.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Export.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
@@ -20,6 +21,7 @@ using MultiVector = Tpetra::MultiVector<Real, LocalIndex, GlobalIndex>;
 using CrsGraph = Tpetra::CrsGraph<LocalIndex, GlobalIndex>;
 using CrsMatrix = Tpetra::CrsMatrix<Real, LocalIndex, GlobalIndex>;
 using Import = Tpetra::Import<LocalIndex, GlobalIndex>;
+using Export = Tpetra::Export<LocalIndex, GlobalIndex>;
 using Operator = Tpetra::Operator<Real, LocalIndex, GlobalIndex>;
 
 /// One vector per block, in the order of the blocks.

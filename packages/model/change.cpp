@@ -65,12 +65,14 @@ std::string difference(const Teuchos::ParameterList& before, const Teuchos::Para
   return fmt::format("is {}, was {}", text(after), text(before));
 }
 
-/// Of the rock of regions: which material it is may change, as long as the entries of both agree.
+/// Of the rock of regions: which material it is may change, as long as the entries of both agree. What fills a region
+/// that was excavated is any.
 void compare_rock(const Scene& before, const Scene& after, const std::set<std::string>& fixed,
                   std::vector<std::string>& lines) {
   std::set<std::string> regions = {"bulk"};
   for (const auto* scene : {&before, &after})
     for (const auto& region : scene->regions) regions.insert(region.first);
+  for (const auto& region : before.excavated()) regions.erase(region);
   for (const auto& region : regions) {
     auto old = before.material_of(region), now = after.material_of(region);
     for_fixed(base::effective(old, ""), base::effective(now, ""), fixed, "",
@@ -90,22 +92,24 @@ void compare_places(const std::string& what, const std::map<std::string, Place>&
                                   fields::name_of(old->second.entity)));
 }
 
-/// The values of a field, [owned entity, component], from one mesh to another that has part of its entities.
-void carry(const fields::Field& field, const mesh::Mesh& from, const View<Real**>& values, const mesh::Mesh& to,
-           const View<Real**>& carried) {
-  fields::Vector old(fields::whole_map(field, from)), now(fields::whole_map(field, to));
-  const auto entries = [&](fields::Vector& vector) {
-    const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
-    return View<Real**>(local.data(), local.extent(0) / field.n_components, field.n_components);
-  };
-  Kokkos::deep_copy(entries(old), values);
-  now.doImport(old, fields::Import(old.getMap(), now.getMap()), Tpetra::REPLACE);
-  Kokkos::deep_copy(carried, entries(now));
-}
-
 View<Real**> entries(fields::Vector& vector, int n_components) {
   const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
   return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
+}
+
+/// The values of a field, [owned entity, component], from one part of a mesh to another one. Entities that only the
+/// latter has keep theirs.
+void carry(const fields::Field& field, const mesh::Mesh& whole, const mesh::Mesh& from, const View<Real**>& values,
+           const mesh::Mesh& to, const View<Real**>& carried) {
+  const int n = field.n_components;
+  fields::Vector old(fields::whole_map(field, from)), now(fields::whole_map(field, to)),
+      all(fields::owned_map(field, whole));
+  Kokkos::deep_copy(entries(old, n), values);
+  Kokkos::deep_copy(entries(now, n), carried);
+  for (const auto* part : {&now, &old})
+    all.doExport(*part, fields::Export(part->getMap(), all.getMap()), Tpetra::REPLACE);
+  now.doImport(all, fields::Import(all.getMap(), now.getMap()), Tpetra::REPLACE);
+  Kokkos::deep_copy(carried, entries(now, n));
 }
 
 }  // namespace
@@ -127,11 +131,6 @@ std::vector<std::string> refused_changes(const Scene& before, const Scene& after
     lines.push_back(fmt::format("{} > \"{}\": {}", path, name, difference(a, b, name)));
   });
   compare_rock(before, after, fixed, lines);
-  for (const auto& [name, region] : before.regions)
-    if (const auto found = after.regions.find(name);
-        region.excavated && (found == after.regions.end() || !found->second.excavated))
-      lines.push_back(
-          fmt::format("Regions > {} > \"excavated\": was true; what is taken away cannot be put back", name));
   physics::for_each_physics([&](auto physics) {
     for (const auto& line : physics.refuses_change(before, after)) lines.push_back(line);
   });
@@ -168,17 +167,20 @@ std::vector<std::string> misfits(const Storage& before, const Storage& after) {
   return lines;
 }
 
-void carry_over(const assembly::System& from, const fields::BlockVector& x, assembly::System& to,
+void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::BlockVector& x, assembly::System& to,
                 fields::BlockVector& carried) {
   const auto &old_mesh = from.mesh(), &mesh = to.mesh();
   for (std::size_t b = 0; b < carried.size(); ++b)
     for (std::size_t o = 0; o < x.size(); ++o)
       if (const auto& field = to.layouts()[b].field(); from.layouts()[o].field().name == field.name)
-        carry(field, old_mesh, entries(*x[o], field.n_components), mesh, entries(*carried[b], field.n_components));
-  const auto histories = from.histories();
+        carry(field, whole, old_mesh, entries(*x[o], field.n_components), mesh,
+              entries(*carried[b], field.n_components));
+  auto kept = from.histories();
+  for (auto& passed : from.passed_on(x)) kept.push_back(std::move(passed));
   for (const auto& [field, values] : to.histories())
-    for (const auto& [old, old_values] : histories)
-      if (old.name == field.name) carry(field, old_mesh, old_values, mesh, values);
+    for (const auto& [old, old_values] : kept)
+      if (old.name == field.name) carry(field, whole, old_mesh, old_values, mesh, values);
+  to.take_over(carried);
   const auto before = from.memory();
   auto memory = to.memory();
   memory.t = before.t;

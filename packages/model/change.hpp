@@ -31,9 +31,9 @@ Storage storage_of(const std::vector<std::unique_ptr<assembly::Module>>& modules
 /// Why a state cannot go from one storage to another, a line each. Histories may begin, and fields at crack tips end.
 std::vector<std::string> misfits(const Storage& before, const Storage& after);
 
-/// Unknowns and histories of one system, by the numbers of their entities, in another, whose entities are among those
-/// of the first. What is new there is as it is at the start. The next step is one of implicit Euler. Collective.
-void carry_over(const assembly::System& from, const fields::BlockVector& x, assembly::System& to,
+/// Unknowns and histories of one system, by the numbers of their entities, in another; the meshes of both are parts of
+/// `whole`. What is new there is as it is at the start. The next step is one of implicit Euler. Collective.
+void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::BlockVector& x, assembly::System& to,
                 fields::BlockVector& carried);
 
 }  // namespace sprekk::model

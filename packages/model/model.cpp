@@ -114,7 +114,7 @@ Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
   return draft;
 }
 
-std::unique_ptr<assembly::System> Model::make_system(Draft draft) {
+std::unique_ptr<assembly::System> Model::make_system(Draft draft) const {
   const auto& scene = draft.scene;
   const auto mesh = draft.mesh;
   const auto conditions =
@@ -139,10 +139,27 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   for (const auto& line : misfits(prepared, physics::names_of(*whole_mesh_))) errors.push_back(line);
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
+  physics::for_each_physics([&](auto physics) { physics.prepare_change(before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
+  std::vector<std::string> lines;
+  physics::for_each_physics([&](auto physics) {
+    for (auto& line : physics.refuses_change_in(*draft.mesh, before, draft.scene)) lines.push_back(std::move(line));
+  });
+  refuse(lines);
   auto now = drafted(before);  // modules tell their storage before they are bound
   refuse(misfits(storage_of(now.modules, *now.mesh), storage_of(draft.modules, *draft.mesh)));
   return draft;
+}
+
+/// Throws what is wrong with conditions where they meet, or with expressions.
+void Model::check_start(Draft draft, const StagedScene& stage) const {
+  try {
+    make_system(std::move(draft))->set_time(stage.time, 0);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    throw Error(text.rfind(stage.draft.value.origin, 0) == 0 ? text
+                                                             : fmt::format("stage \"{}\": {}", stage.name, text));
+  }
 }
 
 /// So that no entry of a stage is found wrong when its time has come.
@@ -151,7 +168,8 @@ void Model::check_stages() const {
   const auto stages = staged_scenes(scene_);
   for (const auto& stage : stages) {
     base::throw_errors(stage.draft.report.errors);
-    drafted_change(*before, stage.draft.value);
+    auto draft = drafted_change(*before, stage.draft.value);
+    if (stage.time < scene_.time.times().back()) check_start(std::move(draft), stage);
     before = &stage.draft.value;
   }
 }
@@ -163,7 +181,7 @@ void Model::change(const Scene& changed) {
   auto scene = draft.scene;
   auto system = make_system(std::move(draft));
   auto x = system->initial();
-  carry_over(*system_, x_, *system, x);
+  carry_over(*whole_mesh_, *system_, x_, *system, x);
   system->tell_unbalanced(x);
   scene_ = std::move(scene);
   stepper_.reset();

@@ -19,6 +19,8 @@
 
 namespace sprekk::model {
 
+struct StagedScene;
+
 /// Modules of a host for a rank's part of the mesh; called on every rank, must not communicate.
 using ModuleFactory = std::function<std::vector<std::unique_ptr<assembly::Module>>(const mesh::Mesh&)>;
 
@@ -96,7 +98,8 @@ class Model {
   Draft drafted(Scene scene, const std::string& unheld = "") const;
   Draft drafted_change(const Scene& before, const Scene& changed) const;
   void check_stages() const;
-  std::unique_ptr<assembly::System> make_system(Draft draft);
+  void check_start(Draft draft, const StagedScene& stage) const;
+  std::unique_ptr<assembly::System> make_system(Draft draft) const;
 
   /// What a step begins with.
   struct Beginning {

@@ -58,6 +58,10 @@ void Stage::describe(base::Section& s) {
           "paths of sections and entries that are no longer there: Boundary conditions > pull");
   s.entry(excavate, "excavate", "-",
           "regions that are taken away: their walls are boundaries by the same names, and fractures end there");
+  s.entry(
+      backfill, "backfill", "-",
+      "regions that were taken away and are filled now, with the materials that \"Regions\" names: free of stress as "
+      "they are placed");
   s.entry(release, "release", "s", base::positive(),
           "time over which forces that are out of balance when the stage begins are let go, in proportion to the time; "
           "absent: they are in its first step");
@@ -94,6 +98,13 @@ std::vector<StagedScene> staged_scenes(const Scene& scene) {
         errors.push_back(fmt::format("{}: \"without\": {}", origin, why));
     merge(stage.changes, list);
     for (const auto& region : stage.excavate) list.sublist("Regions").sublist(region).set("excavated", true);
+    for (const auto& region : stage.backfill) {
+      auto& entries = list.sublist("Regions").sublist(region);
+      if (!entries.isType<bool>("excavated") || !entries.get<bool>("excavated"))
+        errors.push_back(
+            fmt::format("{}: \"backfill\": names \"{}\", which is not excavated at this time", origin, region));
+      entries.set("excavated", false);
+    }
     if (stage.release) {
       const std::array<Real, 2> times = {stage.time, stage.time + *stage.release};
       list.sublist("Bulk").set("release", Teuchos::Array<Real>(times.begin(), times.end()));

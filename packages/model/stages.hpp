@@ -16,6 +16,7 @@ struct Stage {
   Real time = 0;
   std::vector<std::string> without;   ///< sections that end, "Boundary conditions > pull"
   std::vector<std::string> excavate;  ///< regions whose cells are taken away
+  std::vector<std::string> backfill;  ///< regions whose cells are put back
   std::optional<Real> release;        ///< how long what is out of balance at first takes to act, s; absent: it acts at
                                       ///< once
   Teuchos::ParameterList changes;     ///< sections as they stand in the scene

@@ -112,6 +112,12 @@ struct Physics {
   static std::vector<std::string> fixed_entries() { return {}; }
   /// Why a live model cannot follow a change of its scene, a line for each reason that fixed_entries() do not tell.
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after) { return {}; }
+  /// The same on the mesh of the changed scene. Collective.
+  static std::vector<std::string> refuses_change_in(const mesh::Mesh&, const Scene& before, const Scene& after) {
+    return {};
+  }
+  /// Takes over from a scene into one that a live model goes on with what is no entry.
+  static void prepare_change(const Scene& before, Scene& after) {}
   /// Reports what does not fit together.
   static void compare(Comparison&) {}
   /// The same of conditions on a mesh that has all of their names; not collective.

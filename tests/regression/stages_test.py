@@ -257,7 +257,12 @@ class Stages(ProgramTest):
                 (["Stages.s.time=2", "Stages.s.Fractures.material=other"],
                  'Sprekk > Stages > s > Fractures > "material": a stage changes that of fractures by their names'),
                 (["Stages.s.time=2", "Stages.s.Materials.rock.shear modulus=2"],
-                 'stage "s": the rock of "bulk": "shear modulus": is 2, was 1; a live model cannot follow this'),
+                 'stage "s": the rock of "bulk" gets other elastic constants, and the fracture "fracture" meets it; that can only happen'),
+                (["Stages.s.time=2", "Stages.s.backfill={bulk}"],
+                 'stage "s": "backfill": names "bulk", which is not excavated at this time'),
+                (["Stages.s.time=2", "Stages.s.Boundary conditions.other.boundary=north",
+                  "Stages.s.Boundary conditions.other.displacement={1, 1}"],
+                 'stage "s": boundary conditions "moved" and "other" prescribe'),
                 (["Stages.s.time=2", "Stages.s.excavate={galery}"], 'stage "s": Sprekk > Regions > "galery": is "galery", must be one of'),
                 (["Stages.s.time=2", "Stages.s.Flow.viscosity=1e-3"], 'stage "s": Sprekk > Materials > rock > "permeability": missing'),
                 (["Stages.s.time=2", "Stages.s.excavate={bulk}"], "all cells of the mesh would be excavated"),
@@ -435,6 +440,86 @@ class Stages(ProgramTest):
                 self.assertGreater(max(v[0] for v in values) - min(v[0] for v in values), 1e5)
                 before, after = (step["inflows"]["gallery"] for step in steps[-2:])
                 self.assertAlmostEqual(after, before, delta=0.02 * abs(before))
+
+    LOWER, UPPER, STIFFER = (10e9, 0.25), (4e9, 0.2), (30e9, 0.3)  # Young's moduli and Poisson's ratios
+
+    def column(self, cell, order):
+        """Rock of height 1 under a region "upper" of height 2, on rollers; what is pressed is on top."""
+        dim = 2 if cell in ("triangle", "quadrilateral") else 3
+        up, sides = dim - 1, ("west", "east", "south", "north")[:2 * (dim - 1)]
+        bottom, top = (("south", "north"), ("bottom", "top"))[dim - 2]
+        fixed = lambda axis: ["0" if k == axis else "free" for k in range(dim)]
+        rollers = {side: {"boundary": side, "displacement": fixed(k // 2)} for k, side in enumerate(sides)}
+        upper = {"lower corner": [0.0] * up + [1.0], "upper corner": [1.0] * up + [3.0]}
+        return {
+            "Mesh": {"cells": [2] * up + [6], "lower corner": [0.0] * dim, "upper corner": [1.0] * up + [3.0], "cell": cell,
+                     "order": order, "regions": {"upper": upper}},
+            "Materials": {name: {"type": "elastic", "Young's modulus": E, "Poisson's ratio": nu}
+                          for name, (E, nu) in (("lower", self.LOWER), ("fill", self.UPPER), ("stiffer", self.STIFFER))},
+            "Bulk": {"material": "lower"}, "Regions": {"upper": {"excavated": True}},
+            "Boundary conditions": {**rollers, "ground": {"boundary": bottom, "displacement": fixed(up)},
+                                    "load": {"boundary": "upper", "confining pressure": "2e6"}},
+            "Probes": {name: {"point": [0.5] * up + [z], "outputs": ["displacement", "stress"]}
+                       for name, z in (("low", 0.45), ("face", 1.0), ("high", 2.95), ("top", 3.0))},
+            "Stages": {"fill": {"time": 1.0, "backfill": ["upper"], "without": ["Boundary conditions > load"],
+                                "Regions": {"upper": {"material": "fill"}},
+                                "Boundary conditions": {"more": {"boundary": top, "confining pressure": "t < 1.5 ? 0 : t < 3.5 ? 5e6 : 9e6"}}},
+                       "grout": {"time": 3.0, "Regions": {"upper": {"material": "stiffer"}}, "Bulk": {"material": "fill"}}},
+            "Time": {"schedule": [1.0, 1.25, 2.0, 3.0, 3.25, 4.0]}, "Output": {"vtu": False}}
+
+    def test_fill_and_other_constants(self):
+        """A column that is pressed, unloaded while it is filled, then pressed on the fill, then of other rock: fills are
+        free of stress where they are placed, and stress goes on where constants change. Exact in 2D and 3D, in cells of
+        both orders, on several ranks, and through a restart."""
+        modulus = lambda rock: rock[0] * (1 - rock[1]) / ((1 + rock[1]) * (1 - 2 * rock[1]))
+        lower, fill, stiffer = (modulus(rock) for rock in (self.LOWER, self.UPPER, self.STIFFER))
+        # at the face and on top: 2 MPa on the rock; unloaded; 5 MPa on the fill, twice; other constants; 9 MPa
+        face = [-2e6 / lower, 0, -5e6 / lower, -5e6 / lower, -5e6 / lower, -5e6 / lower - 4e6 / fill]
+        top = [math.nan] + [u - face[0] - 2 * s for u, s in zip(face[1:], (0, 5e6 / fill, 5e6 / fill, 5e6 / fill, 5e6 / fill + 4e6 / stiffer))]
+        pressed = [2e6, 0, 5e6, 5e6, 5e6, 9e6]
+        for cell, order, ranks in (("triangle", 1, 1), ("triangle", 2, 3), ("quadrilateral", 1, 3), ("tetrahedron", 1, 3),
+                                   ("tetrahedron", 2, 1), ("hexahedron", 1, 1), ("hexahedron", 2, 3)):
+            with self.subTest(cell=cell, order=order, ranks=ranks):
+                values = self.column(cell, order)
+                up = len(values["Mesh"]["cells"]) - 1
+                scene = self.write(values)
+                self.run_scene(scene, "Output.checkpoints.steps=1", ranks=ranks)
+                for name, exact in (("face", face), ("top", top)):
+                    for row, u in zip(self.probe(name)[-6:], exact):
+                        self.assertAlmostEqual(float(row[1 + up]), u, delta=1e-9 * abs(face[-1])) if u == u else self.assertEqual(row[1 + up], "nan")
+                for name in ("low", "high"):
+                    for row, p in list(zip(self.probe(name)[-6:], pressed))[name == "high":]:
+                        stress = [float(v) for v in row[2 + up:]]
+                        self.assertAlmostEqual(stress[(1, 2)[up - 1]], -p, delta=10)
+                self.run_scene(scene, "Output.checkpoints.steps=1", "Time.schedule={1, 1.25, 2, 3, 3.25}", ranks=ranks, output="parts")
+                self.call("run", scene, "--output", "parts", "--restart", "--set", "Output.checkpoints.steps=1", ranks=ranks)
+                self.expect_same_bits("out", "parts")
+
+    def test_springs_count_from_their_stage(self):
+        """A gallery under equal stress from all sides, with a lining of springs when half of it is released: these share
+        the other half, p = k (u(end) - u(half)), u = (P - p)/(2 G) at a wall of radius 1; then softer ones, which change
+        nothing, and stiffer ones that see what is released after them."""
+        P, k = 10e6, 8e9
+        values = self.gallery(8)
+        held = P * k / (2 * G) / 2 / (1 + k / (2 * G))  # by springs at the end
+        values["Bulk"]["initial stress"] = [-P, -P, 2 * NU * -P, 0.0]
+        share = "max(min(t - 1, 1), 0)"
+        values["Expressions"] = {"r2": "x^2 + y^2", **{f"u{a}": f"-(t <= 1 ? 0 : t <= 2 ? {P}*(t - 1)/2 : {P - held})/(2*{G})*{a}/r2" for a in "xy"}}
+        del values["Stages"]["excavation"]["release"]
+        values["Stages"]["excavation"]["release"] = 2.0
+        values["Stages"]["lining"] = {"time": 2.0, "Boundary conditions": {"lining": {"boundary": "gallery", "foundation stiffness": [k, k]}}}
+        values["Stages"]["softer"] = {"time": 4.0, "Boundary conditions": {"lining": {"foundation stiffness": [k / 3, k / 2]}}}
+        values["Time"] = {"schedule": [1.0, 2.0, 3.0, 5.0]}
+        for ranks in (1, 3):
+            with self.subTest(ranks=ranks):
+                self.run_scene(self.write(values), ranks=ranks)
+                for name in ("wall 0", "wall 2"):
+                    half, end, _, softer = ([float(v) for v in row[1:]] for row in self.probe(name)[-4:])
+                    x = [math.cos(math.pi / 8 * int(name[-1])), math.sin(math.pi / 8 * int(name[-1]))]
+                    for i in range(2):
+                        self.assertAlmostEqual(half[i], -P / 2 / (2 * G) * x[i], delta=1e-3 * P / (2 * G))
+                        self.assertAlmostEqual(end[i], -(P - held) / (2 * G) * x[i], delta=1e-3 * P / (2 * G))
+                        self.assertAlmostEqual(softer[i], end[i], delta=1e-9 * P / (2 * G))
 
     def test_end_does_not_depend_on_steps(self):
         """Where nothing slips: at once, in one step and in five."""

@@ -5,21 +5,30 @@
 
 namespace sprekk::laws {
 
-/// A cohesion c in shear that neither slip nor opening uses up: the bound is c + that of friction as long as the faces
-/// touch. No tension.
+/// A cohesion c in shear that slip does not use up: the bound is c + that of friction as long as the faces touch, and
+/// c (1 - o/o_0) with the separation o = w_n - g below o_0. No tension. With o_0 = 0 a face that opens loses c at once,
+/// and there may be no state in which it either touches or is open.
 struct ConstantBond {
-  Real shear = 0;  ///< c, Pa
+  Real shear = 0;    ///< c, Pa
+  Real opening = 0;  ///< o_0, m
 
   static constexpr const char *name = "constant cohesion",
                               *meaning = "shear strength of faces that touch, whatever they have slipped; no tension";
   static std::vector<Parameter<ConstantBond>> parameters() {
-    return {{&ConstantBond::shear,
-             Entry{"cohesion", "Pa", base::at_least(0), "c: what the bond adds to the bound on the shear traction"}}};
+    return {
+        {&ConstantBond::shear,
+         Entry{"cohesion", "Pa", base::at_least(0), "c: what the bond adds to the bound on the shear traction"}},
+        {&ConstantBond::opening, Entry{"opening without cohesion", "m", base::at_least(0),
+                                       "o_0: faces that part lose c in proportion to their opening up to this; 0: "
+                                       "at once, after which there may be no equilibrium where some would just open"}
+                                     .or_else(0)}};
   }
 
   template <class T>
-  KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>&) const {
-    return {T(shear), T(0), T(0), true};
+  KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
+    if (!(at.separation > 0)) return {T(shear), T(0), T(0), !(opening > 0)};
+    if (!(at.separation < opening)) return {};
+    return {T(shear * (1 - at.separation / opening)), T(0), T(0), false};
   }
 };
 

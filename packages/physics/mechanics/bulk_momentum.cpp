@@ -43,6 +43,8 @@ class BulkMomentum final : public assembly::Module {
     d.outputs = {{{"displacement", "m", fields::Entity::node, dim}, [this](const auto& s) { return displacements(s); }},
                  {{"stress", "Pa", fields::Entity::cell, 6}, [this](const auto& s) { return stresses(s); }}};
     d.linear = true;
+    if (parameters_.keeps_stress)
+      d.history = {{forces_of_cells, fields::Entity::cell, n * dim}, {stress_of_cells, fields::Entity::cell, 6}};
     return d;
   }
 
@@ -58,32 +60,63 @@ class BulkMomentum final : public assembly::Module {
     cells_ = std::make_unique<Assembler>(context, Loop::cells, std::vector<int>{displacement_},
                                          std::vector<int>{displacement_}, Assembler::Positions::once);
     if (has_load()) load_ = assembly::Load(context.layout(displacement_).n_owned());
+    if (!parameters_.keeps_stress) return;
+    carried_ = assembly::Load(context.layout(displacement_).n_owned());
+    all_cells_.emplace(fields::Field{forces_of_cells, fields::Entity::cell, n * dim, "N"}, *mesh_);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     cells_->add_residual(*op_, state, r);
-    if (!has_load()) return;
-    load_.add_to(r[displacement_], -1);
+    if (has_load()) load_.add_to(r[displacement_], -1);
+    if (parameters_.keeps_stress) carried_.add_to(r[displacement_]);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     cells_->add_jacobian(*op_, state, J);
   }
 
-  bool constant_load() const override {
-    const auto& all = parameters_.tractions;
-    return parameters_.body_force.constant_in_time() &&
-           std::all_of(all.begin(), all.end(), [](const auto& traction) { return traction.constant_in_time(); });
-  }
+  bool constant_load() const override { return !parameters_.keeps_stress && has_constant_loads(); }
 
   void set_time(Real t, const assembly::Scales&) override {
-    if (!has_load() || (loaded_ && constant_load())) return;
+    if (!has_load() || (loaded_ && has_constant_loads())) return;
     load_.set([&](const auto& rows) {
       add_body_force(t, rows);
       add_initial_stress(rows);
       for (const auto& traction : parameters_.tractions) add_traction(traction, t, rows);
     });
     loaded_ = true;
+  }
+
+  /// Forces of cells that are carried, on their nodes.
+  void start_step(const assembly::State& state) override {
+    if (!parameters_.keeps_stress) return;
+    fields::Vector owned(all_cells_->owned()), all(all_cells_->ghosted());
+    Kokkos::deep_copy(values_of(owned), state.history[0]);
+    all.doImport(owned, *all_cells_->import(), Tpetra::REPLACE);
+    const auto forces = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values_of(all));
+    carried_.set([&](const auto& rows) {
+      for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < dim; ++i)
+            add(rows, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, forces(c, a * dim + i));
+    });
+  }
+
+  void pass_on(const assembly::State& state,
+               std::vector<std::pair<assembly::History, View<Real**>>>& histories) const override {
+    const View<Real**> forces("forces of cells", mesh_->n_owned_cells, n * dim),
+        stress("stress of cells", mesh_->n_owned_cells, 6);
+    if (parameters_.keeps_stress) {
+      Kokkos::deep_copy(forces, state.history[0]);
+      Kokkos::deep_copy(stress, state.history[1]);
+    }
+    add_constitutive(1, state, forces, stress);
+    histories.push_back({{forces_of_cells, fields::Entity::cell, n * dim}, forces});
+    histories.push_back({{stress_of_cells, fields::Entity::cell, 6}, stress});
+  }
+
+  void take_over(assembly::State& state) const override {
+    if (parameters_.keeps_stress) add_constitutive(-1, state, state.history[0], state.history[1]);
   }
 
   /// Largest traction, and largest body force at nodes times the size of the whole domain.
@@ -119,6 +152,14 @@ class BulkMomentum final : public assembly::Module {
     return values;
   }
   std::vector<Real> stresses(const assembly::State& state) const {
+    auto values = constitutive_stresses(state);
+    if (!parameters_.keeps_stress) return values;
+    const auto carried = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] += carried(k / 6, k % 6);
+    return values;
+  }
+  /// Without what is carried.
+  std::vector<Real> constitutive_stresses(const assembly::State& state) const {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
     const auto q = tip_displacement_ < 0
                        ? u
@@ -132,6 +173,34 @@ class BulkMomentum final : public assembly::Module {
     return values;
   }
 
+  /// Adds `factor` times the forces on the nodes of owned cells, and their stress, by the present constants.
+  void add_constitutive(Real factor, const assembly::State& state, const View<Real**>& forces,
+                        const View<Real**>& stress) const {
+    const auto op = *op_;
+    const LocalIndex n_owned = mesh_->n_owned_cells;
+    cells_->for_each(
+        op, state, KOKKOS_LAMBDA(int cell, const Real(&x)[n * dim]) {
+          if (cell >= n_owned) return;
+          Real f[n * dim];
+          op.residual(cell, x, f);
+          for (int k = 0; k < n * dim; ++k) forces(cell, k) += factor * f[k];
+        });
+    const auto on_host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), stress);
+    const auto values = constitutive_stresses(state);
+    for (std::size_t k = 0; k < values.size(); ++k) on_host(k / 6, k % 6) += factor * values[k];
+    Kokkos::deep_copy(stress, on_host);
+    if (parameters_.initial_stress.empty()) return;
+    const auto f = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), forces);
+    for (LocalIndex c = 0; c < n_owned; ++c)
+      for_initial_forces(c, [&](int k, Real force) { f(c, k) += factor * force; });
+    Kokkos::deep_copy(forces, f);
+  }
+
+  bool has_constant_loads() const {
+    const auto& all = parameters_.tractions;
+    return parameters_.body_force.constant_in_time() &&
+           std::all_of(all.begin(), all.end(), [](const auto& traction) { return traction.constant_in_time(); });
+  }
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }
@@ -160,21 +229,27 @@ class BulkMomentum final : public assembly::Module {
   template <class Host>
   void add_initial_stress(const Host& load) const {
     if (parameters_.initial_stress.empty()) return;
-    Real X[n][dim], dN[n][dim], g[dim], sigma[dim][dim];
-    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-      assembly::gather_host<shape>(*mesh_, c, X);
-      assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
-        parameters_.initial_stress.at(*mesh_, c, x, sigma);
-        Op::Cell::gradients(xi, dN);
-        const assembly::CellPoint<shape> point(X, dN);
-        for (int a = 0; a < n; ++a) {
-          point.gradient(dN[a], g);
-          for (int i = 0; i < dim; ++i)
-            for (int j = 0; j < dim; ++j)
-              add(load, mesh_->free_node(mesh_->cells[c * n + a]) * dim + i, -volume * sigma[i][j] * g[j]);
-        }
+    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
+      for_initial_forces(c, [&](int k, Real force) {
+        add(load, mesh_->free_node(mesh_->cells[c * n + k / dim]) * dim + k % dim, -force);
       });
-    }
+  }
+
+  /// Calls use(node dim + i, part) for parts of integral sigma_0 : grad(N_node e_i) over a cell.
+  template <class Use>
+  void for_initial_forces(LocalIndex c, const Use& use) const {
+    Real X[n][dim], dN[n][dim], g[dim], sigma[dim][dim];
+    assembly::gather_host<shape>(*mesh_, c, X);
+    assembly::for_each_cell_point<shape>(*mesh_, c, [&](const Real(&xi)[dim], Real volume, const auto& x) {
+      parameters_.initial_stress.at(*mesh_, c, x, sigma);
+      Op::Cell::gradients(xi, dN);
+      const assembly::CellPoint<shape> point(X, dN);
+      for (int a = 0; a < n; ++a) {
+        point.gradient(dN[a], g);
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) use(a * dim + i, volume * sigma[i][j] * g[j]);
+      }
+    });
   }
 
   template <class Host>
@@ -240,6 +315,14 @@ class BulkMomentum final : public assembly::Module {
     for (std::size_t k = 0; k < initial.size(); ++k) values[values.size() - 6 + k] += initial[k](x, 0);
   }
 
+  /// [owned entity, component]
+  static View<Real**> values_of(fields::Vector& vector) {
+    const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    return View<Real**>(local.data(), local.extent(0) / (n * dim), n * dim);
+  }
+
+  static constexpr const char *forces_of_cells = "carried forces", *stress_of_cells = "carried stress";
+
   BulkMomentumParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
   int displacement_ = -1, tip_displacement_ = -1, solid_pressure_ = -1;
@@ -247,7 +330,8 @@ class BulkMomentum final : public assembly::Module {
   Real size_ = 0;                        // largest extent of the domain, m
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;
-  assembly::Load load_;  // N
+  assembly::Load load_, carried_;  // N
+  std::optional<fields::Layout> all_cells_;
 };
 
 }  // namespace

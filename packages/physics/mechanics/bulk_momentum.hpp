@@ -39,11 +39,15 @@ struct BulkMomentumParameters {
   BodyForce body_force = {};
   std::vector<BoundaryTraction> tractions = {};
   InitialStress initial_stress = {};
+  bool keeps_stress = false;  ///< see make_bulk_momentum()
 };
 
 /// Declares the unknown "displacement" (nodes, m) and adds to its rows, with test function v,
 ///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v                     Wollmann (2024),
 ///   (4), (5)
+/// With `keeps_stress` the stress of cells goes on where a system takes over the state of one with other constants or
+/// without these cells: the histories "carried forces" [cell, node dim] of the nodes of a cell, N, and "carried stress"
+/// [cell, 6] at its centre, Pa, are what the stress was there less what it would be by the present constants.
 /// Outputs: displacement (nodes), stress of the nodal displacement, with sigma_0, at cell centres (XX, YY, ZZ, XY, YZ,
 /// XZ; Pa).
 std::unique_ptr<assembly::Module> make_bulk_momentum(mesh::Shape shape, BulkMomentumParameters parameters);

@@ -1,10 +1,19 @@
 // What of mechanics a live model keeps where its scene changes.
+#include "assembly/tip_cell.hpp"
+#include "base/over_ranks.hpp"
 #include "laws/joint.hpp"
+#include "physics/entry_of_place.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/scene.hpp"
 
 #include <fmt/ranges.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace sprekk::physics {
 
@@ -20,13 +29,83 @@ std::vector<std::string> laws_with_memory(const Material& material) {
   return names;
 }
 
+/// The elastic constants of a region, as they were written.
+std::vector<std::string> constants_of(const Scene& scene, const std::string& region) {
+  const auto& rock = scene.material_of(region);
+  std::vector<std::string> texts;
+  for (const auto* constant : {&rock.E, &rock.nu, &rock.G, &rock.lambda, &rock.K})
+    texts.push_back(*constant ? (*constant)->text() : "");
+  return texts;
+}
+
+bool is_excavated(const Scene& scene, const std::string& region) {
+  const auto found = scene.regions.find(region);
+  return found != scene.regions.end() && found->second.excavated;
+}
+
+/// Regions that are filled (true), or whose elastic constants change.
+std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after) {
+  std::map<std::string, bool> changed;
+  std::set<std::string> names = {"bulk"};
+  for (const auto* scene : {&before, &after})
+    for (const auto& named_region : scene->regions) names.insert(named_region.first);
+  for (const auto& name : names) {
+    if (is_excavated(after, name)) continue;
+    if (const bool filled = is_excavated(before, name);
+        filled || constants_of(before, name) != constants_of(after, name))
+      changed[name] = filled;
+  }
+  return changed;
+}
+
+/// Stiffness by condition, and where it is.
+auto springs_of(const Scene& scene) {
+  std::map<std::string, std::tuple<std::string, std::string, std::vector<Real>>> springs;
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (!condition.foundation_stiffness.empty())
+      springs[name] = {condition.boundary, condition.region.value_or(""), condition.foundation_stiffness};
+  return springs;
+}
+
 }  // namespace
 
-/// Strains and jumps count from a state without them under the initial stress, and stress is Hooke's law of all of the
-/// strain: other constants would change it at once.
+/// Strains and jumps count from a state without them under the initial stress.
 std::vector<std::string> Mechanics::fixed_entries() {
-  return {"initial stress",  "lithostatic stress", "in-situ stress",         "plastic jump", "Young's modulus",
-          "Poisson's ratio", "shear modulus",      "Lame's first parameter", "bulk modulus"};
+  return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump"};
+}
+
+void Mechanics::prepare_change(const Scene& before, Scene& after) {
+  after.keeps_stress =
+      before.keeps_stress || !changed_rock(before, after).empty() || springs_of(before) != springs_of(after);
+}
+
+/// The stress that goes on is that of the nodes: not of the bubbles of fractures' sides, nor of functions around tips.
+std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
+  const auto changed = changed_rock(before, after);
+  if (changed.empty() || !is_in(after)) return {};
+  const std::size_t n_regions = mesh.region_names.size();
+  std::vector<int> meets(n_regions * mesh.fracture_names.size()), has_tips(n_regions);  // [fracture, region]
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    for (const LocalIndex cell : mesh.fracture_faces[f].cell)
+      meets[mesh.fracture_faces[f].fracture * n_regions + mesh.cell_region[cell]] = 1;
+  for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c)
+    if (assembly::has_tip(mesh, c)) has_tips[mesh.cell_region[c]] = 1;
+  meets = base::max_over_ranks(*mesh.comm, meets);
+  has_tips = base::max_over_ranks(*mesh.comm, has_tips);
+  std::vector<std::string> lines;
+  for (const auto& [name, filled] : changed) {
+    const char* what = filled ? "is filled" : "gets other elastic constants";
+    const auto region = index_of(mesh.region_names, name);
+    for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k)
+      if (meets[k * n_regions + region])
+        lines.push_back(
+            fmt::format("the rock of \"{}\" {}, and the fracture \"{}\" meets it; that can only happen in "
+                        "rock beside which there is no fracture",
+                        name, what, mesh.fracture_names[k]));
+    if (has_tips[region])
+      lines.push_back(fmt::format("the rock of \"{}\" {}, and there are crack tips in it", name, what));
+  }
+  return lines;
 }
 
 std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Scene& after) {
@@ -42,6 +121,18 @@ std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Sc
                       "these have kept means nothing to others",
                       name, fmt::join(laws, "\", \""), fmt::join(old_laws, "\", \"")));
   }
+  const auto changed = changed_rock(before, after);
+  if (is_in(after) && !changed.empty() && (has_solid_pressure(before) || has_solid_pressure(after)))
+    lines.push_back(
+        fmt::format("the rock of \"{}\" changes, and some rock is nearly incompressible, with a pressure that "
+                    "counts from the start",
+                    changed.begin()->first));
+  for (const auto& [name, filled] : changed)
+    if (after.heat && !filled && !is_zero(after.material_of(name).thermal_expansion))
+      lines.push_back(
+          fmt::format("the rock of \"{}\" gets other elastic constants, and its thermal stress counts from the "
+                      "start",
+                      name));
   if (!after.bulk.lithostatic_stress) return lines;
   const auto density = [](const Scene& scene) { return scene.material_of("bulk").density.value_or(0).text(); };
   if (before.bulk.gravity != after.bulk.gravity || density(before) != density(after))

@@ -97,29 +97,6 @@ std::string power_to(const Scene& scene) {
   return field;
 }
 
-/// With displacements of an order; 1: of any. Other unknowns on facets are those of fields with a part in the stress,
-/// which the bubbles of facets would have to see.
-bool has_solid_pressure(const Scene& scene, int order = 1) {
-  bool alone = true;
-  for_each_physics([&](auto physics) {
-    if constexpr (!std::is_same_v<decltype(physics), Mechanics>) alone = alone && !physics.needs_facets(scene);
-  });
-  const auto needs = [&](const std::string& name) {
-    const auto rock = scene.materials.find(name);
-    if (rock == scene.materials.end() || !rock->second.has_elasticity() || !rock->second.is_uniformly_elastic())
-      return false;
-    try {
-      return VolumetricSplit(rock->second.elasticity({}), order).modulus > 0;
-    } catch (const Error&) {  // told where materials are looked at
-      return false;
-    }
-  };
-  return alone && (needs(scene.bulk.material) ||
-                   std::any_of(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
-                     return region.second.material && needs(*region.second.material);
-                   }));
-}
-
 /// Splits the elasticity of cells of an order.
 Properties<Real> split(Properties<laws::Elasticity>& elasticity, int order) {
   Properties<Real> modulus{{}, elasticity.number};
@@ -135,7 +112,8 @@ MechanicsParameters parameters_of(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   BulkMomentumParameters bulk{.elasticity = elasticity(scene, mesh),
                               .body_force = body_force(scene, mesh),
-                              .initial_stress = initial_stress(scene, mesh)};
+                              .initial_stress = initial_stress(scene, mesh),
+                              .keeps_stress = scene.keeps_stress};
   const int order = mesh::order(mesh.shape);
   const auto modulus = has_solid_pressure(scene, order) ? split(bulk.elasticity, order) : Properties<Real>();
   for (const auto& [name, condition] : scene.boundary_conditions)
@@ -144,12 +122,12 @@ MechanicsParameters parameters_of(const Setting& setting) {
                                 .value = condition.traction,
                                 .pressure = condition.confining_pressure,
                                 .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
-  std::vector<ElasticFoundationParameters> foundations;
+  std::map<std::string, ElasticFoundationParameters> foundations;
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (const auto& k = condition.foundation_stiffness; !k.empty())
-      foundations.push_back({.boundary = index_of(mesh.boundary_names, condition.boundary),
-                             .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
-                             .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+      foundations[name] = {.boundary = index_of(mesh.boundary_names, condition.boundary),
+                           .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
+                           .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1};
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
@@ -188,6 +166,27 @@ bool has_tips(const mesh::Mesh& mesh) {
 }
 
 }  // namespace
+
+bool has_solid_pressure(const Scene& scene, int order) {
+  bool alone = true;
+  for_each_physics([&](auto physics) {
+    if constexpr (!std::is_same_v<decltype(physics), Mechanics>) alone = alone && !physics.needs_facets(scene);
+  });
+  const auto needs = [&](const std::string& name) {
+    const auto rock = scene.materials.find(name);
+    if (rock == scene.materials.end() || !rock->second.has_elasticity() || !rock->second.is_uniformly_elastic())
+      return false;
+    try {
+      return VolumetricSplit(rock->second.elasticity({}), order).modulus > 0;
+    } catch (const Error&) {  // told where materials are looked at
+      return false;
+    }
+  };
+  return alone && (needs(scene.bulk.material) ||
+                   std::any_of(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
+                     return region.second.material && needs(*region.second.material);
+                   }));
+}
 
 Real usual_augmentation() { return ElasticPlasticJumpParameters().augmentation; }
 

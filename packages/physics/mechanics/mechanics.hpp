@@ -98,7 +98,12 @@ struct Mechanics : Physics<Mechanics> {
   struct Sections : Physics::Sections {
     /// Of ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
     Real augmentation = usual_augmentation();
-    void keep(const Sections& other) { augmentation = other.augmentation; }
+    /// Nor this: a live model has changed constants of rock or springs, or filled a region.
+    bool keeps_stress = false;
+    void keep(const Sections& other) {
+      augmentation = other.augmentation;
+      keeps_stress = other.keeps_stress;
+    }
   };
 
   static bool is_in(const Scene& scene);
@@ -106,6 +111,8 @@ struct Mechanics : Physics<Mechanics> {
   static std::string no_error_estimate(const Scene& scene);
   static std::vector<std::string> fixed_entries();
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
+  static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
+  static void prepare_change(const Scene& before, Scene& after);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);
@@ -118,6 +125,10 @@ struct Mechanics : Physics<Mechanics> {
 
 /// Of local cells.
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
+
+/// With displacements of an order; 1: of any. Other unknowns on facets are those of fields with a part in the stress,
+/// which the bubbles of facets would have to see.
+bool has_solid_pressure(const Scene& scene, int order = 1);
 
 /// Young's, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);

@@ -1,6 +1,7 @@
 #include "physics/mechanics/modules.hpp"
 
 #include "base/over_ranks.hpp"
+#include "physics/mechanics/carried_forces.hpp"
 #include "physics/mechanics/interface_traction_balance.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/tip_enrichment.hpp"
@@ -57,7 +58,9 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   const auto& fluid = parameters.fluid_pressure;
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(make_bulk_momentum(mesh.shape, bulk));
-  for (const auto& foundation : parameters.foundations) modules.push_back(make_elastic_foundation(mesh, foundation));
+  for (const auto& [name, foundation] : parameters.foundations)
+    modules.push_back(make_carried_forces(make_elastic_foundation(mesh, foundation), "elastic foundation of " + name,
+                                          bulk.keeps_stress));
   if (!parameters.solid_modulus.values.empty())
     modules.push_back(make_solid_pressure(mesh, {.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
   if (mesh.fracture_names.empty()) return modules;

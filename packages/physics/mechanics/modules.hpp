@@ -5,11 +5,14 @@
 #include "physics/mechanics/elastic_foundation.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
+#include <map>
+#include <string>
+
 namespace sprekk::physics {
 
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
-  std::vector<ElasticFoundationParameters> foundations = {};
+  std::map<std::string, ElasticFoundationParameters> foundations = {};  ///< by their boundary conditions
   Properties<Real> solid_modulus = {};      ///< of cells, see SolidPressureParameters; empty: no rock has one
   Properties<JointParameters> joints = {};  ///< of owned fracture faces, in groups by fractures
   FluidPressure fluid_pressure = {};

@@ -15,6 +15,7 @@ struct Law {
 
 const std::vector<Law> all_laws = {
     {"cohesion", {"bond=constant cohesion", "cohesion=0.04"}},
+    {"cohesion by opening", {"bond=constant cohesion", "cohesion=0.04", "opening without cohesion=0.02"}},
     {"bond", {"bond=linear softening", "cohesion=0.05", "shear fracture energy=0.005"}},
     {"slip weakening", {"friction=slip weakening", "residual friction coefficient=0.4", "weakening distance=0.3"}},
     {"composed",
