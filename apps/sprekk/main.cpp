@@ -70,6 +70,11 @@ void declare(CLI::App& app, Arguments& arguments) {
   auto* safety = app.add_subcommand("safety", "reduce the strength of joints until a scene has no equilibrium");
   safety->add_option("--tolerance", arguments.safety.tolerance, "of the factor, relative; default 1e-3")
       ->check(CLI::Range(1e-12, 1.0));
+  safety
+      ->add_option("--first", arguments.safety.first,
+                   "factor that the scene is run with; default 1, less for joints too "
+                   "weak for it")
+      ->check(CLI::Range(1e-6, 1e6));
   safety->add_option("--most", arguments.safety.most, "factor that is of interest; default 100")
       ->check(CLI::Range(1.0, 1e6));
   auto* directory = app.add_subcommand("directory", "print the directory that run writes to without --output");
@@ -130,6 +135,7 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
     std::fflush(stdout);
   });
   if (!speaks) return;
+  for (const auto& line : found.states) fmt::print("{}\n", line);
   if (found.lost)
     fmt::print("factor of safety: {:.8g} (equilibrium at {:.10g}, none found at {:.10g})\n",
                (found.least + *found.lost) / 2, found.least, *found.lost);

@@ -1,6 +1,8 @@
 #include "model/factor_of_safety.hpp"
 
 #include "base/check.hpp"
+#include "base/text.hpp"
+#include "model/fracture_table.hpp"
 #include "model/model.hpp"
 #include "model/steps.hpp"
 
@@ -26,8 +28,14 @@ void check(const Model& model) {
                                [](const auto& material) { return has_joint(material.second); });
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
                scene.origin);
+  std::vector<std::string> stores;
+  physics::for_each_physics([&](auto physics) {
+    if (physics.has_rates(scene))
+      for (const auto& section : physics.sections_with_rates()) stores.push_back(section);
+  });
   SPREKK_CHECK(!model.system().has_rates(),
-               "{}: stores something, and so has no equilibrium at a time: leave out what stores", scene.origin);
+               "{}: its balances of rates store what flows, and so it has no equilibrium at a time: leave out {}",
+               scene.origin, base::quoted_list(stores));
 }
 
 bool stands(const solve::StepReport& report) { return report.converged && report.loose.empty(); }
@@ -41,15 +49,16 @@ std::string reason_of(const solve::StepReport& report) {
   return text.substr(found.size(), text.find("; t = ") - found.size());
 }
 
-void run_to_the_end(Model& model) {
+void run_to_the_end(Model& model, Real factor) {
   Steps steps(model);
   solve::StepReport last;
   while (steps.any()) {
     last = steps.take().report;
     if (!last.converged) break;
   }
-  SPREKK_CHECK(stands(last), "{}: found no equilibrium with its own strength: {}", model.scene().origin,
-               reason_of(last));
+  const auto strength = factor == 1 ? "its own strength" : fmt::format("its strength divided by {}", factor);
+  SPREKK_CHECK(stands(last), "{}: found no equilibrium with {}; one may be found from a smaller factor, --first {}: {}",
+               model.scene().origin, strength, factor / 2, reason_of(last));
 }
 
 /// Leaves the model in the state before where there is no equilibrium.
@@ -69,11 +78,11 @@ Reduction reduce(Model& model, const Scene& own, Real factor) {
 
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
                                 const std::function<void(const Reduction&)>& tell) {
-  Model model(read_scene(*comm, options.scene, options.overrides), comm);
+  const Scene own = read_scene(*comm, options.scene, options.overrides);
+  Model model(reduced(own, options.first), comm);
   check(model);
-  run_to_the_end(model);
-  const Scene own = model.scene();
-  FactorOfSafety found{.least = 1, .lost = {}, .reductions = {}};
+  run_to_the_end(model, options.first);
+  FactorOfSafety found{.least = options.first, .lost = {}, .reductions = {}, .states = {}};
   const auto holds = [&](Real factor) {
     found.reductions.push_back(reduce(model, own, factor));
     if (tell) tell(found.reductions.back());
@@ -89,6 +98,9 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
     const Real middle = (found.least + *found.lost) / 2;
     (holds(middle) ? found.least : *found.lost) = middle;
   }
+  model.change(reduced(own, found.least));
+  const auto outputs = model.system().outputs(model.state());
+  found.states = digest(described_singles(model.mesh()), fracture_table(model.mesh(), outputs, Grouping::singles));
   return found;
 }
 

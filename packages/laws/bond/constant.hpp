@@ -26,8 +26,9 @@ struct ConstantBond {
 
   template <class T>
   KOKKOS_INLINE_FUNCTION Cohesion<T> cohesion(const Contact<T>& at) const {
-    if (!(at.separation > 0)) return {T(shear), T(0), T(0), !(opening > 0)};
+    if (!(opening > 0)) return {T(shear), T(0), T(0), true};
     if (!(at.separation < opening)) return {};
+    if (!(at.separation > 0)) return {T(shear), T(0), T(0), false};
     return {T(shear * (1 - at.separation / opening)), T(0), T(0), false};
   }
 };

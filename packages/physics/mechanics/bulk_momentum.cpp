@@ -143,6 +143,29 @@ class BulkMomentum final : public assembly::Module {
     return {{"stress", std::max(largest, force * size_)}};
   }
 
+  /// Adds `factor` times the forces on the nodes of owned cells, and their stress, by the present constants.
+  void add_constitutive(Real factor, const assembly::State& state, const View<Real**>& forces,
+                        const View<Real**>& stress) const {
+    const auto op = *op_;
+    const LocalIndex n_owned = mesh_->n_owned_cells;
+    cells_->for_each(
+        op, state, KOKKOS_LAMBDA(int cell, const Real(&x)[n * dim]) {
+          if (cell >= n_owned) return;
+          Real f[n * dim];
+          op.residual(cell, x, f);
+          for (int k = 0; k < n * dim; ++k) forces(cell, k) += factor * f[k];
+        });
+    const auto on_host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), stress);
+    const auto values = constitutive_stresses(state);
+    for (std::size_t k = 0; k < values.size(); ++k) on_host(k / 6, k % 6) += factor * values[k];
+    Kokkos::deep_copy(stress, on_host);
+    if (parameters_.initial_stress.empty()) return;
+    const auto f = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), forces);
+    for (LocalIndex c = 0; c < n_owned; ++c)
+      for_initial_forces(c, [&](int k, Real force) { f(c, k) += factor * force; });
+    Kokkos::deep_copy(forces, f);
+  }
+
  private:
   std::vector<Real> displacements(const assembly::State& state) const {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
@@ -171,29 +194,6 @@ class BulkMomentum final : public assembly::Module {
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
       for (int k = 0; k < 3; ++k) values[6 * c + k] -= p(c);
     return values;
-  }
-
-  /// Adds `factor` times the forces on the nodes of owned cells, and their stress, by the present constants.
-  void add_constitutive(Real factor, const assembly::State& state, const View<Real**>& forces,
-                        const View<Real**>& stress) const {
-    const auto op = *op_;
-    const LocalIndex n_owned = mesh_->n_owned_cells;
-    cells_->for_each(
-        op, state, KOKKOS_LAMBDA(int cell, const Real(&x)[n * dim]) {
-          if (cell >= n_owned) return;
-          Real f[n * dim];
-          op.residual(cell, x, f);
-          for (int k = 0; k < n * dim; ++k) forces(cell, k) += factor * f[k];
-        });
-    const auto on_host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), stress);
-    const auto values = constitutive_stresses(state);
-    for (std::size_t k = 0; k < values.size(); ++k) on_host(k / 6, k % 6) += factor * values[k];
-    Kokkos::deep_copy(stress, on_host);
-    if (parameters_.initial_stress.empty()) return;
-    const auto f = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), forces);
-    for (LocalIndex c = 0; c < n_owned; ++c)
-      for_initial_forces(c, [&](int k, Real force) { f(c, k) += factor * force; });
-    Kokkos::deep_copy(forces, f);
   }
 
   bool has_constant_loads() const {

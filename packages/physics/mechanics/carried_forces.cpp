@@ -59,9 +59,10 @@ class CarriedForces final : public assembly::Module {
   /// Of the springs alone, [owned node, component].
   View<Real**> forces(const assembly::State& state) const {
     const View<Real**> values("forces of springs", n_nodes_, dim_);
-    assembly::Rows rows(displacement_ + 1);
-    rows[displacement_] = rows_of(values);
-    springs_->residual(state, rows);
+    assembly::Rows fields;
+    fields.resize(displacement_ + 1);
+    fields[displacement_] = rows_of(values);
+    springs_->residual(state, fields);
     return values;
   }
 

@@ -2,7 +2,6 @@
 #include "assembly/tip_cell.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint.hpp"
-#include "physics/entry_of_place.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/scene.hpp"
@@ -43,7 +42,17 @@ bool is_excavated(const Scene& scene, const std::string& region) {
   return found != scene.regions.end() && found->second.excavated;
 }
 
-/// Regions that are filled (true), or whose elastic constants change.
+/// Stiffness by condition, and where it is.
+auto springs_of(const Scene& scene) {
+  std::map<std::string, std::tuple<std::string, std::string, std::vector<Real>>> springs;
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (!condition.foundation_stiffness.empty())
+      springs[name] = {condition.boundary, condition.region.value_or(""), condition.foundation_stiffness};
+  return springs;
+}
+
+}  // namespace
+
 std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after) {
   std::map<std::string, bool> changed;
   std::set<std::string> names = {"bulk"};
@@ -57,17 +66,6 @@ std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after
   }
   return changed;
 }
-
-/// Stiffness by condition, and where it is.
-auto springs_of(const Scene& scene) {
-  std::map<std::string, std::tuple<std::string, std::string, std::vector<Real>>> springs;
-  for (const auto& [name, condition] : scene.boundary_conditions)
-    if (!condition.foundation_stiffness.empty())
-      springs[name] = {condition.boundary, condition.region.value_or(""), condition.foundation_stiffness};
-  return springs;
-}
-
-}  // namespace
 
 /// Strains and jumps count from a state without them under the initial stress.
 std::vector<std::string> Mechanics::fixed_entries() {
@@ -127,12 +125,6 @@ std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Sc
         fmt::format("the rock of \"{}\" changes, and some rock is nearly incompressible, with a pressure that "
                     "counts from the start",
                     changed.begin()->first));
-  for (const auto& [name, filled] : changed)
-    if (after.heat && !filled && !is_zero(after.material_of(name).thermal_expansion))
-      lines.push_back(
-          fmt::format("the rock of \"{}\" gets other elastic constants, and its thermal stress counts from the "
-                      "start",
-                      name));
   if (!after.bulk.lithostatic_stress) return lines;
   const auto density = [](const Scene& scene) { return scene.material_of("bulk").density.value_or(0).text(); };
   if (before.bulk.gravity != after.bulk.gravity || density(before) != density(after))

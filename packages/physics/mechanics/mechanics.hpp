@@ -130,6 +130,9 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
 /// which the bubbles of facets would have to see.
 bool has_solid_pressure(const Scene& scene, int order = 1);
 
+/// Regions that a changed scene fills (true), or gives other elastic constants, by their names.
+std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after);
+
 /// Young's, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
 

@@ -57,3 +57,6 @@ mesh free_sides_triangle free_sides 1 2 -format msh41 -bin
 mesh free_sides_quadrilateral free_sides 2 2 -format msh22 -bin
 mesh free_sides_tetrahedron free_sides 3 3 -format msh22 -bin
 mesh free_sides_hexahedron free_sides 4 3 -format msh41 -bin
+mesh slope1 slope 0 2 -setnumber h 2 -order 1 -format msh22
+mesh slope2 slope 0 2 -setnumber h 1 -order 1 -format msh22
+mesh slope3 slope 0 2 -setnumber h 0.5 -order 1 -format msh22

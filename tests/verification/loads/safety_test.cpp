@@ -9,9 +9,10 @@
 namespace sprekk::tests {
 namespace {
 
-constexpr Real tolerance = 1e-6, rounding = 1e-8;
+constexpr Real default_tolerance = 1e-6, tolerance = default_tolerance, rounding = 1e-8;
 
-model::FactorOfSafety safety(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+model::FactorOfSafety safety(const std::string& scene, const std::vector<std::string>& overrides = {},
+                             Real tolerance = default_tolerance) {
   return model::factor_of_safety({source_dir() + "/xml/slopes/" + scene, overrides, tolerance},
                                  Tpetra::getDefaultComm());
 }
@@ -40,6 +41,32 @@ TEST(FactorOfSafety, OfABlockWithCohesion) {
   const Real cohesion = 10e3, weight = 2700 * 9.81 * 10 * 2;
   expect_between(safety("plane_2d.xml", {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=10 kPa"}),
                  (cohesion * 10 + weight * std::cos(M_PI / 6) * tan_of(40)) / (weight / 2));
+}
+
+/// Of the wedge behind a slope of 45 degrees: its crest opens, and cohesion there is lost: in proportion to 1 mm little
+/// of it, so that the factor is less than that of limit equilibrium by some 1e-4.
+TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
+  const auto scene = model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/slopes/slope_2d.xml", {});
+  const Real weight = scene.material_of("bulk").density_at({}) * 9.81 * 32, length = std::hypot(8, 8);
+  const Real exact = 50e3 * length / (weight * std::sqrt(0.5)) + tan_of(40);
+  for (const char* mesh : {"slope1", "slope2", "slope3"}) {
+    const auto found =
+        safety("slope_2d.xml", {fmt::format("Mesh file.path={}/tests/data/meshes/{}.msh", source_dir(), mesh)}, 1e-4);
+    ASSERT_TRUE(found.lost) << mesh;
+    EXPECT_LE(found.least, exact * (1 + rounding)) << mesh;
+    EXPECT_GE(*found.lost, exact * (1 - 1e-3)) << mesh;
+    EXPECT_THAT(found.states, testing::Contains(testing::StartsWith("slip: 1 of 1 fractures"))) << mesh;
+  }
+}
+
+/// With twice its strength a block stands that does not with its own.
+TEST(FactorOfSafety, BelowOne) {
+  const std::string path = source_dir() + "/xml/slopes/plane_2d.xml";
+  expect_between(
+      model::factor_of_safety(
+          {.scene = path, .overrides = {"Materials.joint.friction angle=20"}, .tolerance = tolerance, .first = 0.5},
+          Tpetra::getDefaultComm()),
+      tan_of(20) / tan_of(30));
 }
 
 TEST(FactorOfSafety, OfAWedgeOnTwoPlanes) {
