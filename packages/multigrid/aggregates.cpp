@@ -74,6 +74,24 @@ Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
 
 }  // namespace
 
+std::vector<bool> weak_couplings(const NodeMatrix& A) {
+  const auto& graph = A.graph;
+  const auto diagonal = diagonal_sizes(A);
+  std::vector<bool> weak(graph.n_entries(), false);
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
+    const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
+    for (std::size_t k = 0; k < n; ++k) {
+      const LocalIndex j = graph.column(begin + k);
+      const Real size = std::sqrt(diagonal(i) * diagonal(j));
+      Real most = 0;
+      for (int r = 0; r < A.height; ++r)
+        most = std::fmax(most, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
+      weak[begin + k] = j != i && most > rounding * size && most < strong * size;
+    }
+  }
+  return weak;
+}
+
 Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places) {
   const auto& graph = A.graph;
   const int size = A.height;
@@ -96,7 +114,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
   nodes.nearest.assign(n_rows, infinite);
   const auto place = all_places(graph, nodes.place);
   std::vector<bool> prescribed(size);
-  if (modes.is_null()) nodes.weak.assign(graph.n_entries(), false);
+  if (modes.is_null()) nodes.weak = weak_couplings(A);
   for (LocalIndex i = 0; i < n_rows; ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
     prescribed.assign(size, true);
@@ -111,10 +129,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
         if (j != i) most = std::fmax(most, here);
       }
       if (most <= zero) continue;
-      if (modes.is_null() && j != i && most < strong / rounding * zero) {
-        nodes.weak[begin + k] = true;
-        continue;
-      }
+      if (!nodes.weak.empty() && nodes.weak[begin + k]) continue;
       nodes.free[i] = true;
       if (j < n_rows) nodes.neighbours.node.push_back(j);
       if (j != i && !places.is_null())

@@ -31,6 +31,10 @@ struct Nodes {
   void add_smoothed(std::size_t n);
 };
 
+/// The entries of the graph of a square matrix that are small beside the diagonals of both nodes, yet not zero but for
+/// rounding. Collective.
+std::vector<bool> weak_couplings(const NodeMatrix& A);
+
 /// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
 /// null for the constant ones; `places` [node, dim], null if they are not known. Without modes, couplings are weak that
 /// are small beside the diagonals of both, and no neighbours: so what conducts well and what does not stay apart

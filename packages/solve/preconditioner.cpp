@@ -3,8 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "multigrid/multigrid.hpp"
 #include "solve/condensed_pair.hpp"
 #include "solve/fine_level.hpp"
@@ -46,7 +48,7 @@ class NodeMultigrid : public Preconditioner {
   void prepare(const LinearSystem& system, SolverCost& cost) override {
     const auto& first = system.diagonal.front();
     matrix_.update(system);
-    if (multigrid_.is_null()) multigrid_ = made_of(system);
+    if (multigrid_.is_null() || has_other_couplings(system)) make(system);
     multigrid_->setup(matrix_.matrix(), first.symmetric, first.careful);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();
@@ -63,23 +65,48 @@ class NodeMultigrid : public Preconditioner {
   }
   RCP<const Operator> made() const override { return multigrid_; }
 
-  RCP<Multigrid> made_of(const LinearSystem& system) const {
+  void make(const LinearSystem& system) {
     const auto& first = system.diagonal.front();
     const int n = first.block.n_components;
     const auto modes = first.block.near_null_space.make();
     multigrid::Nodes nodes;
-    const auto look = [&](const RCP<const Matrix>& bulk) {
-      nodes = multigrid::nodes_of(multigrid::node_matrix(*bulk, n), modes, first.block.coordinates);
-    };
-    first.bulk ? first.bulk(look) : look(first.matrix);
+    look(system, [&](const auto& A) { nodes = multigrid::nodes_of(A, modes, first.block.coordinates); });
+    weak_ = nodes.weak;
     nodes.add_smoothed(base::n_local_elements(*system.joined->map()) / n);
-    return rcp(new Multigrid(matrix_.matrix(), std::move(nodes), n, modes, options_));
+    multigrid_ = rcp(new Multigrid(matrix_.matrix(), std::move(nodes), n, modes, options_));
+  }
+
+  /// What conducted well does so no more, or the other way, in more than a thousandth of the couplings: nodes are to be
+  /// grouped anew. Collective.
+  bool has_other_couplings(const LinearSystem& system) const {
+    constexpr GlobalIndex few = 1000;
+    const auto& comm = *system.joined->map()->getComm();
+    if (!base::any_rank(comm, [&] { return !weak_.empty(); })) return false;
+    std::array<GlobalIndex, 2> count{};
+    look(system, [&](const auto& A) {
+      const auto weak = multigrid::weak_couplings(A);
+      for (std::size_t k = 0; k < weak.size(); ++k) count[0] += weak[k] != weak_[k];
+      count[1] = static_cast<GlobalIndex>(weak.size());
+    });
+    const auto all = base::sum_over_ranks(comm, count);
+    return few * all[0] > all[1];
+  }
+
+  /// Calls use(matrix) of the nodes that are grouped.
+  template <class Use>
+  static void look(const LinearSystem& system, const Use& use) {
+    const auto& first = system.diagonal.front();
+    const auto of = [&](const RCP<const Matrix>& bulk) {
+      use(multigrid::node_matrix(*bulk, first.block.n_components));
+    };
+    first.bulk ? first.bulk(of) : of(first.matrix);
   }
 
   multigrid::Options options_;
   std::vector<std::string> enriching_;  // blocks
   WholeMatrix matrix_;
   RCP<Multigrid> multigrid_;
+  std::vector<bool> weak_;  // couplings, when nodes were grouped; empty: these do not depend on it
 };
 
 /// Factors of the matrix of a group.

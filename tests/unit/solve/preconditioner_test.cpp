@@ -304,14 +304,12 @@ RCP<CrsMatrix> advection(const RCP<const Map>& map, int n) {
   return result;
 }
 
-/// Of what a flow carries: cycles do not grow, however strong the flow is.
-TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
-  const int n = 100;
+/// One unknown of each cell of a square.
+fields::Block of_cells(const std::string& name, int n) {
   fields::Block block;
-  block.name = "temperature";
+  block.name = name;
   block.map = rcp(new Map(n * n, 0, Tpetra::getDefaultComm()));
   block.n_components = 1;
-  block.advected = true;
   const auto places = rcp(new MultiVector(block.map, 2));
   for (std::size_t i = 0; i < base::n_local_elements(*block.map); ++i)
     for (const int k : {0, 1}) {
@@ -319,6 +317,14 @@ TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
       places->replaceLocalValue(i, k, Real(k == 0 ? cell % n : cell / n));
     }
   block.coordinates = places;
+  return block;
+}
+
+/// Of what a flow carries: cycles do not grow, however strong the flow is.
+TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
+  const int n = 100;
+  auto block = of_cells("temperature", n);
+  block.advected = true;
   const auto A = advection(block.map, n);
   const auto preconditioner = make_preconditioner({}, {block});
   preconditioner->setup(solve::alone({block, wrapped(A), {}, false}));
@@ -332,6 +338,58 @@ TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
     e.update(-1, z, 1);
   }
   EXPECT_LT(e.norm2(), 0.1 * start);
+}
+
+/// Conduction between cells of a square, a little of it lost; a conductance of two cells is the harmonic mean.
+template <class Conductivity>
+RCP<CrsMatrix> conduction(const RCP<const Map>& map, int n, const Conductivity& of) {
+  const auto result = rcp(new CrsMatrix(map, 5));
+  for (const GlobalIndex row : base::local_elements(*map)) {
+    const int i = row % n, j = row / n;
+    const Real own = of(i, j);
+    Real sum = 1e-6;
+    for (const auto& [a, b] : {std::pair(i + 1, j), std::pair(i - 1, j), std::pair(i, j + 1), std::pair(i, j - 1)}) {
+      const bool inside = a >= 0 && b >= 0 && a < n && b < n;
+      const Real value = inside ? -2 / (1 / own + 1 / of(a, b)) : 0;
+      const GlobalIndex column = inside ? a + n * b : row;
+      result->insertGlobalValues(row, 1, &value, &column);
+      sum -= value;
+    }
+    result->insertGlobalValues(row, 1, &sum, &row);
+  }
+  result->fillComplete();
+  return result;
+}
+
+/// Where a network of thin channels has closed in places, cells are grouped anew: a preconditioner that has known the
+/// open ones does what a new one does.
+TEST(Preconditioner, FollowsWhatConducts) {
+  const int n = 96;
+  const auto block = of_cells("pressure", n);
+  const auto is_channel = [](int i, int j) { return i % 6 == 3 || j % 6 == 3; };
+  const auto closed = [](int i, int j) {
+    return std::fmod(std::fabs(std::sin(12.9898 * i + 78.233 * j)) * 43758.5, 1);
+  };
+  const auto open = conduction(block.map, n, [&](int i, int j) { return is_channel(i, j) ? 1e6 : 1.0; });
+  const auto now = conduction(
+      block.map, n, [&](int i, int j) { return is_channel(i, j) ? std::pow(10, 6 - 12 * closed(i / 3, j / 3)) : 1.0; });
+  const auto left = [&](const std::vector<RCP<CrsMatrix>>& matrices) {
+    const auto preconditioner = make_preconditioner({}, {block});
+    for (const auto& A : matrices) preconditioner->setup(solve::alone({block, wrapped(A), {}, true}));
+    Vector e(block.map), z(block.map), rest(block.map);
+    for (std::size_t i = 0; i < base::n_local_elements(*block.map); ++i)
+      e.replaceLocalValue(i, std::sin(0.7 * block.map->getGlobalElement(i)));
+    const Real start = e.norm2();
+    for (int k = 0; k < 20; ++k) {
+      now->apply(e, rest);
+      preconditioner->inverse()->apply(rest, z);
+      e.update(-1, z, 1);
+    }
+    return e.norm2() / start;
+  };
+  const Real anew = left({now});
+  EXPECT_LT(anew, 0.1);
+  EXPECT_LT(left({open, now}), 1.01 * anew);
 }
 
 /// For any block: without places, and for several joined.
