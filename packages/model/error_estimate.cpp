@@ -71,6 +71,8 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   const Real energy = scales.at("stress") * scales.at("displacement");
   ErrorEstimate estimate;
   estimate.stress = error.error;
+  estimate.stress_norm = error.stress;
+  estimate.energy = error.energy;
   estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * energy));
   estimate.fields.push_back({.name = "error density",
                              .unit = "J/m^3",
@@ -81,21 +83,48 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   return estimate;
 }
 
-void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
-  const auto& system = model_.system();
+std::vector<Real> ErrorEstimator::missed() const {
   const auto& mesh = model_.mesh();
   const auto conditions =
       physics::dirichlet_conditions(model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
   const auto error =
-      assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
-  const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+      assembly::prescribed_error(mesh, model_.system().layouts()[blocks_[physics::nodal]], conditions, model_.time());
+  const auto view = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+  return {view.data(), view.data() + view.extent(0)};
+}
+
+void ErrorEstimator::prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const {
   for (const int block : blocks_) {
     if (block < 0) continue;
-    const auto constrained = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(block));
+    const auto constrained =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model_.system().constrained(block));
     const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    const bool has_values = block == blocks_[physics::nodal] && !values.empty();
     for (std::size_t i = 0; i < constrained.extent(0); ++i)
-      if (constrained(i)) view(i, 0) = block == blocks_[physics::nodal] ? missed(i, 0) : 0;
+      if (constrained(i)) view(i, 0) = has_values ? values[i] : 0;
   }
+}
+
+std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
+  const auto scope = model_.timers().scope("error estimate");
+  auto& system = model_.system();
+  const auto& traction = system.layouts()[block("traction")];
+  fields::Vector direction(traction.owned());
+  {
+    const auto view = direction.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (std::size_t i = 0; i < d.size(); ++i) view(i, 0) = d[i];
+  }
+  auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
+  physics::ByField<RCP<fields::Vector>> forces;
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k] >= 0) forces[k] = right_side[blocks_[k]];
+  physics::add_opposite_tractions(model_.mesh(), layouts(), traction, direction, forces);
+  prescribe({}, right_side);
+  if (!model_.newton().answer(model_.state(), right_side, x, solve_tolerance).converged) return {};
+  physics::ByField<RCP<const fields::Vector>> answer;
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k] >= 0) answer[k] = x[blocks_[k]];
+  return (*recovery_)(answer).energy;
 }
 
 void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std::vector<OutputField>& outputs,
@@ -110,7 +139,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
                                    physics::initial_stress(model_.scene(), mesh), *model_.state()[lambda],
                                    stress.forces);
   try {
-    prescribe(right_side);
+    prescribe(missed(), right_side);
   } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none
     estimate.failure = error.what();
     return;
@@ -119,11 +148,12 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   estimate.failure = report.reason;
   if (!report.converged) return;
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
+  estimate.improved = system.outputs(x);
   OutputField error{.name = "jump error",
                     .unit = "m",
                     .entity = fields::Entity::fracture_face,
                     .n_components = dim,
-                    .values = values_of(system.outputs(x), "jump")};
+                    .values = values_of(estimate.improved, "jump")};
   const auto& jump = values_of(outputs, "jump");
   std::array<Real, 2> here{};
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)

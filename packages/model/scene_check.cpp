@@ -58,11 +58,21 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   });
 }
 
-void compare_error_estimate(Comparison& comparison) {
+void compare_error_estimate(Comparison& comparison, const std::string& place) {
   physics::for_each_physics([&](auto physics) {
-    if (const auto why = physics.no_error_estimate(comparison.scene()); !why.empty())
-      comparison.fail("Output > \"error estimate\"", why);
+    if (const auto why = physics.no_error_estimate(comparison.scene()); !why.empty()) comparison.fail(place, why);
   });
+}
+
+void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
+  compare_error_estimate(comparison, "Accuracy");
+  for (const auto& [name, quantity] : accuracy.quantities) {
+    const auto place = fmt::format("Accuracy > quantities > {}", name);
+    for (const auto& fracture : quantity.fractures)
+      comparison.check_name("Accuracy", place + " > \"fractures\"", fracture, comparison.names().fractures);
+    if (const auto& all = comparison.names().fractures; quantity.what != "stress" && all && all->empty())
+      comparison.fail(place, fmt::format("\"quantity\" is \"{}\", and the mesh has no fractures", quantity.what));
+  }
 }
 
 }  // namespace
@@ -102,7 +112,8 @@ Comparison compared(const Draft& draft, MeshNames names) {
   Comparison comparison(draft.value, draft.report, names, tied_boundaries(draft.value), end_of_first_step(draft));
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);
-  if (draft.value.output.error_estimate) compare_error_estimate(comparison);
+  if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"");
+  if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, *draft.value.accuracy);
   return comparison;
 }
 
