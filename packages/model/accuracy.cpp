@@ -8,7 +8,7 @@
 namespace sprekk::model {
 
 const std::vector<std::string>& Quantity::names() {
-  static const std::vector<std::string> all = {"slip", "opening", "normal force", "shear force", "stress"};
+  static const std::vector<std::string> all = {"slip", "opening", "normal force", "shear force", "reaction", "stress"};
   return all;
 }
 
@@ -20,6 +20,7 @@ const char* Quantity::unit(int dim) const {
 
 std::string Quantity::title() const {
   if (what == "stress") return what;
+  if (what == "reaction") return fmt::format("reaction {} of \"{}\"", component, boundary);
   return what + " of " + (fractures.empty() ? "all fractures" : base::quoted_list(fractures));
 }
 
@@ -30,16 +31,22 @@ Real Quantity::asked(Real value) const {
 void Quantity::describe(base::Section& s) {
   s.required_choice(what, "quantity", names(),
                     "slip, opening: the mean over the area of fractures; normal force, shear force: the integral of "
-                    "compression, of the size of shear traction; stress: root of the integral of s : C^-1 s, twice the "
+                    "compression, of the size of shear traction; reaction: the force that holds a boundary; stress: "
+                    "root of the integral of s : C^-1 s, twice the "
                     "elastic energy");
   s.entry(fractures, "fractures", "-", "over which it is taken together; absent: all");
+  s.entry(boundary, "boundary", "-", "of a reaction: where displacements are prescribed");
+  s.choice(component, "component", {"x", "y", "z"}, "of a reaction");
   s.entry(relative, "relative", "-", base::between(1e-8, 1), "error by the value at the end of the run");
   const bool is_length = what == "slip" || what == "opening";
   s.entry(absolute, "absolute", is_length ? "m" : "-", base::positive(),
           "error; of forces in N (2D: N/m), of stress in sqrt(J) (2D: sqrt(J/m)); with relative the larger one counts");
   if (!s.complete()) return;
   if (!relative && !absolute) s.fail("needs \"relative\", \"absolute\", or both");
-  if (what == "stress" && !fractures.empty()) s.fail("fractures", "must be absent: stress is that of all rock");
+  if ((what == "stress" || what == "reaction") && !fractures.empty())
+    s.fail("fractures", fmt::format("must be absent: \"{}\" is of none", what));
+  if ((what == "reaction") != !boundary.empty())
+    s.fail("boundary", what == "reaction" ? "missing; it is required of a reaction" : "is of a reaction alone");
 }
 
 void Accuracy::describe(base::Section& s) {

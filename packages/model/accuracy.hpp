@@ -17,6 +17,7 @@ namespace sprekk::model {
 /// A number of the last state.
 struct Quantity {
   std::string what = "slip";               ///< one of names()
+  std::string boundary, component = "x";   ///< of a reaction
   std::vector<std::string> fractures;      ///< over which it is taken; none: all
   std::optional<Real> relative, absolute;  ///< the error that is asked for, the larger of both
 

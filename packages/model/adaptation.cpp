@@ -58,6 +58,7 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
   while (steps.any())
     if (!steps.take().report.converged) return {};
   ErrorEstimator estimator(model);
+  estimator.want_reactions();
   Goals goals(model);
   const auto outputs = model.system().outputs(model.state());
   goals.add(outputs, estimator(outputs), estimator);

@@ -34,6 +34,7 @@ class Adaptation {
   bool goes_on() const { return why_.empty(); }
   const std::string& why() const { return why_; }
   bool reached() const;
+  bool is_first() const { return runs_.empty(); }
   const std::vector<Verdict>& verdicts() const { return verdicts_; }
   /// What results.json has of it. Stored data.
   nlohmann::json summary() const;

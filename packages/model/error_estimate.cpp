@@ -79,7 +79,7 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
                              .entity = fields::Entity::cell,
                              .n_components = 1,
                              .values = std::move(error.density)});
-  if (!model_.mesh().fracture_names.empty()) estimate_jump(error, outputs, estimate);
+  if (wants_reactions_ || !model_.mesh().fracture_names.empty()) estimate_answer(error, outputs, estimate);
   return estimate;
 }
 
@@ -127,17 +127,19 @@ std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
   return (*recovery_)(answer).energy;
 }
 
-void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std::vector<OutputField>& outputs,
-                                   ErrorEstimate& estimate) {
+/// With a lifting v of the displacements that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
+/// a(delta, v) - rho(v), summed over v: the rows of delta less the forces in them.
+void ErrorEstimator::estimate_answer(const physics::StressError& stress, const std::vector<OutputField>& outputs,
+                                     ErrorEstimate& estimate) {
   auto& system = model_.system();
-  const auto& mesh = model_.mesh();
-  const int lambda = block("traction"), dim = mesh.dim();
   auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
-  physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda],
-                                   physics::initial_stress(model_.scene(), mesh), *model_.state()[lambda],
-                                   stress.forces);
+  if (const int lambda = block("traction"); lambda >= 0)
+    physics::add_unresolved_traction(model_.mesh(), layouts(), system.layouts()[lambda],
+                                     physics::initial_stress(model_.scene(), model_.mesh()), *model_.state()[lambda],
+                                     stress.forces);
+  const auto forces = system.sums_of_held(right_side), reactions = system.reactions(model_.state());
   try {
     prescribe(missed(), right_side);
   } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none
@@ -149,6 +151,16 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   if (!report.converged) return;
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
   estimate.improved = system.outputs(x);
+  estimate.reactions = system.reactions(x);
+  for (std::size_t k = 0; k < reactions.size(); ++k)
+    for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
+      estimate.reactions[k].force[i] -= reactions[k].force[i] + forces[k].force[i];
+  if (!model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
+}
+
+void ErrorEstimator::estimate_jump(const std::vector<OutputField>& outputs, ErrorEstimate& estimate) const {
+  const auto& mesh = model_.mesh();
+  const int dim = mesh.dim();
   OutputField error{.name = "jump error",
                     .unit = "m",
                     .entity = fields::Entity::fracture_face,
@@ -164,7 +176,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
     }
   const auto all = base::sum_over_ranks(*mesh.comm, here);
   estimate.jump = std::sqrt(all[0]);
-  const Real length = system.scales().at("displacement");
+  const Real length = model_.system().scales().at("displacement");
   estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);
   estimate.fields.push_back(std::move(error));
 }

@@ -12,8 +12,9 @@ using assembly::OutputField;
 
 namespace {
 
-/// What terms of both signs may hide of their sum: so much of their sizes counts in any case.
-constexpr Real cancelled = 0.3;
+/// What terms of both signs may hide of their sum: so much of their sizes counts in any case. Tractions that faces take
+/// over from each other cancel almost wholly.
+constexpr Real cancelled_jumps = 0.3, cancelled_tractions = 0.1;
 
 const OutputField& named(const std::vector<OutputField>& outputs, const std::string& name) {
   return *std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; });
@@ -30,7 +31,7 @@ Real tangential(const std::array<Real, 3>& v) { return std::hypot(v[1], v[2]); }
 
 }  // namespace
 
-Goals::Goals(const Model& model) : model_(model) {}
+Goals::Goals(Model& model) : model_(model) {}
 
 std::vector<LocalIndex> Goals::faces_of(const Quantity& quantity) const {
   const auto& mesh = model_.mesh();
@@ -44,7 +45,7 @@ std::vector<LocalIndex> Goals::faces_of(const Quantity& quantity) const {
 }
 
 void Goals::follow_slip(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate) {
-  if (estimate.improved.empty()) return;
+  if (estimate.improved.empty() || model_.mesh().fracture_names.empty()) return;
   const auto &plastic = named(outputs, "plastic jump local"), &jump = named(outputs, "jump local"),
              &better = named(estimate.improved, "jump local");
   const int dim = plastic.n_components;
@@ -94,7 +95,24 @@ Goals::Estimate Goals::of_fractures(const Quantity& quantity, const std::vector<
   sums = base::sum_over_ranks(*model_.mesh().comm, sums);
   const Real whole = is_mean ? sums[0] : 1;
   if (!known) return {sums[1] / whole, std::numeric_limits<Real>::infinity()};
-  return {sums[1] / whole, std::max(std::abs(sums[2]), cancelled * sums[3]) / whole};
+  return {sums[1] / whole,
+          std::max(std::abs(sums[2]), (is_mean ? cancelled_jumps : cancelled_tractions) * sums[3]) / whole};
+}
+
+Goals::Estimate Goals::of_boundary(const Quantity& quantity, const ErrorEstimate& estimate) const {
+  const auto& conditions = model_.scene().boundary_conditions;
+  const auto component = static_cast<std::size_t>(quantity.component[0] - 'x');
+  const auto sum = [&](const std::vector<assembly::Reaction>& reactions) {
+    Real all = 0;
+    for (const auto& reaction : reactions)
+      if (reaction.called.name == "reactions" && component < reaction.force.size() && reaction.region < 0 &&
+          conditions.at(reaction.condition).boundary == quantity.boundary)
+        all += reaction.force[component];
+    return all;
+  };
+  const bool known = !estimate.reactions.empty();
+  return {sum(model_.system().reactions(model_.state())),
+          known ? std::abs(sum(estimate.reactions)) : std::numeric_limits<Real>::infinity()};
 }
 
 /// [owned cell] bounds of what a cell's error adds to that of the quantity, up to a factor: of mean jumps the product
@@ -122,8 +140,9 @@ std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<Ou
 void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator) {
   follow_slip(outputs, estimate);
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
-    estimates_[name] = quantity.what == "stress" ? Estimate{estimate.stress_norm, estimate.stress}
-                                                 : of_fractures(quantity, outputs, estimate);
+    estimates_[name] = quantity.what == "stress"     ? Estimate{estimate.stress_norm, estimate.stress}
+                       : quantity.what == "reaction" ? of_boundary(quantity, estimate)
+                                                     : of_fractures(quantity, outputs, estimate);
     const auto energies = this->energies(quantity, outputs, estimate, estimator);
     auto& bound = bounds_[name];
     if (quantity.what != "slip" || bound.empty()) bound.assign(energies.size(), 0);

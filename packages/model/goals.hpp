@@ -13,7 +13,7 @@ class Goals {
     Real error = 0;  ///< by the mesh; infinite where there is no estimate
   };
 
-  explicit Goals(const Model& model);
+  explicit Goals(Model& model);
 
   /// Takes the present state, with its outputs and their errors. A face that does not slip in a step keeps what its
   /// slip lacked before.
@@ -32,13 +32,14 @@ class Goals {
   };
 
   std::vector<LocalIndex> faces_of(const Quantity& quantity) const;
+  Estimate of_boundary(const Quantity& quantity, const ErrorEstimate& estimate) const;
   void follow_slip(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate);
   Estimate of_fractures(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                         const ErrorEstimate& estimate) const;
   std::vector<Real> energies(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                              const ErrorEstimate& estimate, ErrorEstimator& estimator) const;
 
-  const Model& model_;
+  Model& model_;
   std::vector<Real> plastic_;  // jump of the last state, as in its output
   std::vector<Lack> lacks_;    // [owned fracture face]
   std::map<std::string, Estimate> estimates_;

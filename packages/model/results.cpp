@@ -144,6 +144,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   }
   if (model_.scene().accuracy) goals_.emplace(model_);
   if (model_.scene().output.error_estimate || goals_) estimator_.emplace(model_);
+  if (goals_) estimator_->want_reactions();
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();

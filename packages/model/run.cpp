@@ -257,7 +257,8 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   task =
       fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
   describe(*model, log);
-  for (const auto& warning : model->warnings()) log.warning("{}", warning);
+  if (adaptation.is_first())
+    for (const auto& warning : model->warnings()) log.warning("{}", warning);
   Steps steps(*model);
   Checkpointing checkpoints(*model, steps, directory, log);
   if (!options.restart) checkpoints.start_anew();

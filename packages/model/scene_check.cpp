@@ -70,7 +70,12 @@ void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
     const auto place = fmt::format("Accuracy > quantities > {}", name);
     for (const auto& fracture : quantity.fractures)
       comparison.check_name("Accuracy", place + " > \"fractures\"", fracture, comparison.names().fractures);
-    if (const auto& all = comparison.names().fractures; quantity.what != "stress" && all && all->empty())
+    if (!quantity.boundary.empty())
+      comparison.check_name("Accuracy", place + " > \"boundary\"", quantity.boundary, comparison.names().boundaries);
+    if (quantity.component == "z" && comparison.names().dim == 2)
+      comparison.fail(place + " > \"component\"", "is z, must be x or y in 2D");
+    const bool of_fractures = quantity.what != "stress" && quantity.what != "reaction";
+    if (const auto& all = comparison.names().fractures; of_fractures && all && all->empty())
       comparison.fail(place, fmt::format("\"quantity\" is \"{}\", and the mesh has no fractures", quantity.what));
   }
 }

@@ -31,7 +31,7 @@ class Case:
     name: str
     scene: str
     quantity: str
-    fractures: str        # names, separated by commas; "": all
+    fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component
     coarse: object        # entries, or a function of a folder that makes a mesh: where adaptive runs begin
     uniform: list         # the same, from coarse to fine
     exact: float = None   # None: that of a run of order 2 that is asked for REFERENCE
@@ -61,6 +61,12 @@ def crack(scene, quantity, value, angle=0):
                 uniform=[mesh(h) for h in (0.8, 0.4, 0.2, 0.1, 0.05, 0.025)], exact=value)
 
 
+def free_sides_shear():
+    """That the reference has."""
+    rows = csv.reader(open(ROOT / "perf/verification/references/free_sides.csv"))
+    return next(float(row[0]) for row in rows if row[0][0].isdigit())
+
+
 def box(*counts, dimension=2):
     return [(f"Mesh.cells={{{', '.join([str(n)] * dimension)}}}",) for n in counts]
 
@@ -86,6 +92,7 @@ def cases():
         Case("T junction", "verification/t_junction.xml", "slip", "horizontal", junction(1, 0.5),
              [junction(h, r) for h, r in ((1, 0.5), (0.5, 0.25), (0.25, 0.25), (0.125, 0.25))]),
         Case("X crossing", "verification/crossing_2d.xml", "slip", "flat", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
+        Case("reaction", "verification/free_sides_2d.xml", "reaction", "north x", box(8)[0], box(8, 16, 32, 64, 128), free_sides_shear(), sets=simplices),
         Case("compliant joint", "verification/free_sides_2d.xml", "shear force", "", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
     ]
 
@@ -104,7 +111,10 @@ def start(options, case, order, source, asked, label, others=()):
     if asked:
         goal = "Accuracy.quantities.goal"
         sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={asked:g}", f"Accuracy.seconds={options.seconds:g}"]
-        sets += [f"{goal}.fractures={{{case.fractures}}}"] if case.fractures else []
+        if case.quantity == "reaction":
+            sets += [f"{goal}.{entry}={word}" for entry, word in zip(("boundary", "component"), case.fractures.split())]
+        elif case.fractures:
+            sets.append(f"{goal}.fractures={{{case.fractures}}}")
     command = [str(options.binary), "run", str(ROOT / "xml" / case.scene), "--output", str(directory)]
     command += [word for entry in sets for word in ("--set", entry)]
     if options.ranks > 1:
@@ -118,7 +128,10 @@ def start(options, case, order, source, asked, label, others=()):
 
 
 def value_of(case, results):
-    """The quantity as fractures in results.json have it."""
+    """The quantity as results.json has it without being asked for."""
+    if case.quantity == "reaction":
+        boundary, component = case.fractures.split()
+        return results["steps"][-1]["reactions"][boundary]["xyz".index(component)]
     fractures = results["steps"][-1]["fractures"]
     chosen = [fractures[name] for name in (case.fractures.split(",") if case.fractures else fractures)]
     area = sum(one["area"] for one in chosen)
