@@ -64,6 +64,30 @@ TEST(Goals, ErrorsOfCracksAndTheirBounds) {
     }
 }
 
+/// Of the reaction of a block with free sides and a compliant fracture, by perf/verification/references/free_sides.csv.
+TEST(Goals, ErrorsOfReactions) {
+  for (const int order : {1, 2}) {
+    SCOPED_TRACE(fmt::format("order {}", order));
+    model::Model model(
+        read_scene("verification/free_sides_2d.xml",
+                   {"Mesh.cell=triangle", fmt::format("Mesh.order={}", order), "Mesh.cells={16, 16}",
+                    "Accuracy.quantities.goal.quantity=reaction", "Accuracy.quantities.goal.boundary=north",
+                    "Accuracy.quantities.goal.component=x", "Accuracy.quantities.goal.relative=0.01"}),
+        Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(model.scene().time.times().back()).converged);
+    model::ErrorEstimator estimator(model);
+    estimator.want_reactions();
+    const auto outputs = Outputs(model).all();
+    model::Goals goals(model);
+    goals.add(outputs, estimator(outputs), estimator);
+    const auto& goal = goals.estimates().at("goal");
+    const Real ratio = goal.error / std::abs(goal.value - 0.4900271545);
+    EXPECT_GE(ratio, 0.5);
+    EXPECT_LE(ratio, 2);
+    if (model.mesh().comm->getRank() == 0) fmt::print("  order {}: {:.2f}\n", order, ratio);
+  }
+}
+
 /// 2, 4, 8, ... and 0: half of the sum is in the largest, 0.7 in two of them; equal ones come together.
 TEST(Goals, MarksTheFewestCells) {
   const auto comm = Tpetra::getDefaultComm();
