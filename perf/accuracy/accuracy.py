@@ -188,6 +188,8 @@ def measure(options, case):
 
 def known(run):
     row, steps = run
+    if not row.reached:
+        raise RuntimeError(f"its reference is known to {100 * row.estimate:.2g} % only; take more --seconds")
     return row.value, steps
 
 
