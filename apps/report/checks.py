@@ -21,6 +21,7 @@ def of_run(directory, content, scene):
     yield from forces(steps, scene)
     yield from fluid(steps)
     yield from estimates(steps[-1])
+    yield from accuracy(content)
 
 
 def completion(content):
@@ -127,3 +128,11 @@ def estimates(step):
                 "passed" if good else "noted",
                 f"{number(100 * estimate['relative'])} %" + ("" if good else ": a finer mesh is advisable"),
             )
+
+
+def accuracy(content):
+    """The lines that the run ended with."""
+    asked = content.get("accuracy", {"quantities": {}})
+    for one in asked["quantities"].values():
+        words = one["line"] + ("" if one["reached"] else f": not reached, for {asked['ended']}")
+        yield Check("accuracy", "passed" if one["reached"] else "failed", words)

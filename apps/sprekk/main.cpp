@@ -84,7 +84,8 @@ void declare(CLI::App& app, Arguments& arguments) {
         ->allow_extra_args(false);
   }
   for (auto* command : {run, check})
-    command->add_flag("--strict", options.strict, "take warnings of the scene as errors");
+    command->add_flag("--strict", options.strict,
+                      "take warnings of the scene as errors; and end with status 3 where Accuracy is not reached");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
@@ -101,7 +102,8 @@ int run_scene(model::RunOptions options, RCP<const Comm> comm) {
   handle_stop_signals(comm->getRank() == 0 ? ask_to_stop_aloud : ask_to_stop);
   options.should_stop = [] { return stop_asked != 0; };
   const auto ending = model::run(options, comm);
-  return ending == model::Ending::completed ? 0 : ending == model::Ending::failed ? 3 : 4;
+  if (ending == model::Ending::interrupted) return 4;
+  return ending == model::Ending::failed || (ending == model::Ending::inaccurate && options.strict) ? 3 : 0;
 }
 
 /// Prints the curves, then where slip jumped, and ends with an error if a step had no state.

@@ -64,6 +64,8 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
   /// counts for the first. Collective.
   std::vector<Reaction> reactions(const fields::BlockVector& x);
+  /// The same sums of any rows r. Collective.
+  std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const;
   /// Those of all modules, summed over the ranks. Collective.
   std::vector<Total> totals(const fields::BlockVector& x);
 

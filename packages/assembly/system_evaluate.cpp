@@ -450,6 +450,10 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
   rates_.before = 0;  // histories have moved on: nothing is stored
   raw_residual(x, r);
   rates_ = rates;
+  return sums_of_held(r);
+}
+
+std::vector<Reaction> System::sums_of_held(const BlockVector& r) const {
   std::vector<Reaction> result;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (!unknowns_[b].enriches.empty()) continue;  // the functions of the other field add up to 1: it has all the force

@@ -42,10 +42,11 @@ FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& m
 }
 
 /// Gives each set of cells that unmarked faces connect around a fracture node its own copy of that node.
-void split_nodes(GlobalMesh& mesh, const FractureFaces& faces, const std::vector<GlobalIndex>& neighbour) {
+void split_nodes(GlobalMesh& mesh) {
+  const auto neighbour = face_neighbours(mesh);
   const int faces_per_cell = n_faces(mesh.shape), nodes_per_cell = n_nodes(mesh.shape), dim = mesh.dim();
   std::vector<bool> is_fracture_face(neighbour.size(), false), on_fracture(mesh.n_nodes(), false);
-  for (const auto& face : faces)
+  for (const auto& face : mesh.fracture_faces)
     for (int side : {minus, plus}) {
       is_fracture_face[face.cell[side] * faces_per_cell + face.local_face[side]] = true;
       for (GlobalIndex node : nodes_of_face(mesh, face.cell[side], face.local_face[side]))
@@ -86,17 +87,21 @@ GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked, const s
   SPREKK_CHECK(orientations.empty() || orientations.size() == mesh.fracture_names.size(),
                "split: {} orientations for {} fractures; needs one each", orientations.size(),
                mesh.fracture_names.size());
-  mesh.parent_node.resize(mesh.n_nodes());
-  std::iota(mesh.parent_node.begin(), mesh.parent_node.end(), GlobalIndex{0});
-  if (mesh.fracture_names.empty()) return mesh;
-  const auto neighbour = face_neighbours(mesh);
-  auto faces = two_sided(mesh, marked, neighbour);
-  orient(mesh, faces, orientations);
-  split_nodes(mesh, faces, neighbour);
-  mesh.fracture_faces = std::move(faces);
+  if (!mesh.fracture_names.empty()) {
+    auto faces = two_sided(mesh, marked, face_neighbours(mesh));
+    orient(mesh, faces, orientations);
+    mesh.fracture_faces = std::move(faces);
+  }
   if (mesh.single_fractures.empty())
     for (const auto& name : mesh.fracture_names)
       mesh.single_fractures.push_back({name, static_cast<int>(mesh.single_fractures.size())});
+  return split_along_faces(std::move(mesh));
+}
+
+GlobalMesh split_along_faces(GlobalMesh mesh) {
+  mesh.parent_node.resize(mesh.n_nodes());
+  std::iota(mesh.parent_node.begin(), mesh.parent_node.end(), GlobalIndex{0});
+  if (!mesh.fracture_faces.empty()) split_nodes(mesh);
   return mesh;
 }
 

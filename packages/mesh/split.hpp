@@ -35,6 +35,10 @@ struct Orientation {
 GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked,
                  const std::vector<Orientation>& orientations = {});
 
+/// The mesh with its nodes split along the fracture faces that it has already, each with its cells and sides. It is not
+/// yet split otherwise.
+GlobalMesh split_along_faces(GlobalMesh mesh);
+
 /// Swaps the sides of fracture faces such that normals (from minus to plus) are consistent. `mesh` is not yet split.
 ///
 /// Normals are made consistent by walking over edges (2D: nodes) that exactly two faces of a fracture share. Each

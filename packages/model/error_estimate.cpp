@@ -71,46 +71,77 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   const Real energy = scales.at("stress") * scales.at("displacement");
   ErrorEstimate estimate;
   estimate.stress = error.error;
+  estimate.stress_norm = error.stress;
+  estimate.energy = error.energy;
   estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * energy));
   estimate.fields.push_back({.name = "error density",
                              .unit = "J/m^3",
                              .entity = fields::Entity::cell,
                              .n_components = 1,
                              .values = std::move(error.density)});
-  if (!model_.mesh().fracture_names.empty()) estimate_jump(error, outputs, estimate);
+  if (wants_reactions_ || !model_.mesh().fracture_names.empty()) estimate_answer(error, outputs, estimate);
   return estimate;
 }
 
-void ErrorEstimator::prescribe(fields::BlockVector& right_side) {
-  const auto& system = model_.system();
+std::vector<Real> ErrorEstimator::missed() const {
   const auto& mesh = model_.mesh();
   const auto conditions =
       physics::dirichlet_conditions(model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
   const auto error =
-      assembly::prescribed_error(mesh, system.layouts()[blocks_[physics::nodal]], conditions, model_.time());
-  const auto missed = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+      assembly::prescribed_error(mesh, model_.system().layouts()[blocks_[physics::nodal]], conditions, model_.time());
+  const auto view = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+  return {view.data(), view.data() + view.extent(0)};
+}
+
+void ErrorEstimator::prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const {
   for (const int block : blocks_) {
     if (block < 0) continue;
-    const auto constrained = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system.constrained(block));
+    const auto constrained =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model_.system().constrained(block));
     const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    const bool has_values = block == blocks_[physics::nodal] && !values.empty();
     for (std::size_t i = 0; i < constrained.extent(0); ++i)
-      if (constrained(i)) view(i, 0) = block == blocks_[physics::nodal] ? missed(i, 0) : 0;
+      if (constrained(i)) view(i, 0) = has_values ? values[i] : 0;
   }
 }
 
-void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std::vector<OutputField>& outputs,
-                                   ErrorEstimate& estimate) {
+std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
+  const auto scope = model_.timers().scope("error estimate");
   auto& system = model_.system();
-  const auto& mesh = model_.mesh();
-  const int lambda = block("traction"), dim = mesh.dim();
+  const auto& traction = system.layouts()[block("traction")];
+  fields::Vector direction(traction.owned());
+  {
+    const auto view = direction.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (std::size_t i = 0; i < d.size(); ++i) view(i, 0) = d[i];
+  }
+  auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
+  physics::ByField<RCP<fields::Vector>> forces;
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k] >= 0) forces[k] = right_side[blocks_[k]];
+  physics::add_opposite_tractions(model_.mesh(), layouts(), traction, direction, forces);
+  prescribe({}, right_side);
+  if (!model_.newton().answer(model_.state(), right_side, x, solve_tolerance).converged) return {};
+  physics::ByField<RCP<const fields::Vector>> answer;
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k] >= 0) answer[k] = x[blocks_[k]];
+  return (*recovery_)(answer).energy;
+}
+
+/// With a lifting v of the displacements that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
+/// a(delta, v) - rho(v), summed over v: the rows of delta less the forces in them.
+void ErrorEstimator::estimate_answer(const physics::StressError& stress, const std::vector<OutputField>& outputs,
+                                     ErrorEstimate& estimate) {
+  auto& system = model_.system();
   auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
-  physics::add_unresolved_traction(mesh, layouts(), system.layouts()[lambda],
-                                   physics::initial_stress(model_.scene(), mesh), *model_.state()[lambda],
-                                   stress.forces);
+  if (const int lambda = block("traction"); lambda >= 0)
+    physics::add_unresolved_traction(model_.mesh(), layouts(), system.layouts()[lambda],
+                                     physics::initial_stress(model_.scene(), model_.mesh()), *model_.state()[lambda],
+                                     stress.forces);
+  const auto forces = system.sums_of_held(right_side), reactions = system.reactions(model_.state());
   try {
-    prescribe(right_side);
+    prescribe(missed(), right_side);
   } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none
     estimate.failure = error.what();
     return;
@@ -119,11 +150,22 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
   estimate.failure = report.reason;
   if (!report.converged) return;
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
+  estimate.improved = system.outputs(x);
+  estimate.reactions = system.reactions(x);
+  for (std::size_t k = 0; k < reactions.size(); ++k)
+    for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
+      estimate.reactions[k].force[i] -= reactions[k].force[i] + forces[k].force[i];
+  if (!model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
+}
+
+void ErrorEstimator::estimate_jump(const std::vector<OutputField>& outputs, ErrorEstimate& estimate) const {
+  const auto& mesh = model_.mesh();
+  const int dim = mesh.dim();
   OutputField error{.name = "jump error",
                     .unit = "m",
                     .entity = fields::Entity::fracture_face,
                     .n_components = dim,
-                    .values = values_of(system.outputs(x), "jump")};
+                    .values = values_of(estimate.improved, "jump")};
   const auto& jump = values_of(outputs, "jump");
   std::array<Real, 2> here{};
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
@@ -134,7 +176,7 @@ void ErrorEstimator::estimate_jump(const physics::StressError& stress, const std
     }
   const auto all = base::sum_over_ranks(*mesh.comm, here);
   estimate.jump = std::sqrt(all[0]);
-  const Real length = system.scales().at("displacement");
+  const Real length = model_.system().scales().at("displacement");
   estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);
   estimate.fields.push_back(std::move(error));
 }

@@ -15,7 +15,13 @@ namespace sprekk::model {
 struct ErrorEstimate {
   Real stress = 0, relative_stress = 0;  ///< of the stress in the norm of the energy, sqrt(J); by that of the stress
   Real jump = 0, relative_jump = 0;      ///< of the jumps of all faces in L2, m sqrt(m^2) (2D: m sqrt(m)); by the jumps
+  Real stress_norm = 0;                  ///< that of the stress, sqrt(J)
+  std::vector<Real> energy;              ///< [owned cell] of the stress' error, J
   std::string failure;                   ///< why there is no estimate of the jumps
+  /// The outputs of the state with what it lacks by estimate; empty where there is no estimate of the jumps.
+  std::vector<assembly::OutputField> improved;
+  /// By how much the reactions are too small, as System::reactions(); empty where there is no such estimate.
+  std::vector<assembly::Reaction> reactions;
   /// On cells "error density", J/m^3: energy of the stress' error per volume; on fracture faces "jump error", m: what
   /// the jump lacks, in global components.
   std::vector<assembly::OutputField> fields;
@@ -34,19 +40,30 @@ class ErrorEstimator {
   /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over
   /// and to what prescribed displacements miss between nodes, with states of contact as they are. Collective.
   ErrorEstimate operator()(const std::vector<assembly::OutputField>& outputs);
+  /// From now on that of the reactions is wanted, without fractures, too.
+  void want_reactions() { wants_reactions_ = true; }
+
+  /// Where on the mesh the integral of d . [[u]] over fracture faces errs: the energy of the error of the stress, J
+  /// [owned cell], of the linearised problem's answer to the forces d on the sides plus and -d on the sides minus. `d`
+  /// [owned fracture face * dim] is in the faces' frames. Empty: there is no answer. Collective.
+  std::vector<Real> answer_energy(const std::vector<Real>& d);
 
  private:
   int block(const std::string& name) const;  ///< -1: there is none
   physics::ByField<const fields::Layout*> layouts() const;
-  void estimate_jump(const physics::StressError& error, const std::vector<assembly::OutputField>& outputs,
-                     ErrorEstimate& estimate);
+  void estimate_answer(const physics::StressError& error, const std::vector<assembly::OutputField>& outputs,
+                       ErrorEstimate& estimate);
+  void estimate_jump(const std::vector<assembly::OutputField>& outputs, ErrorEstimate& estimate) const;
 
-  /// Sets the rows of prescribed unknowns to what these miss between nodes.
-  void prescribe(fields::BlockVector& right_side);
+  /// What prescribed displacements miss between nodes, [owned unknown].
+  std::vector<Real> missed() const;
+  /// Sets the rows of prescribed unknowns to these values of nodes, and others to zero; without values all.
+  void prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const;
 
   Model& model_;
   physics::ByField<int> blocks_;  // of displacements, -1: there is none
   std::unique_ptr<physics::StressRecovery> recovery_;
+  bool wants_reactions_ = false;
   Real section_;  // of a body of the domain's largest extent, m^2 (2D: m)
 };
 

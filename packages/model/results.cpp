@@ -142,7 +142,9 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     bulk_.emplace(comm, directory_, "bulk", written);
     if (!model_.mesh().fracture_names.empty()) start_fractures(written);
   }
-  if (model_.scene().output.error_estimate) estimator_.emplace(model_);
+  if (model_.scene().accuracy) goals_.emplace(model_);
+  if (model_.scene().output.error_estimate || goals_) estimator_.emplace(model_);
+  if (goals_) estimator_->want_reactions();
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();
@@ -285,6 +287,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   if (estimator_) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
+    if (goals_ && report.converged) goals_->add(outputs, estimate, *estimator_);
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
   add(step);

@@ -3,6 +3,7 @@
 
 #include "base/log.hpp"
 #include "io/vtu.hpp"
+#include "model/goals.hpp"
 #include "model/error_estimate.hpp"
 #include "model/probes.hpp"
 #include "model/steps.hpp"
@@ -52,6 +53,10 @@ class Results {
   std::vector<std::string> fracture_digest() const;
   /// How far quantities of the last state may be from exact ones, relative, by their names.
   const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
+  /// The quantities of the section Accuracy in the states so far; of a scene that has one.
+  const Goals& goals() const { return *goals_; }
+  /// What `finish` is to tell of them.
+  void add_accuracy(const nlohmann::json& summary) { json_["accuracy"] = summary; }
   /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
   /// as the file of the last write has room for it, it says so.
   void finish(const std::string& status, const std::string& reason = "");
@@ -74,6 +79,7 @@ class Results {
   Model& model_;
   std::string directory_;
   std::optional<ErrorEstimator> estimator_;
+  std::optional<Goals> goals_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
   std::optional<io::SeriesFiles> series_;       // of probes

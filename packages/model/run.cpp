@@ -6,6 +6,7 @@
 #include "io/directory_lock.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
+#include "model/adaptation.hpp"
 #include "model/checkpointing.hpp"
 #include "model/point.hpp"
 #include "model/steps.hpp"
@@ -93,12 +94,16 @@ Scene scene_of(const RunOptions& options, const Comm& comm) {
 /// Reads the scene and makes its model. If that fails, results of an earlier run do not pass for those of this one;
 /// what a restart was to go on from stays. `reserve` makes the directory and sees to it that no other run writes there.
 std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& directory,
-                                  const std::function<void()>& reserve, RCP<const Comm> comm) {
+                                  const std::function<void()>& reserve, Adaptation& adaptation, RCP<const Comm> comm) {
   bool has_scene = false;
   try {
     return naming_file(options.scene, [&] {
-      const Scene scene = scene_of(options, *comm);
+      Scene scene = scene_of(options, *comm);
       has_scene = true;
+      if (scene.accuracy) {
+        SPREKK_CHECK(!options.restart, "--restart: does not go with the section \"Accuracy\"; run the scene anew");
+        adaptation.prepare(scene, comm);
+      }
       auto model = std::make_unique<Model>(scene, comm);
       const Probes probes(*model);  // whose places must be there
       if (options.strict) base::throw_errors(model->warnings());
@@ -163,9 +168,17 @@ Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoint
   return Ending::interrupted;
 }
 
+/// Judges the accuracy of the last state, if the scene asks for any.
+void judge(const Model& model, Results& results, Adaptation& adaptation, base::Log& log) {
+  if (!model.scene().accuracy) return;
+  adaptation.judge(model, results.goals());
+  results.add_accuracy(adaptation.summary());
+  for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());
+}
+
 /// Takes the steps that are ahead of the model, until one fails or the run is to stop.
-Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& checkpoints, base::Log& log,
-                  const std::function<bool()>& should_stop) {
+Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& checkpoints, Adaptation& adaptation,
+                  base::Log& log, const std::function<bool()>& should_stop) {
   const Scene& scene = model.scene();
   if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, steps);
@@ -198,8 +211,9 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
     return Ending::failed;
   }
   for (const auto& [name, bound] : results.error_bounds()) log.info("{}: known to +-{:.2g} %", name, 100 * bound);
+  judge(model, results, adaptation, log);
   results.finish("completed");
-  return Ending::completed;
+  return adaptation.reached() ? Ending::completed : Ending::inaccurate;
 }
 
 /// The text as part of a file's name, and whether it is one without loss.
@@ -235,6 +249,33 @@ std::string default_directory(const RunOptions& options) {
 
 namespace {
 
+/// The same on one mesh, which `adaptation` then makes finer if it is to be; `task` says what is being done.
+Ending run_once(const RunOptions& options, const std::string& directory, const std::function<void()>& reserve,
+                Adaptation& adaptation, base::Log& log, RCP<const Comm> comm, std::string& task) {
+  const auto model = make_model(options, directory, reserve, adaptation, comm);
+  if (!options.restart) reserve();
+  task =
+      fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
+  describe(*model, log);
+  if (adaptation.is_first())
+    for (const auto& warning : model->warnings()) log.warning("{}", warning);
+  Steps steps(*model);
+  Checkpointing checkpoints(*model, steps, directory, log);
+  if (!options.restart) checkpoints.start_anew();
+  const Scene as_read = model->scene();  // before it is brought to a stage
+  std::optional<EarlierResults> earlier;
+  if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
+  Results results(*model, as_read, directory, earlier);
+  const auto ending = take_steps(*model, steps, results, checkpoints, adaptation, log, options.should_stop);
+  if (ending == Ending::inaccurate && adaptation.goes_on()) {
+    adaptation.refine(*model, results.goals());
+    return ending;
+  }
+  tell_costs(*model, log);
+  for (const auto& line : results.fracture_digest()) log.info("{}", line);
+  return ending;
+}
+
 /// The same; `task` says what is being done.
 Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
   base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
@@ -247,23 +288,13 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
       log.warning("{}: its file system has no locks ({}): see to it that no other run writes there", directory, why);
   };
   if (lock.has_directory()) reserve();
-  const auto model = make_model(options, directory, reserve, comm);
-  if (!options.restart) reserve();
-  task =
-      fmt::format("{}: solving for {} cells on {} ranks", options.scene, model->mesh().n_global_cells, comm->getSize());
-  describe(*model, log);
-  for (const auto& warning : model->warnings()) log.warning("{}", warning);
-  Steps steps(*model);
-  Checkpointing checkpoints(*model, steps, directory, log);
-  if (!options.restart) checkpoints.start_anew();
-  const Scene as_read = model->scene();  // before it is brought to a stage
-  std::optional<EarlierResults> earlier;
-  if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
-  Results results(*model, as_read, directory, earlier);
-  const auto ending = take_steps(*model, steps, results, checkpoints, log, options.should_stop);
-  tell_costs(*model, log);
-  for (const auto& line : results.fracture_digest()) log.info("{}", line);
-  if (ending == Ending::completed) log.info("results in {}", directory);
+  Adaptation adaptation;
+  auto ending = run_once(options, directory, reserve, adaptation, log, comm, task);
+  while (ending == Ending::inaccurate && adaptation.goes_on())
+    ending = run_once(options, directory, reserve, adaptation, log, comm, task);
+  for (const auto& verdict : adaptation.verdicts())
+    if (!verdict.reached) log.warning("{}: not reached, for {}", verdict.line(), adaptation.why());
+  if (ending == Ending::completed || ending == Ending::inaccurate) log.info("results in {}", directory);
   return ending;
 }
 

@@ -16,7 +16,7 @@ struct RunOptions {
   bool restart = false;                ///< go on from the last checkpoint in the output directory
   bool terminal = false;               ///< print a line per time step
   bool reserved = false;               ///< the caller sees to it that no other run writes into the directory
-  bool strict = false;                 ///< warnings of the scene are errors
+  bool strict = false;                 ///< warnings of the scene are errors, and what Accuracy asks for must be reached
   /// If not empty: asked on every rank in each Newton iteration and after each step; true on any ends the run.
   std::function<bool()> should_stop;
 };
@@ -28,11 +28,13 @@ std::string default_directory(const RunOptions& options);
 
 enum class Ending {
   completed,
+  inaccurate,  ///< the same, without what the section Accuracy asks for
   failed,      ///< a step did not converge
   interrupted  ///< should_stop said so before the end of the last step
 };
 
-/// Runs the scene, from its beginning or from a checkpoint, and writes its results. A step that did not converge is
+/// Runs the scene, from its beginning or from a checkpoint, and writes its results; with the section Accuracy again and
+/// again, on finer and finer meshes, each time in place of the results before. A step that did not converge is
 /// reported, and what was computed before is kept. An interrupted run goes back to the end of its last whole step, and
 /// writes a checkpoint there if the scene asks for any. Throws an Error for bad input, and where another run writes
 /// into the directory, before anything there is touched; the same on every rank. Collective.

@@ -142,7 +142,24 @@ void Scene::describe(base::Section& s) {
   s.section(output, "Output", "what is written beside results.json");
   s.named_sections(stages, "Stages", "by names of your choice: what of the scene changes when, see docs/stages.md");
   if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
+  s.section(accuracy, "Accuracy", "numbers that are to be reached with a given error, on meshes that the run refines");
+  if (accuracy && s.is_sound() && !s.documents()) check_accuracy(s);
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
+}
+
+/// What does not go with meshes that a run halves.
+void Scene::check_accuracy(base::Section& s) const {
+  const std::string section = mesh_file ? "Mesh file" : "Mesh";
+  const auto fail = [&](const std::string& entry, const std::string& what) {
+    s.fail_inside(fmt::format("{}: {} with \"Accuracy\"", entry, what));
+  };
+  if (refinements() > 0) fail(section + " > \"refinements\"", fmt::format("is {}, must be 0", refinements()));
+  if (const auto& periodic = mesh_file ? mesh_file->periodic : mesh.periodic; !periodic.empty())
+    fail(section + " > \"periodic\"", fmt::format("is {{{}}}, must be absent", fmt::join(periodic, ", ")));
+  if (output.checkpoints) fail("Output > \"checkpoints\"", "must be absent");
+  if (!stages.empty()) fail("Stages", "must be absent");
+  if (time.chooses_steps())
+    fail(time.tolerance ? "Time > \"tolerance\"" : "Time > \"target Newton iterations\"", "must be absent");
 }
 
 namespace {
@@ -176,6 +193,7 @@ base::Draft<Scene> prepared(const Scene& scene) {
   auto draft = from_list(list, scene.origin);
   draft.value.keep(scene);
   draft.value.solver.should_stop = scene.solver.should_stop;
+  draft.value.bisection = scene.bisection;
   return draft;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "base/parameters.hpp"
+#include "mesh/bisect.hpp"
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
+#include "model/accuracy.hpp"
 #include "model/network.hpp"
 #include "model/stages.hpp"
 #include "physics/scene.hpp"
@@ -81,18 +83,25 @@ struct Scene : physics::Scene {
   solve::NewtonOptions solver;
   Output output;
   Stages stages;
+  std::optional<Accuracy> accuracy;
+  /// With `accuracy`: the mesh as it has been halved so far, on the rank that makes it. Null, or empty: not yet.
+  std::shared_ptr<std::optional<mesh::Bisection>> bisection;
 
   void describe(base::Section& section);
-  /// The global mesh of either kind; if it is to be refined, as refined() takes it. Not collective.
+  /// The global mesh of either kind; if it is to be refined, as refined() takes it; halved as far as `bisection` is.
+  /// Not collective.
   mesh::GlobalMesh make_mesh() const;
   /// What is left to do once make_mesh() has been distributed: refinement, and what comes after it. Collective.
   RCP<const mesh::Mesh> refined(RCP<const mesh::Mesh> mesh) const;
   mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
   int refinements() const;             ///< of the mesh that is used
+  int order() const;                   ///< that its cells are to have; of a file that does not say, 1
   const std::string& tips() const;     ///< the same
 
  private:
   void add_default_joints();  ///< to fractures of the mesh that name no material
+  void check_accuracy(base::Section& section) const;
+  mesh::Bisection bisected() const;  ///< not at all yet
 };
 
 /// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,

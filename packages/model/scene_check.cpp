@@ -58,11 +58,26 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   });
 }
 
-void compare_error_estimate(Comparison& comparison) {
+void compare_error_estimate(Comparison& comparison, const std::string& place) {
   physics::for_each_physics([&](auto physics) {
-    if (const auto why = physics.no_error_estimate(comparison.scene()); !why.empty())
-      comparison.fail("Output > \"error estimate\"", why);
+    if (const auto why = physics.no_error_estimate(comparison.scene()); !why.empty()) comparison.fail(place, why);
   });
+}
+
+void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
+  compare_error_estimate(comparison, "Accuracy");
+  for (const auto& [name, quantity] : accuracy.quantities) {
+    const auto place = fmt::format("Accuracy > quantities > {}", name);
+    for (const auto& fracture : quantity.fractures)
+      comparison.check_name("Accuracy", place + " > \"fractures\"", fracture, comparison.names().fractures);
+    if (!quantity.boundary.empty())
+      comparison.check_name("Accuracy", place + " > \"boundary\"", quantity.boundary, comparison.names().boundaries);
+    if (quantity.component == "z" && comparison.names().dim == 2)
+      comparison.fail(place + " > \"component\"", "is z, must be x or y in 2D");
+    const bool of_fractures = quantity.what != "stress" && quantity.what != "reaction";
+    if (const auto& all = comparison.names().fractures; of_fractures && all && all->empty())
+      comparison.fail(place, fmt::format("\"quantity\" is \"{}\", and the mesh has no fractures", quantity.what));
+  }
 }
 
 }  // namespace
@@ -102,7 +117,8 @@ Comparison compared(const Draft& draft, MeshNames names) {
   Comparison comparison(draft.value, draft.report, names, tied_boundaries(draft.value), end_of_first_step(draft));
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);
-  if (draft.value.output.error_estimate) compare_error_estimate(comparison);
+  if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"");
+  if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, *draft.value.accuracy);
   return comparison;
 }
 

@@ -28,7 +28,8 @@ void enrich(AnyMesh& mesh, const std::string& tips) {
 }  // namespace
 
 mesh::GlobalMesh Scene::make_mesh() const {
-  auto result = read_mesh();
+  if (bisection && !bisection->has_value()) bisection->emplace(bisected());
+  auto result = bisection ? (*bisection)->mesh(order()) : accuracy ? bisected().mesh(order()) : read_mesh();
   if (refinements() > 0)
     mesh::turn_for_refinement(result);
   else
@@ -39,7 +40,7 @@ mesh::GlobalMesh Scene::make_mesh() const {
 RCP<const mesh::Mesh> Scene::refined(RCP<const mesh::Mesh> coarse) const {
   if (refinements() == 0) return coarse;
   auto fine = mesh::refined(*coarse, refinements());
-  if ((mesh_file ? mesh_file->order.value_or(1) : mesh.order) == 2) fine = mesh::raise_order(*fine);
+  if (order() == 2) fine = mesh::raise_order(*fine);
   enrich(*fine, tips());
   return fine;
 }
@@ -48,10 +49,22 @@ const std::string& Scene::tips() const { return mesh_file ? mesh_file->tips : me
 
 int Scene::refinements() const { return mesh_file ? mesh_file->refinements : mesh.refinements; }
 
+int Scene::order() const { return mesh_file ? mesh_file->order.value_or(1) : mesh.order; }
+
+mesh::Bisection Scene::bisected() const {
+  const auto coarse = read_mesh();
+  SPREKK_CHECK(mesh::is_simplex(coarse.shape), "Sprekk > {}, must be {} with \"Accuracy\"",
+               mesh_file ? fmt::format("Mesh file > \"path\": {} has other cells", mesh_file->path)
+                         : fmt::format("Mesh > \"cell\": is {}", mesh.cell),
+               mesh::dimension(coarse.shape) == 2 ? "triangle" : "tetrahedron");
+  return mesh::Bisection(coarse);
+}
+
 mesh::GlobalMesh Scene::read_mesh() const {
+  const bool raised_later = refinements() > 0 || accuracy;
   if (!mesh_file) {
     auto box = mesh;
-    if (refinements() > 0) box.order = 1;
+    if (raised_later) box.order = 1;
     return mesh::make_box(box);
   }
   SPREKK_CHECK(!mesh_file->path.empty(),
@@ -59,7 +72,7 @@ mesh::GlobalMesh Scene::read_mesh() const {
                "and by `./sprekk run` and `./sprekk check`",
                origin);
   mesh::MshOptions options;
-  if (refinements() == 0) options.order = mesh_file->order;
+  if (!raised_later) options.order = mesh_file->order;
   for (const auto& [name, fracture] : mesh_file->fractures) {
     auto& orientation = options.fractures[name];
     orientation.swap_sides = fracture.swap_sides;
@@ -74,6 +87,10 @@ mesh::GlobalMesh Scene::read_mesh() const {
   auto result = mesh::read_msh(mesh_file->path, options);
   SPREKK_CHECK(refinements() == 0 || mesh::order(result.shape) == 1,
                "Sprekk > Mesh file > \"refinements\": is {}, must be 0 for cells of order 2 as in {}", refinements(),
+               mesh_file->path);
+  SPREKK_CHECK(!accuracy || mesh::order(result.shape) == 1,
+               "Sprekk > Mesh file > \"path\": {} has cells of order 2, must have order 1 with \"Accuracy\"; \"order\" "
+               "raises it",
                mesh_file->path);
   return mesh::tie_periodic(result, pairs);
 }

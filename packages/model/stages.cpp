@@ -11,7 +11,7 @@ namespace sprekk::model {
 namespace {
 
 /// Sections that are what they are during all of a run.
-constexpr std::array constant_sections = {"Mesh", "Mesh file", "Time", "Output", "Probes", "Stages"};
+constexpr std::array constant_sections = {"Mesh", "Mesh file", "Time", "Output", "Probes", "Stages", "Accuracy"};
 
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;

@@ -51,6 +51,7 @@ class Recovery final : public StressRecovery {
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
       Real square[3] = {};
       add_cell(c, u, fit, moments, to, square);
+      result.energy.push_back(square[0]);
       result.density.push_back(square[0] / square[2]);
       for (int k = 0; k < 2; ++k) squares[k] += square[k];
     }

@@ -20,7 +20,8 @@ template <class T>
 using ByField = std::array<T, 3>;
 
 struct StressError {
-  std::vector<Real> density;   ///< [owned cell] |s* - s_h|^2 of the cell / its volume, J/m^3
+  std::vector<Real> energy;    ///< [owned cell] |s* - s_h|^2 of the cell, J
+  std::vector<Real> density;   ///< the same / its volume, J/m^3
   Real error = 0, stress = 0;  ///< |s* - s_h| and |s*| of the whole mesh
   /// r(v) = integral (s* - s_h - s_b) : C^-1 (s(v)* - s(v)) for the functions v of each field, N [owned unknown]; s_b
   /// is the stress of the bubbles, which the problem takes to be stiffer than they are: that adds (alpha - B) beta in

@@ -44,21 +44,35 @@ class Unresolved {
     }
   }
 
-  /// Adds the forces on the unknowns of one side of a face whose cell is owned.
+  /// Adds what is unresolved to the forces on the unknowns of one side of a face whose cell is owned.
   template <class Forces>
   void add(LocalIndex f, int side, const Forces& to) const {
     const auto& face = mesh_.fracture_faces[f];
-    const LocalIndex cell = face.cell[side];
     const Matrix G = gradient(f, side);
+    const Vector centre = mean_place(face.cell[side], face.local_face[side]);
+    distribute(f, side, to, [&](int i, const auto& x) {
+      Real sum = 0;
+      for (int j = 0; j < dim; ++j) sum -= G[i][j] * (x[j] - centre[j]);
+      return sum;
+    });
+  }
+
+  /// Adds the forces of the traction itself, with the other sign.
+  template <class Forces>
+  void add_itself(LocalIndex f, int side, const Forces& to) const {
+    distribute(f, side, to, [&](int i, const auto&) { return traction_[2 * f + side][i]; });
+  }
+
+ private:
+  /// Adds +- integral t_i(x) v on a side, plus on side plus.
+  template <class Forces, class Traction>
+  void distribute(LocalIndex f, int side, const Forces& to, const Traction& t) const {
+    const auto& face = mesh_.fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
     const Real sign = side == mesh::plus ? 1 : -1;
     const auto nodes = mesh::face_nodes(shape)[face.local_face[side]];
     const auto node = [&](int k) { return mesh_.cells[cell * n_nodes + nodes[k]]; };
-    const Vector centre = mean_place(cell, face.local_face[side]);
-    const auto force = [&](int i, Real area, const auto& x) {
-      Real sum = 0;
-      for (int j = 0; j < dim; ++j) sum -= sign * area * G[i][j] * (x[j] - centre[j]);
-      return sum;
-    };
+    const auto force = [&](int i, Real area, const auto& x) { return sign * area * t(i, x); };
     assembly::for_each_face_point<shape>(
         mesh_, cell, face.local_face[side], [&](const auto& N, Real area, const auto& x) {
           for (int i = 0; i < dim; ++i) {
@@ -78,7 +92,6 @@ class Unresolved {
                 });
   }
 
- private:
   /// <x>: nodes at quarter points move it off the face's centre.
   Vector mean_place(LocalIndex cell, int local_face) const {
     Vector sum{};
@@ -128,11 +141,11 @@ class Unresolved {
   std::map<LocalIndex, std::vector<LocalIndex>> faces_at_;
 };
 
-}  // namespace
-
-void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
-                             const fields::Layout& traction_layout, const InitialStress& initial,
-                             const fields::Vector& traction, const ByField<RCP<fields::Vector>>& forces) {
+/// Calls add(unresolved, face, side, forces) for all sides whose cells are owned, and adds the forces.
+template <class Add>
+void add_forces(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
+                const fields::Layout& traction_layout, const InitialStress& initial, const fields::Vector& traction,
+                const ByField<RCP<fields::Vector>>& forces, const Add& add) {
   fields::Vector lambda(traction_layout.ghosted());
   lambda.doImport(traction, *traction_layout.import(), Tpetra::REPLACE);
   std::vector<fields::Vector> local;
@@ -144,7 +157,7 @@ void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields:
     for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
       for (const int side : {mesh::minus, mesh::plus})
         if (const LocalIndex cell = mesh.fracture_faces[f].cell[side]; cell >= 0 && cell < mesh.n_owned_cells)
-          unresolved.add(f, side, to);
+          add(unresolved, f, side, to);
   });
   for (std::size_t k = 0; k < layouts.size(); ++k) {
     if (!layouts[k]) continue;
@@ -152,6 +165,22 @@ void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields:
     owned.doExport(local[k], *layouts[k]->import(), Tpetra::ADD);
     forces[k]->update(1, owned, 1);
   }
+}
+
+}  // namespace
+
+void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
+                             const fields::Layout& traction_layout, const InitialStress& initial,
+                             const fields::Vector& traction, const ByField<RCP<fields::Vector>>& forces) {
+  add_forces(mesh, layouts, traction_layout, initial, traction, forces,
+             [](const auto& unresolved, LocalIndex f, int side, const auto& to) { unresolved.add(f, side, to); });
+}
+
+void add_opposite_tractions(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
+                            const fields::Layout& traction_layout, const fields::Vector& traction,
+                            const ByField<RCP<fields::Vector>>& forces) {
+  add_forces(mesh, layouts, traction_layout, {}, traction, forces,
+             [](const auto& all, LocalIndex f, int side, const auto& to) { all.add_itself(f, side, to); });
 }
 
 }  // namespace sprekk::physics

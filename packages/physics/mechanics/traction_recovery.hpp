@@ -18,4 +18,9 @@ void add_unresolved_traction(const mesh::Mesh& mesh, const ByField<const fields:
                              const fields::Layout& traction_layout, const InitialStress& initial,
                              const fields::Vector& traction, const ByField<RCP<fields::Vector>>& forces);
 
+/// Adds integral t . [[v]] over faces, N, for a traction t that is constant on each.
+void add_opposite_tractions(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
+                            const fields::Layout& traction_layout, const fields::Vector& traction,
+                            const ByField<RCP<fields::Vector>>& forces);
+
 }  // namespace sprekk::physics

@@ -1,0 +1,190 @@
+#include "model/adaptation.hpp"
+
+#include "base/over_ranks.hpp"
+#include "model/steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::model {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr int most_runs = 60;
+constexpr Real share = 0.5;          ///< of the sum of indicators that marked cells have
+constexpr Real share_of_time = 0.3;  ///< of the error that is asked for
+constexpr int most_halvings = 6;     ///< of steps
+
+/// Null for what is not known.
+json number(Real value) { return std::isfinite(value) ? json(value) : json(); }
+
+std::string percent(Real part, Real whole) {
+  return whole != 0 && std::isfinite(part) ? fmt::format("{:.2g} %", 100 * part / std::abs(whole)) : "-";
+}
+
+}  // namespace
+
+std::string Adaptation::Verdict::line() const {
+  const auto size = [](Real x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown"); };
+  return fmt::format("{}: {:.4g} {} +- {} ({}, asked {}), space {}, time {}", title, value, unit, size(error),
+                     percent(error, value), percent(asked, value), size(space), size(time));
+}
+
+namespace {
+
+/// Two steps for each.
+Time halved(const Time& time) {
+  Time result = time;
+  if (!time.schedule) {
+    result.steps = 2 * time.steps.value_or(1);
+    return result;
+  }
+  result.schedule->clear();
+  Real before = time.start;
+  for (const Real t : *time.schedule) {
+    result.schedule->insert(result.schedule->end(), {(before + t) / 2, t});
+    before = t;
+  }
+  return result;
+}
+
+/// The quantities of a scene at its end; none: a step failed. Collective.
+std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> comm) {
+  Model model(scene, comm);
+  Steps steps(model);
+  while (steps.any())
+    if (!steps.take().report.converged) return {};
+  ErrorEstimator estimator(model);
+  estimator.want_reactions();
+  Goals goals(model);
+  const auto outputs = model.system().outputs(model.state());
+  goals.add(outputs, estimator(outputs), estimator);
+  std::map<std::string, Real> values;
+  for (const auto& [name, estimate] : goals.estimates()) values[name] = estimate.value;
+  return values;
+}
+
+}  // namespace
+
+/// Errors of implicit steps fall with their length: what halving changes is half of the error before, and all of that
+/// after it.
+void Adaptation::choose_steps(Scene scene, RCP<const Comm> comm) {
+  auto values = values_at_end(scene, comm);
+  for (int k = 0; k < most_halvings && !values.empty(); ++k) {
+    Scene finer = scene;
+    finer.time = halved(scene.time);
+    const auto others = values_at_end(finer, comm);
+    if (others.empty()) break;
+    bool enough = true;
+    for (const auto& [name, quantity] : scene.accuracy->quantities) {
+      const Real change = std::abs(others.at(name) - values.at(name));
+      enough = enough && 2 * change <= share_of_time * quantity.asked(others.at(name));
+      time_errors_[name] = change;
+    }
+    if (enough) {
+      for (auto& [name, error] : time_errors_) error *= 2;
+      break;
+    }
+    scene = std::move(finer);
+    values = others;
+  }
+  time_ = scene.time;
+}
+
+void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
+  scene.bisection = bisection_;
+  if (!time_) choose_steps(scene, comm);
+  scene.time = *time_;
+}
+
+/// Were errors to fall by the same factor r = E_k / E_(k-1) as estimates, the change since the last mesh would be
+/// e_(k-1) - e_k, hence e_k = r / (1 - r) times it. r is taken to be between 1/3 and 2/3. An estimate that falls by
+/// more than half at once may be luck, and is not believed at once.
+Real Adaptation::space_error(const std::string& name) const {
+  const auto& now = runs_.back().estimates.at(name);
+  if (runs_.size() < 2) return now.error;
+  const auto& before = runs_[runs_.size() - 2].estimates.at(name);
+  const Real change = std::abs(now.value - before.value);
+  const Real falls = before.error > 0 ? now.error / before.error : 1;
+  const Real r = std::isfinite(falls) ? std::clamp<Real>(falls, 1.0 / 3, 2.0 / 3) : 2.0 / 3;
+  return std::max({now.error, before.error / 2, r / (1 - r) * change});
+}
+
+bool Adaptation::reached() const {
+  return std::all_of(verdicts_.begin(), verdicts_.end(), [](const auto& verdict) { return verdict.reached; });
+}
+
+/// Which of the limits forbids a finer mesh, as far as the last one tells; empty: none.
+std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const {
+  const auto& run = runs_.back();
+  const Real took = run.seconds - (runs_.size() > 1 ? runs_[runs_.size() - 2].seconds : 0);
+  const Real grows =
+      runs_.size() > 1 ? std::max<Real>(static_cast<Real>(run.cells) / runs_[runs_.size() - 2].cells, 1.2) : 1.5;
+  const Real bytes = base::sum_over_ranks(comm, static_cast<Real>(base::peak_memory_bytes()));
+  if (grows * static_cast<Real>(run.cells) > static_cast<Real>(accuracy.cells))
+    return fmt::format("the next mesh would have more than {} cells (\"cells\")", accuracy.cells);
+  if (accuracy.seconds && run.seconds + grows * took > *accuracy.seconds)
+    return fmt::format("the next run would end after {:.3g} s (\"seconds\")", *accuracy.seconds);
+  if (accuracy.memory && grows * bytes > *accuracy.memory)
+    return fmt::format("the next run would take more than {:.3g} bytes (\"memory\")", *accuracy.memory);
+  if (runs_.size() >= most_runs) return fmt::format("{} meshes were not enough", most_runs);
+  return "";
+}
+
+void Adaptation::judge(const Model& model, const Goals& goals) {
+  const auto& accuracy = *model.scene().accuracy;
+  const auto& mesh = model.mesh();
+  const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
+  runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), goals.estimates()});
+  verdicts_.clear();
+  for (const auto& [name, quantity] : accuracy.quantities) {
+    const auto& now = runs_.back().estimates.at(name);
+    const Real space = space_error(name), asked = quantity.asked(now.value);
+    const auto known = time_errors_.find(name);
+    const Real time = known == time_errors_.end() ? std::numeric_limits<Real>::infinity() : known->second;
+    verdicts_.push_back({name, quantity.title(), quantity.unit(mesh.dim()), now.value, space + time, space, time, asked,
+                         runs_.size() > 1 && space + time <= asked});
+  }
+  const bool too_long = std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.asked; });
+  why_ = reached()  ? "reached"
+         : too_long ? "steps that are halved once more fail, or change it by more than is asked for"
+                    : limit(accuracy, *mesh.comm);
+}
+
+void Adaptation::refine(const Model& model, const Goals& goals) {
+  std::map<std::string, Real> weights;
+  for (const auto& verdict : verdicts_) {
+    const Real left = verdict.asked - verdict.time;
+    const Real ratio = left > 0 && std::isfinite(verdict.space) ? verdict.space / left : 1;
+    if (!verdict.reached) weights[verdict.name] = std::max<Real>(ratio, 1e-3);
+  }
+  const auto& mesh = model.mesh();
+  std::vector<GlobalIndex> cells;
+  for (const LocalIndex cell : marked(*mesh.comm, goals.indicators(weights), share))
+    cells.push_back(mesh.origin.is_null() ? mesh.cell_id[cell] : mesh.origin->cells[cell]);
+  cells = base::gather_over_ranks(*mesh.comm, cells);
+  base::collectively(*mesh.comm, [&] {
+    if (bisection_->has_value()) (*bisection_)->refine(cells, mesh.dim());
+  });
+}
+
+json Adaptation::summary() const {
+  json result = {{"reached", reached()}, {"ended", why_}, {"quantities", json::object()}, {"meshes", json::array()}};
+  for (const auto& verdict : verdicts_)
+    result["quantities"][verdict.name] = {
+        {"title", verdict.title},         {"unit", verdict.unit},       {"value", verdict.value},
+        {"error", number(verdict.error)}, {"asked", verdict.asked},     {"space", number(verdict.space)},
+        {"time", number(verdict.time)},   {"reached", verdict.reached}, {"line", verdict.line()}};
+  for (const auto& run : runs_) {
+    json one = {{"cells", run.cells}, {"seconds", run.seconds}, {"quantities", json::object()}};
+    for (const auto& [name, estimate] : run.estimates)
+      one["quantities"][name] = {{"value", estimate.value}, {"error", number(estimate.error)}};
+    result["meshes"].push_back(one);
+  }
+  return result;
+}
+
+}  // namespace sprekk::model

@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""Errors that were asked for, that runs say they reached, and that they have; beside uniform meshes of order 1 and 2."""
+import argparse
+import csv
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/verification")]
+
+import exact  # noqa: E402
+import meshes  # noqa: E402
+import style  # noqa: E402
+
+REQUESTS = (0.1, 0.01, 0.001)
+OVERSHOOT = 1.5  # by which a true error may exceed what was asked
+SPEEDUP = {2: 5, 3: 3}  # at 1 %
+REFERENCE = 5e-5  # asked of the run that stands in for an exact value
+TIME_LIMIT = 1800
+
+
+@dataclass
+class Case:
+    name: str
+    scene: str
+    quantity: str
+    fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component
+    coarse: object        # entries, or a function of a folder that makes a mesh: where adaptive runs begin
+    uniform: list         # the same, from coarse to fine
+    exact: float = None   # None: that of a run of order 2 that is asked for REFERENCE
+    sets: tuple = ()
+    dimension: int = 2
+    requests: tuple = REQUESTS
+    orders: tuple = (1, 2)
+
+
+@dataclass
+class Row:
+    kind: str             # uniform or adaptive
+    order: int
+    asked: float          # of adaptive runs, relative
+    cells: int
+    seconds: float
+    value: float
+    estimate: float = math.nan
+    reached: bool = True
+    error: float = math.nan  # relative, true
+
+
+def crack(scene, quantity, value, angle=0):
+    """One in an infinite body, with the exact displacement on a box."""
+    mesh = lambda h: lambda folder: meshes.uniform_crack(folder, h, angle)  # noqa: E731
+    return dict(scene=f"verification/{scene}.xml", quantity=quantity, fractures="crack", coarse=mesh(1.6),
+                uniform=[mesh(h) for h in (0.8, 0.4, 0.2, 0.1, 0.05, 0.025)], exact=value)
+
+
+def free_sides_shear():
+    """That the reference has."""
+    rows = csv.reader(open(ROOT / "perf/verification/references/free_sides.csv"))
+    return next(float(row[0]) for row in rows if row[0][0].isdigit())
+
+
+def box(*counts, dimension=2):
+    return [(f"Mesh.cells={{{', '.join([str(n)] * dimension)}}}",) for n in counts]
+
+
+def cases():
+    mean = math.pi / 4  # of the root of 1 - x^2
+    psi, G, K, load = math.radians(20), 10e9, 16.67e9, 100e6
+    drop = load * math.sin(psi) * (math.cos(psi) - math.tan(math.radians(30)) * math.sin(psi))
+    nu = (K - 2 * G / 3) / (2 * (K + G / 3))
+    simplices = ("Mesh.cell=triangle",)
+    penny = lambda h, smallest, growth: lambda folder: meshes.penny(folder, h, smallest, growth)  # noqa: E731
+    junction = lambda h, ratio: lambda folder: meshes.t_junction(folder, h, ratio, 32000)  # noqa: E731
+    strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
+    wavy = exact.Wavy(0.4, 1, 0.25)
+    return [
+        Case("crack opening", **crack("sneddon", "opening", 1.5e-3 * mean)),
+        Case("sliding", **crack("sneddon_shear", "slip", 1.5e-3 * mean)),
+        Case("inclined with friction", **crack("inclined_crack", "slip", 2 * (1 - nu) * drop / G * mean, 20)),
+        Case("penny", "verification/penny.xml", "opening", "crack", penny(1, 0.5, 0.5),
+             [penny(1, 0.4, 0), penny(0.4, 0.4, 0), penny(0.25, 0.25, 0), penny(0.16, 0.16, 0)], dimension=3, requests=REQUESTS[:2]),
+        Case("wavy contact", "verification/wavy.xml", "opening", "", strip(0.1), [strip(h) for h in (0.1, 0.05, 0.025, 0.0125, 0.00625)],
+             float(wavy.opening_mean(0.0, 0.5))),
+        Case("T junction", "verification/t_junction.xml", "slip", "horizontal", junction(1, 0.5),
+             [junction(h, r) for h, r in ((1, 0.5), (0.5, 0.25), (0.25, 0.25), (0.125, 0.25))]),
+        Case("X crossing", "verification/crossing_2d.xml", "slip", "flat", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
+        Case("reaction", "verification/free_sides_2d.xml", "reaction", "north x", box(8)[0], box(8, 16, 32, 64, 128), free_sides_shear(), sets=simplices),
+        Case("compliant joint", "verification/free_sides_2d.xml", "shear force", "", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
+    ]
+
+
+def entries(source, folder):
+    return (f"Mesh file.path={source(folder)}",) if callable(source) else tuple(source)
+
+
+def start(options, case, order, source, asked, label, others=()):
+    """The results of a run; without `asked` on the mesh as it is."""
+    directory = options.output / re.sub(r"\W+", "_", case.name) / label
+    shutil.rmtree(directory, ignore_errors=True)
+    mesh = entries(source, options.output / "meshes")
+    section = "Mesh file" if callable(source) else "Mesh"
+    sets = ["Output.vtu=false", *case.sets, *mesh, f"{section}.order={order}", *others]
+    if asked:
+        goal = "Accuracy.quantities.goal"
+        sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={asked:g}", f"Accuracy.seconds={options.seconds:g}"]
+        if case.quantity == "reaction":
+            sets += [f"{goal}.{entry}={word}" for entry, word in zip(("boundary", "component"), case.fractures.split())]
+        elif case.fractures:
+            sets.append(f"{goal}.fractures={{{case.fractures}}}")
+    command = [str(options.binary), "run", str(ROOT / "xml" / case.scene), "--output", str(directory)]
+    command += [word for entry in sets for word in ("--set", entry)]
+    if options.ranks > 1:
+        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(options.ranks)] + command
+    done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    if done.returncode != 0:
+        words = [line for line in (done.stdout + done.stderr).splitlines() if any(c.isalpha() for c in line)] or ["no word"]
+        raise RuntimeError(f"{case.name}, {label}: status {done.returncode}: {words[-1]}")
+    return json.loads((directory / "results.json").read_text())
+
+
+def value_of(case, results):
+    """The quantity as results.json has it without being asked for."""
+    if case.quantity == "reaction":
+        boundary, component = case.fractures.split()
+        return results["steps"][-1]["reactions"][boundary]["xyz".index(component)]
+    fractures = results["steps"][-1]["fractures"]
+    chosen = [fractures[name] for name in (case.fractures.split(",") if case.fractures else fractures)]
+    area = sum(one["area"] for one in chosen)
+    if case.quantity in ("slip", "opening"):
+        return sum(one["area"] * one[f"mean_{case.quantity}"] for one in chosen) / area
+    return sum(one["area"] * math.hypot(*one["mean_traction"]["local"][1:]) for one in chosen)  # of one sign
+
+
+def uniform(options, case, order, k, source, steps):
+    results = start(options, case, order, source, None, f"uniform_{order}_{k}", (f"Time.steps={steps}",))
+    timing = {name: phase["seconds"] for name, phase in results["timing"].items()}
+    seconds = sum(timing[name] for name in ("mesh", "set-up_of_the_solver", "time_steps"))
+    return Row("uniform", order, math.nan, results["mesh"]["cells"], seconds, value_of(case, results))
+
+
+def adaptive(options, case, order, asked, label=None):
+    results = start(options, case, order, case.coarse, asked, label or f"adaptive_{order}_{asked:g}")
+    accuracy = results["accuracy"]
+    goal, last = accuracy["quantities"]["goal"], accuracy["meshes"][-1]
+    estimate = math.inf if goal["error"] is None else goal["error"] / abs(goal["value"])
+    return Row("adaptive", order, asked, last["cells"], last["seconds"], goal["value"], estimate, goal["reached"]), len(results["steps"])
+
+
+def seconds_at(rows, error):
+    """Of uniform meshes, those that an error takes: between runs log by log, beyond the first and the last as the two beside them
+    tell, whose errors shrink; the least of all orders."""
+    best = math.inf
+    for order in {row.order for row in rows}:
+        of = []
+        for row in (row for row in rows if row.order == order):
+            if not of or row.error < of[-1].error:
+                of.append(row)
+        if len(of) < 2:
+            continue
+        k = next((k for k in range(1, len(of)) if of[k].error <= error), len(of) - 1)
+        a, b = of[k - 1], of[k]
+        slope = max(math.log(b.seconds / a.seconds), 0) / math.log(a.error / b.error)
+        best = min(best, b.seconds * (b.error / error)**slope)
+    return best
+
+
+def measure(options, case):
+    """Uniform runs have the steps of the most accurate adaptive one."""
+    requests = case.requests[:2] if options.quick else case.requests
+    runs = [adaptive(options, case, order, asked) for order in case.orders for asked in requests]
+    reference, steps = (case.exact, runs[-1][1]) if case.exact else known(adaptive(options, case, 2, 1e-3 if options.quick else REFERENCE, "reference"))
+    rows = [uniform(options, case, order, k, source, steps) for order in case.orders
+            for k, source in enumerate(case.uniform[:(len(case.uniform) if order == 1 else -1)][:2 if options.quick else None])]
+    rows += [row for row, _ in runs]
+    for row in rows:
+        row.error = abs(row.value / reference - 1)
+    return rows
+
+
+def known(run):
+    row, steps = run
+    if not row.reached:
+        raise RuntimeError(f"its reference is known to {100 * row.estimate:.2g} % only; take more --seconds")
+    return row.value, steps
+
+
+def table(case, rows):
+    print(f"\n{case.name}: {case.quantity}{' of ' + case.fractures if case.fractures else ''}")
+    print(f"{'':10}{'order':>6}{'asked':>9}{'cells':>9}{'seconds':>9}{'true':>11}{'estimate':>11}{'est./true':>11}{'speed-up':>10}")
+    plain = [row for row in rows if row.kind == "uniform"]
+    for row in rows:
+        words = f"{row.kind:10}{row.order:>6}{'' if math.isnan(row.asked) else format(row.asked, 'g'):>9}{row.cells:>9}{row.seconds:>9.2f}{row.error:>11.2e}"
+        if row.kind == "adaptive":
+            words += f"{row.estimate:>11.2e}{row.estimate / row.error:>11.2f}{seconds_at(plain, row.error) / row.seconds:>10.1f}"
+            words += "" if row.reached else "   not reached, it says"
+        print(words, flush=True)
+
+
+def draw(measured, file):
+    figure, all_axes = style.plt.subplots(-(-len(measured) // 3), 3, figsize=(10, 3 * -(-len(measured) // 3)), squeeze=False)
+    for axes, (case, rows) in zip(all_axes.flat, measured):
+        for kind, order in dict.fromkeys((row.kind, row.order) for row in rows):
+            of = [row for row in rows if (row.kind, row.order) == (kind, order)]
+            colour = style.LINES[order - 1 + 2 * (kind == "adaptive")]
+            axes.loglog([row.seconds for row in of], [row.error for row in of], "o-", color=colour, markersize=4, label=f"{kind}, order {order}")
+            if kind == "adaptive":
+                axes.loglog([row.seconds for row in of], [row.estimate for row in of], "x:", color=colour, markersize=4)
+        axes.set_title(case.name)
+        axes.set_xlabel("seconds")
+    for axes in all_axes.flat[len(measured):]:
+        axes.set_visible(False)
+    all_axes[0][0].set_ylabel("relative error; dotted: estimate")
+    all_axes[0][0].legend()
+    figure.tight_layout()
+    figure.savefig(file, dpi=130)
+    style.plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./sprekk perf accuracy", description=__doc__)
+    parser.add_argument("--only", action="append", help="cases whose names begin so; may be repeated")
+    parser.add_argument("--quick", action="store_true", help="two coarse meshes, 10 %% and 1 %%, of three cases")
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=300, help="limit of an adaptive run")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk")
+    parser.add_argument("--output", type=Path, default=Path("output/accuracy"))
+    options = parser.parse_args()
+    options.binary, options.output = options.binary.resolve(), options.output.resolve()
+    chosen = [case for case in cases() if not options.only or any(case.name.startswith(name) for name in options.only)]
+    if options.quick and not options.only:
+        chosen = [case for case in chosen if case.name in ("sliding", "wavy contact", "X crossing")]
+    if not chosen:
+        parser.error(f"no case begins so; there are: {', '.join(case.name for case in cases())}")
+    measured, failures = [], 0
+    for case in chosen:
+        try:
+            measured.append((case, measure(options, case)))
+            table(*measured[-1])
+        except (RuntimeError, meshes.NoGmsh) as error:
+            failures += not isinstance(error, meshes.NoGmsh)
+            print(f"\n{case.name}: {'skipped' if isinstance(error, meshes.NoGmsh) else 'failed'}: {error}", flush=True)
+    if not measured:
+        return 1 if failures else 0
+    options.output.mkdir(parents=True, exist_ok=True)
+    with open(options.output / "accuracy.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["case", *vars(measured[0][1][0])])
+        writer.writerows([case.name, *vars(row).values()] for case, rows in measured for row in rows)
+    draw(measured, options.output / "accuracy.png")
+    asked = [(case, row, rows) for case, rows in measured for row in rows if row.kind == "adaptive"]
+    reached = [row for _, row, _ in asked if row.reached and row.error <= OVERSHOOT * row.asked]
+    ratios = [row.estimate / row.error for _, row, _ in asked if row.error > 0]
+    speed = [max(seconds_at([r for r in rows if r.kind == "uniform"], row.error) / row.seconds for row in rows if row.kind == "adaptive" and row.asked == 0.01)
+             for _, rows in measured]
+    print(f"\nrequested={len(asked)} reached={len(reached)} worst_overshoot={max(row.error / row.asked for _, row, _ in asked):.2f} "
+          f"effectivity={min(ratios):.2f}..{max(ratios):.2f} speedup_1pc={min(speed):.1f}")
+    return 1 if failures or (options.quick and len(reached) < len(asked)) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

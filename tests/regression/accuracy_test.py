@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""The section Accuracy: accuracy_test.py PROGRAM ROOT MPIEXEC"""
+import math
+
+from program import ProgramTest, main
+
+SHEAR, CRACK, CROSSING = "verification/sneddon_shear.xml", "verification/sneddon.xml", "verification/crossing_2d.xml"
+EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
+QUIET = "Output.vtu=false"
+
+
+def goal(quantity, name="goal", **entries):
+    return [f"Accuracy.quantities.{name}.{key}={value}" for key, value in {"quantity": quantity, **entries}.items()]
+
+
+class Accuracy(ProgramTest):
+    def refuse(self, words, scene, *sets):
+        arguments = [word for entry in sets for word in ("--set", entry)]
+        _, said = self.call("check", self.scene(scene), *arguments, expect=1)
+        self.assertIn(str(self.scene(scene)), said)
+        for word in words:
+            self.assertIn(word, said)
+
+    def test_reaches_what_is_asked(self):
+        for scene, quantity in ((CRACK, "opening"), (SHEAR, "slip")):
+            for order in (1, 2):
+                results = self.run_scene(scene, *goal(quantity, fractures="{crack}", relative=0.01), f"Mesh file.order={order}", QUIET)
+                accuracy = results["accuracy"]
+                one = accuracy["quantities"]["goal"]
+                self.assertTrue(accuracy["reached"] and one["reached"])
+                self.assertEqual((one["unit"], one["title"]), ("m", f'{quantity} of "crack"'))
+                self.assertAlmostEqual(one["asked"], 0.01 * one["value"])
+                self.assertLessEqual(one["error"], one["asked"])
+                self.assertLess(abs(one["value"] - EXACT), 1.5 * one["asked"], (scene, order))
+                self.assertTrue(one["line"].startswith(f'{quantity} of "crack": {one["value"]:.4g} m +- '), one["line"])
+                self.assertIn("asked 1 %)", one["line"])
+                cells = [mesh["cells"] for mesh in accuracy["meshes"]]
+                self.assertGreaterEqual(len(cells), 2)  # one mesh alone tells too little
+                self.assertEqual(cells, sorted(set(cells)))
+                self.assertEqual(results["mesh"]["cells"], cells[-1])
+                mean = results["steps"][-1]["fractures"]["crack"][f"mean_{quantity}"]
+                self.assertAlmostEqual(mean, one["value"], delta=1e-12)
+
+    def test_any_number_of_ranks_makes_the_same_meshes(self):
+        sets = [*goal("slip", fractures="{flat}", relative=0.02), *goal("stress", "all", relative=0.1),
+                *goal("normal force", "force", fractures="{flat, steep}", absolute=3e-4), "Accuracy.cells=3000", QUIET]
+        runs = [self.run_scene(CROSSING, *sets, ranks=ranks)["accuracy"] for ranks in (1, 3)]
+        for first, other in zip(*(run["meshes"] for run in runs)):
+            self.assertEqual(first["cells"], other["cells"])
+            for name, quantity in first["quantities"].items():
+                for key in ("value", "error"):
+                    self.assertAlmostEqual(quantity[key] / other["quantities"][name][key], 1, delta=1e-5)
+        self.assertGreaterEqual(len(runs[0]["meshes"]), 3)
+        self.assertEqual(*(len(run["meshes"]) for run in runs))
+
+    def test_tells_how_far_it_came(self):
+        sets = [*goal("opening", relative=1e-5), "Accuracy.cells=900", QUIET]
+        results = self.run_scene(CRACK, *sets)
+        accuracy = results["accuracy"]
+        self.assertEqual(results["status"], "completed")
+        self.assertFalse(accuracy["reached"])
+        self.assertIn("900 cells", accuracy["ended"])
+        self.assertTrue(all(mesh["cells"] <= 900 for mesh in accuracy["meshes"]))
+        arguments = [word for entry in sets for word in ("--set", entry)]
+        for strict, status in (((), 0), (("--strict",), 3)):
+            _, said = self.call("run", self.scene(CRACK), "--output", "out", *strict, *arguments, expect=status)
+            self.assertIn("warning: opening of all fractures: ", said)
+            self.assertIn('not reached, for the next mesh would have more than 900 cells ("cells")', said)
+
+    def test_limits_in_seconds_and_memory(self):
+        for entry, words in (("seconds=1e-3 s", '("seconds")'), ("memory=1", '("memory")')):
+            accuracy = self.run_scene(CRACK, *goal("opening", relative=1e-5), f"Accuracy.{entry}", QUIET)["accuracy"]
+            self.assertEqual(len(accuracy["meshes"]), 1)
+            self.assertIn(words, accuracy["ended"])
+
+    def test_refuses_in_words(self):
+        good = goal("slip", relative=0.01)
+        self.refuse(['Sprekk > Mesh > "cell": is quadrilateral, must be triangle with "Accuracy"'], CROSSING, *good, "Mesh.cell=quadrilateral")
+        self.refuse(['Mesh > "refinements": is 1, must be 0 with "Accuracy"'], CROSSING, *good, "Mesh.refinements=1")
+        self.refuse(['Output > "checkpoints": must be absent with "Accuracy"'], CROSSING, *good, "Output.checkpoints.steps=1")
+        self.refuse(['"quantity": is "slipp", must be one of', 'Did you mean "slip"?'], CROSSING, *goal("slipp", relative=0.01))
+        self.refuse(['goal: needs "relative", "absolute", or both'], CROSSING, *goal("slip"))
+        self.refuse(['Accuracy > quantities > goal > "fractures": is "flatt", must be one of "flat", "steep"'], CROSSING, *goal("slip", fractures="{flatt}", relative=0.01))
+        self.refuse(['"fractures": must be absent: "stress" is of none'], CROSSING, *goal("stress", fractures="{flat}", relative=0.01))
+        self.refuse(['"component": is z, must be x or y in 2D'], CROSSING, *goal("reaction", relative=0.01, boundary="north", component="z"))
+        self.refuse(['"boundary": missing; it is required of a reaction'], CROSSING, *goal("reaction", relative=0.01))
+        self.refuse(['"boundary": is "nort", must be one of', 'Did you mean "north"?'], CROSSING, *goal("reaction", relative=0.01, boundary="nort"))
+        self.refuse(['Accuracy: is of stress and jumps without a fluid; not available with "Flow"'], "poro/shut_in_2d.xml", *good)
+        _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
+                            *(word for entry in good for word in ("--set", entry)), expect=1)
+        self.assertIn('--restart: does not go with the section "Accuracy"', said)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,231 @@
+#include "mesh/bisect.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+
+#include "mesh/cell_geometry.hpp"
+#include "places.hpp"
+
+namespace sprekk::mesh::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::vector<std::string> simplices{"triangle", "tetrahedron"};
+
+using Front = std::function<Real(const Vector&)>;  ///< distance from it
+
+/// Halves the cells that the front may go through, `times` times by one halving each.
+void refine_towards(const Front& front, int times, Bisection& bisection) {
+  for (int pass = 0; pass < times; ++pass) {
+    const auto mesh = bisection.mesh();
+    const int n = n_corners(mesh.shape);
+    std::vector<GlobalIndex> marked;
+    for (GlobalIndex c = 0; c < mesh.n_cells(); ++c) {
+      const Vector centre = cell_centre(mesh, c);
+      Real radius = 0;
+      for (int k = 0; k < n; ++k) radius = std::max(radius, norm(point(mesh, mesh.cells[c * n + k]) - centre));
+      if (front(centre) < 1.01 * radius) marked.push_back(c);
+    }
+    bisection.refine(marked);
+  }
+}
+
+/// A point in 2D, a circle in 3D.
+Front ring(const Vector& middle, Real radius) {
+  return [=](const Vector& x) {
+    const Vector r = x - middle;
+    return radius == 0 ? norm(r) : std::hypot(std::hypot(r[0], r[1]) - radius, r[2]);
+  };
+}
+
+/// Around the corner of a fracture, if there is one.
+Front front_in(const BoxMesh& box) {
+  Vector middle{0.6, 0.45, box.cells.size() == 2 ? 0 : 0.3};
+  if (!box.fractures.empty())
+    std::copy_n(box.fractures.begin()->second.lower_corner.begin(), box.cells.size(), middle.begin());
+  return ring(middle, box.cells.size() == 2 ? 0 : 0.4);
+}
+
+/// Volumes of regions, areas of boundaries and of fractures, by name; and sums of their area vectors.
+std::map<std::string, std::array<Real, 4>> sizes_of(const GlobalMesh& mesh) {
+  std::map<std::string, std::array<Real, 4>> sizes;
+  const auto add = [&](const std::string& name, Real size, const Vector& vector) {
+    auto& sum = sizes[name];
+    sum[0] += size;
+    for (int i = 0; i < 3; ++i) sum[i + 1] += vector[i];
+  };
+  for (GlobalIndex c = 0; c < mesh.n_cells(); ++c)
+    add("region " + mesh.region_names[mesh.cell_region[c]], cell_volume(mesh, c), {});
+  for (const auto& face : mesh.boundary_faces) {
+    const Vector area = area_vector(mesh, face.cell, face.local_face);
+    add("boundary " + mesh.boundary_names[face.boundary], norm(area), area);
+  }
+  for (const auto& face : mesh.fracture_faces)
+    for (int side : {minus, plus}) {
+      const Vector area = area_vector(mesh, face.cell[side], face.local_face[side]);
+      add(std::string(side == minus ? "minus " : "plus ") + mesh.single_fractures[face.single].name, norm(area), area);
+    }
+  return sizes;
+}
+
+/// Every face of a cell is shared with one other cell, or on one boundary, or on one side of a fracture; both sides of
+/// faces of fractures have the same corners. No cell is inside out.
+void expect_conforming(const GlobalMesh& mesh) {
+  const int n = n_faces(mesh.shape);
+  std::vector<int> known(mesh.n_cells() * n, 0);
+  const auto neighbour = face_neighbours(mesh);
+  for (std::size_t face = 0; face < known.size(); ++face) known[face] = neighbour[face] >= 0;
+  for (const auto& face : mesh.boundary_faces) ++known[face.cell * n + face.local_face];
+  for (const auto& face : mesh.fracture_faces) {
+    std::array<SortedCorners, 2> points{};
+    for (int side : {minus, plus}) {
+      const auto at = face.cell[side] * n + face.local_face[side];
+      if (neighbour[at] < 0) ++known[at];  // of a fracture of one face no node is split
+      points[side] = sorted_corners(mesh, face.cell[side], face.local_face[side]);
+      for (auto& node : points[side]) node = node < 0 ? node : mesh.parent_node[node];
+      std::sort(points[side].begin(), points[side].end());
+    }
+    EXPECT_EQ(points[minus], points[plus]);
+  }
+  EXPECT_EQ(known, std::vector<int>(known.size(), 1));
+  for (GlobalIndex c = 0; c < mesh.n_cells(); ++c) ASSERT_GT(cell_volume(mesh, c), 0);
+}
+
+GlobalIndex n_tips(const GlobalMesh& mesh) {
+  const auto tips = tip_nodes(mesh);
+  return std::accumulate(tips.begin(), tips.end(), GlobalIndex{0});
+}
+
+TEST(Bisect, BeginsWithTheMeshThatItIsGiven) {
+  for (const auto& cell : simplices)
+    for (auto box : boxes(cell))
+      for (int order : {1, 2}) {
+        const Bisection bisection(make_box(box));
+        auto same = box;
+        same.order = order;
+        EXPECT_TRUE(places_of(bisection.mesh(order)) == places_of(make_box(same))) << cell << " " << order;
+      }
+}
+
+TEST(Bisect, ConformsAndKeepsRegionsBoundariesAndFractures) {
+  for (const auto& cell : simplices)
+    for (const auto& box : boxes(cell)) {
+      const auto coarse = make_box(box);
+      Bisection bisection(coarse);
+      refine_towards(front_in(box), 7, bisection);
+      const auto fine = bisection.mesh();
+      EXPECT_GT(fine.n_cells(), coarse.n_cells() + 5);
+      EXPECT_EQ(fine.n_cells(), bisection.n_cells());
+      expect_conforming(fine);
+      const auto sizes = sizes_of(fine);
+      for (const auto& [name, size] : sizes_of(coarse))
+        for (int i = 0; i < 4; ++i) EXPECT_NEAR(sizes.at(name)[i], size[i], 1e-10) << cell << " " << name;
+      if (coarse.dim() == 2) {  // no fracture has become longer, or parts
+        EXPECT_EQ(n_tips(fine), n_tips(coarse));
+      }
+    }
+}
+
+/// A box of 3 steps whose nodes inside are moved.
+GlobalMesh shaken(GlobalMesh mesh) {
+  const int dim = mesh.dim();
+  for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node) {
+    auto* const x = &mesh.coordinates[node * dim];
+    if (std::any_of(x, x + dim, [](Real c) { return c == 0 || c == 3; })) continue;
+    for (int i = 0; i < dim; ++i) x[i] += 0.15 * std::sin(12.9 * static_cast<Real>(node) + 78.2 * i);
+  }
+  return mesh;
+}
+
+/// A bounded number of shapes: those that 6 passes have made are all there are.
+TEST(Bisect, KeepsShapesTowardsAFront) {
+  for (const auto& cell : simplices) {
+    const auto box = unit_steps(cell, std::vector<int>(dim_of(cell), 3));
+    const auto mesh = shaken(make_box(box));
+    const CellGeometry geometry(mesh.shape);
+    const auto worst = [&](const GlobalMesh& of) {
+      Real least = 1;
+      for (GlobalIndex c = 0; c < of.n_cells(); ++c) least = std::min(least, geometry.scaled_jacobian(of, c)[0]);
+      return least;
+    };
+    Bisection bisection(mesh);
+    refine_towards(front_in(box), 6, bisection);
+    const Real early = worst(bisection.mesh());
+    refine_towards(front_in(box), 12, bisection);
+    const auto fine = bisection.mesh();
+    expect_conforming(fine);
+    EXPECT_GT(early, 0.25 * worst(mesh)) << cell;
+    EXPECT_GT(worst(fine), 0.99 * early) << cell;
+  }
+}
+
+/// Pressed along the diagonal until each cell has several longest edges.
+GlobalMesh pressed(GlobalMesh mesh) {
+  const int dim = mesh.dim();
+  const Real less = (1 - (dim == 2 ? std::sqrt(1.0 / 3) : 0.5)) / dim;
+  for (auto x = mesh.coordinates.begin(); x != mesh.coordinates.end(); x += dim) {
+    const Real sum = std::accumulate(x, x + dim, Real{0});
+    for (int i = 0; i < dim; ++i) x[i] -= less * sum;
+  }
+  return mesh;
+}
+
+/// The corners of every second cell in another order.
+GlobalMesh turned(GlobalMesh mesh) {
+  const int n = n_corners(mesh.shape);
+  for (GlobalIndex c = 0; c < mesh.n_cells(); c += 2)
+    std::rotate(&mesh.cells[c * n], &mesh.cells[c * n] + 1, &mesh.cells[c * n] + 3);
+  const auto turn = [](GlobalIndex cell, int& face) {
+    if (cell % 2 == 0 && face < 3) face = (face + 2) % 3;
+  };
+  for (auto& face : mesh.boundary_faces) turn(face.cell, face.local_face);
+  for (auto& face : mesh.fracture_faces)
+    for (int side : {minus, plus}) turn(face.cell[side], face.local_face[side]);
+  return mesh;
+}
+
+/// Which of equal edges is halved first, too, is a matter of places.
+TEST(Bisect, DoesNotDependOnNumbers) {
+  for (const auto& cell : simplices)
+    for (auto box : boxes(cell)) {
+      Bisection bisection(pressed(make_box(box)));
+      box.renumbering_seed = 5;
+      Bisection other(turned(pressed(make_box(box))));
+      for (auto* one : {&bisection, &other}) refine_towards(front_in(box), 5, *one);
+      EXPECT_TRUE(places_of(bisection.mesh()) == places_of(other.mesh())) << cell;
+    }
+}
+
+/// As many halvings as the mesh has dimensions make a cell half as wide: faces are cut alike from both sides, so that
+/// no cell needs more; in boxes the shape stays.
+TEST(Bisect, HalvesChildrenToo) {
+  for (const auto& cell : simplices)
+    for (const bool shakes : {false, true}) {
+      auto mesh = make_box(unit_steps(cell, std::vector<int>(dim_of(cell), 3)));
+      if (shakes) mesh = shaken(mesh);
+      std::vector<GlobalIndex> all(mesh.n_cells());
+      std::iota(all.begin(), all.end(), GlobalIndex{0});
+      Bisection bisection(mesh);
+      bisection.refine(all, mesh.dim());
+      EXPECT_EQ(bisection.n_cells(), mesh.n_cells() << mesh.dim()) << cell << " " << shakes;
+      expect_conforming(bisection.mesh());
+      if (!shakes) {
+        EXPECT_EQ(shapes_of(bisection.mesh()), shapes_of(mesh)) << cell;
+      }
+    }
+}
+
+TEST(Bisect, RefusesOtherCells) {
+  const auto of = [](BoxMesh box) { return error_of([&] { Bisection{make_box(box)}; }); };
+  EXPECT_THAT(of(unit_steps("hexahedron", {2, 2, 2})), HasSubstr("needs triangles or tetrahedra"));
+  auto tied = unit_steps("triangle", {3, 3});
+  tied.periodic = {"x"};
+  EXPECT_THAT(of(tied), HasSubstr("without periodic sides"));
+}
+
+}  // namespace
+}  // namespace sprekk::mesh::testing

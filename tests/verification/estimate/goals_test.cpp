@@ -1,0 +1,111 @@
+// Numbers that a run is to know, their errors, and the cells that are to blame.
+#include "model/goals.hpp"
+#include "verification/scenes.hpp"
+
+#include <Teuchos_DefaultMpiComm.hpp>
+
+#include <numeric>
+
+namespace sprekk::tests {
+namespace {
+
+struct Crack {
+  std::string scene, quantity;
+  int component;  // of the jump that the number is the mean of, up to its sign
+};
+
+const std::vector<Crack> cracks = {{"sneddon", "opening", 1}, {"sneddon_shear", "slip", 0}};
+const Real exact = 1.5e-3 * M_PI / 4;  // mean of 2 (1 - nu) s/G sqrt(1 - x^2) over the crack
+
+model::Scene scene_of(const Crack& crack, int order) {
+  return read_scene("verification/" + crack.scene + ".xml",
+                    {fmt::format("Mesh file.order={}", order), "Accuracy.quantities.goal.quantity=" + crack.quantity,
+                     "Accuracy.quantities.goal.relative=0.01"});
+}
+
+Real sum(const Comm& comm, const std::vector<Real>& here) {
+  const Real mine = std::accumulate(here.begin(), here.end(), Real{0});
+  Real all = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &mine, &all);
+  return all;
+}
+
+/// The estimate by the exact value; the bound that cells add up to by the estimate, and not far above it.
+TEST(Goals, ErrorsOfCracksAndTheirBounds) {
+  for (const auto& crack : cracks)
+    for (const int order : {1, 2}) {
+      SCOPED_TRACE(fmt::format("{} of order {}", crack.scene, order));
+      model::Model model(scene_of(crack, order), Tpetra::getDefaultComm());
+      ASSERT_TRUE(model.step_to(1).converged);
+      model::ErrorEstimator estimator(model);
+      const auto outputs = Outputs(model).all();
+      const auto estimate = estimator(outputs);
+      model::Goals goals(model);
+      goals.add(outputs, estimate, estimator);
+      const auto& goal = goals.estimates().at("goal");
+      const Real ratio = goal.error / std::abs(goal.value - exact);
+      EXPECT_GE(ratio, 0.5);
+      EXPECT_LE(ratio, 2);
+      const int dim = model.mesh().dim(), along = crack.quantity == "slip" ? 1 : 0;
+      std::vector<Real> d(model.mesh().n_owned_fracture_faces * dim, 0), products;
+      for (std::size_t k = along; k < d.size(); k += dim) d[k] = 1;
+      const auto weight = estimator.answer_energy(d);
+      ASSERT_EQ(weight.size(), estimate.energy.size());
+      for (std::size_t c = 0; c < weight.size(); ++c) products.push_back(std::sqrt(weight[c] * estimate.energy[c]));
+      const Real bound = sum(*model.mesh().comm, products) / (2 * goal.error);  // the crack has the length 2
+      EXPECT_GE(bound, 0.9);
+      EXPECT_LE(bound, 4);
+      if (model.mesh().comm->getRank() == 0)
+        fmt::print("  {} of order {}: estimate {:.2f}, bound over estimate {:.2f}\n", crack.scene, order, ratio, bound);
+      const auto shares = goals.indicators({{"goal", 3}});
+      EXPECT_NEAR(sum(*model.mesh().comm, shares), 3, 1e-12);
+      for (std::size_t c = 0; c < shares.size(); ++c)
+        EXPECT_NEAR(shares[c], 3 * products[c] / (2 * goal.error * bound), 1e-6 * shares[c]);
+    }
+}
+
+/// Of the reaction of a block with free sides and a compliant fracture, by perf/verification/references/free_sides.csv.
+TEST(Goals, ErrorsOfReactions) {
+  for (const int order : {1, 2}) {
+    SCOPED_TRACE(fmt::format("order {}", order));
+    model::Model model(
+        read_scene("verification/free_sides_2d.xml",
+                   {"Mesh.cell=triangle", fmt::format("Mesh.order={}", order), "Mesh.cells={16, 16}",
+                    "Accuracy.quantities.goal.quantity=reaction", "Accuracy.quantities.goal.boundary=north",
+                    "Accuracy.quantities.goal.component=x", "Accuracy.quantities.goal.relative=0.01"}),
+        Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(model.scene().time.times().back()).converged);
+    model::ErrorEstimator estimator(model);
+    estimator.want_reactions();
+    const auto outputs = Outputs(model).all();
+    model::Goals goals(model);
+    goals.add(outputs, estimator(outputs), estimator);
+    const auto& goal = goals.estimates().at("goal");
+    const Real ratio = goal.error / std::abs(goal.value - 0.4900271545);
+    EXPECT_GE(ratio, 0.5);
+    EXPECT_LE(ratio, 2);
+    if (model.mesh().comm->getRank() == 0) fmt::print("  order {}: {:.2f}\n", order, ratio);
+  }
+}
+
+/// 2, 4, 8, ... and 0: half of the sum is in the largest, 0.7 in two of them; equal ones come together.
+TEST(Goals, MarksTheFewestCells) {
+  const auto comm = Tpetra::getDefaultComm();
+  std::vector<Real> here;
+  for (int k = comm->getRank(); k < 12; k += comm->getSize()) here.push_back(k == 0 ? 0 : std::exp2(k) * 1e-7);
+  const auto marked_values = [&](const std::vector<Real>& values, Real theta) {
+    Real n = 0;
+    for (const LocalIndex c : model::marked(*comm, values, theta)) {
+      EXPECT_GE(values[c], 1e-7 * std::exp2(theta < 0.6 ? 11 : 10));
+      n += 1;
+    }
+    return sum(*comm, {n});
+  };
+  EXPECT_EQ(marked_values(here, 0.5), 1);
+  EXPECT_EQ(marked_values(here, 0.7), 2);
+  EXPECT_EQ(marked_values(std::vector<Real>(5, 1), 0.1), 5 * comm->getSize());
+  EXPECT_EQ(marked_values(std::vector<Real>(5, 0), 0.5), 0);
+}
+
+}  // namespace
+}  // namespace sprekk::tests
