@@ -75,6 +75,39 @@ class Scenes(unittest.TestCase):
         self.assertNotIn("gravity", scene.entries["Bulk"])
 
 
+class Folders(unittest.TestCase):
+    def test_run_from_python_is_that_of_the_program(self):
+        scene = ROOT / "xml/verification/cyclic_2d.xml"
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([PROGRAM, "run", scene, "--output", f"{folder}/program"], check=True, stdin=subprocess.DEVNULL)
+            model = sprekk.Model(sprekk.Scene(scene))
+            table = model.run(output=f"{folder}/python")
+            program, python = sprekk.Results(f"{folder}/program"), sprekk.Results(f"{folder}/python")
+            self.assertEqual((python.status, python.content["steps"]), (program.status, program.content["steps"]))
+            self.assertEqual(list(python.steps["newton_iterations"]), list(table["newton"]))
+            last = python.fractures.loc[model.time]
+            here = model.fractures()
+            for name in set(last.columns) & set(here.columns):
+                np.testing.assert_array_equal(last[name].astype(float), here[name], err_msg=name)
+            self.assertGreater(len(set(last.columns) & set(here.columns)), 20)
+            for file in ("effective_input.xml", "bulk.pvd", "fractures.pvd", "fractures.csv"):
+                self.assertTrue((Path(folder) / "python" / file).exists(), file)
+        with self.assertRaisesRegex(sprekk.Error, "has no results.json"):
+            sprekk.Results("absent")
+
+    def test_probes(self):
+        try:
+            import h5netcdf, xarray  # noqa: E401, F401
+        except ImportError:
+            self.skipTest("needs python3-xarray and python3-h5netcdf")
+        scene = sprekk.Scene(PUSH).changed({"Probes": {"middle": {"point": [0.5, 0.75], "outputs": ["displacement"]}},
+                                            "Time.steps": 3})
+        with tempfile.TemporaryDirectory() as folder:
+            sprekk.Model(scene).run(output=folder)
+            with sprekk.Results(folder).probe("middle") as probe:
+                self.assertEqual(len(probe["time"]), 4)
+
+
 class Processes(unittest.TestCase):
     def test_ends_well_whatever_is_alive(self):
         """Models, arrays, checkpoints and exceptions at the end of the interpreter."""

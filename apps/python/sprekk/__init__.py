@@ -16,6 +16,7 @@ from .model import Model, NotConverged
 from .module import Block, FaceLaw, Module, Unknown
 from .network import traces
 from .point import PointFailed, drive, fit
+from .results import Results
 from .scene import Scene
 from .sensitivity import sensitivities
 from .study import sweep

@@ -36,6 +36,7 @@ class Model:
         scene = scene if isinstance(scene, Scene) else Scene(scene, comm=comm)
         self.scene = with_mesh(scene, comm) if needs_mesh(scene.entries) else scene
         self.comm = comm
+        self._made_with = {"given_pressure": given_pressure, "own_pressure": own_pressure, "modules": modules}
         fluids = [(own, float(p)) for own, p in ((False, given_pressure), (True, own_pressure)) if p is not None]
         self._handle = _sprekk.Model(self.scene._handle, comm, fluids[0] if fluids else None, tuple(modules))
         self._epoch = Epoch()

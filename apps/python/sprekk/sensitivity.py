@@ -19,6 +19,8 @@ def sensitivities(model, t, quantity, parameters):
     quantity    called with {name of an unknown: values [entity, component] of the whole mesh in the numbers of the
                 unknowns}; returns q and {name: dq/dvalues}. On rank 0 alone
     parameters  paths of entries that are numbers, "Materials.rock.Young's modulus"; of lists, (path, index)"""
+    if model._made_with["given_pressure"] is not None:
+        raise _sprekk.Error("a pressure that is given from outside is no entry of the scene: its part in derivatives is not known")
     begin, before = model.time, {name: np.array(model.field(name)) for name in model.fields}
     model.step(t)
     names = model._handle.blocks()
@@ -26,7 +28,7 @@ def sensitivities(model, t, quantity, parameters):
 
     def twin(scene):
         """A model of another scene in the state where the step began."""
-        other = Model(scene, model.comm)
+        other = Model(scene, model.comm, **model._made_with)
         for name, values in before.items():
             other.field(name)[:] = values
         return other
