@@ -441,6 +441,8 @@ void bind_model(py::module_& m) {
         handle->ranks = std::move(comm);
         std::vector<std::string> damage;
         handle->checkpoint = io::Checkpoints(handle->comm, folder).read(damage);
+        for (const auto& line : damage)
+          if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1)) throw py::error_already_set();
         return handle;
       });
 
