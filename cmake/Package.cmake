@@ -9,6 +9,10 @@ function(sprekk_package name)
   if(sources)
     add_library(sprekk_${name} STATIC ${sources})
     set(scope PUBLIC)
+    if(SPREKK_PYTHON_MODULE)
+      set_target_properties(sprekk_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+      target_compile_options(sprekk_${name} PRIVATE -fno-semantic-interposition)
+    endif()
     if(SPREKK_DEBUG_CHECKS)
       target_compile_definitions(sprekk_${name} PUBLIC SPREKK_DEBUG_CHECKS)
     endif()
@@ -28,12 +32,6 @@ endfunction()
 # networks, ranks that wait leave the processor to others, and a single rank starts without a daemon.
 set(SPREKK_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
   OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_ess_singleton_isolated=1)
-
-# Debian's packages of Python belong to its own interpreter, which need not be the one found first.
-if(SPREKK_TESTS)
-  find_program(SPREKK_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-  find_program(SPREKK_PYTHON python3 REQUIRED)
-endif()
 
 # sprekk_test(NAME COMMAND words... [PROPERTIES name value...])
 # Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, or perf.

@@ -113,12 +113,16 @@ std::vector<std::pair<std::string, const PointPath*>> PointScene::paths() const 
 }
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
-  auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
-  SPREKK_CHECK(list.isParameter("Point") || list.isParameter("Specimens") || !list.isParameter("Bulk"),
-               "{}: is a scene for `sprekk run`: it has the section \"Bulk\" and no \"Point\"", path);
-  const auto errors = base::apply_overrides(list, path, overrides);
-  auto scene = base::read<PointScene>(list, path, "Sprekk", errors);
-  scene.file = path;
+  return point_scene_of(base::read_xml(comm, path, "Sprekk", base::Defects::keep), path, overrides);
+}
+
+PointScene point_scene_of(Teuchos::ParameterList entries, const std::string& origin,
+                          const std::vector<std::string>& overrides) {
+  SPREKK_CHECK(entries.isParameter("Point") || entries.isParameter("Specimens") || !entries.isParameter("Bulk"),
+               "{}: is a scene for `sprekk run`: it has the section \"Bulk\" and no \"Point\"", origin);
+  const auto errors = base::apply_overrides(entries, origin, overrides);
+  auto scene = base::read<PointScene>(entries, origin, "Sprekk", errors);
+  scene.file = origin;
   return scene;
 }
 

@@ -40,6 +40,9 @@ struct PointScene {
 };
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
+/// The same of entries as a file would have them; `origin` opens messages. Not collective.
+PointScene point_scene_of(Teuchos::ParameterList entries, const std::string& origin,
+                          const std::vector<std::string>& overrides = {});
 
 /// A state of the point: at the start, at the end of a step, or before and after slip that jumps in a step.
 struct PointState {

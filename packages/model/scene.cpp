@@ -198,16 +198,21 @@ base::Draft<Scene> prepared(const Scene& scene) {
 }
 
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides) {
-  auto list = base::read_xml(comm, path, "Sprekk", base::Defects::keep);
-  const bool has_body = list.isParameter("Mesh") || list.isParameter("Mesh file") || list.isParameter("Bulk");
-  SPREKK_CHECK(has_body || !list.isParameter("Point"),
-               "{}: is a scene for `sprekk point`: it has the section \"Point\" and neither mesh nor \"Bulk\"", path);
-  const auto errors = base::apply_overrides(list, path, overrides);
-  auto draft = from_list(list, path, errors);
+  return scene_of(comm, base::read_xml(comm, path, "Sprekk", base::Defects::keep), path,
+                  std::filesystem::path(path).parent_path().string(), overrides);
+}
+
+Scene scene_of(const Comm& comm, Teuchos::ParameterList entries, const std::string& origin, const std::string& folder,
+               const std::vector<std::string>& overrides) {
+  const bool has_body = entries.isParameter("Mesh") || entries.isParameter("Mesh file") || entries.isParameter("Bulk");
+  SPREKK_CHECK(has_body || !entries.isParameter("Point"),
+               "{}: is a scene for `sprekk point`: it has the section \"Point\" and neither mesh nor \"Bulk\"", origin);
+  const auto errors = base::apply_overrides(entries, origin, overrides);
+  auto draft = from_list(entries, origin, errors);
   auto& file = draft.value.mesh_file;
   if (file && !file->path.empty())
-    file->path = std::filesystem::absolute(std::filesystem::path(path).parent_path() / file->path).string();
-  if (file && file->network) file->network->resolve_files(std::filesystem::path(path).parent_path().string());
+    file->path = std::filesystem::absolute(std::filesystem::path(folder) / file->path).string();
+  if (file && file->network) file->network->resolve_files(folder);
   base::collectively(comm, [&] {
     const bool is_wrong = !draft.report.errors.empty() || !misfits(draft, names_in_scene(draft)).empty();
     if (is_wrong && comm.getRank() == 0) checked_mesh(draft);

@@ -124,4 +124,9 @@ std::vector<StagedScene> staged_scenes(const Scene& scene);
 /// that is wrong, see checked_mesh(). So it does for the scenes of its stages, without a mesh. Collective.
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
 
+/// The same of entries as a file would have them: `origin` opens messages, files are looked for in `folder`.
+/// Collective.
+Scene scene_of(const Comm& comm, Teuchos::ParameterList entries, const std::string& origin, const std::string& folder,
+               const std::vector<std::string>& overrides = {});
+
 }  // namespace sprekk::model

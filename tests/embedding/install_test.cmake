@@ -5,6 +5,11 @@ endfunction()
 file(REMOVE_RECURSE ${scratch})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${scratch}/prefix)
 run(${scratch}/prefix/bin/sprekk check ${source}/xml/seed/push_2d.xml)
+file(GLOB package ${scratch}/prefix/lib/python*/dist-packages)  # of Python, where it is built
+if(package)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${package} ${python} -c
+    "import sprekk; model = sprekk.Model(sprekk.Scene('${source}/xml/seed/push_2d.xml')); model.run()")
+endif()
 set(hosts ${source}/apps/hosts)
 file(COPY ${source}/tests/embedding/outside/CMakeLists.txt ${source}/tests/embedding/outside/main.cpp
   ${hosts}/own_unknown.cpp ${hosts}/grout.hpp ${hosts}/coupled.cpp ${hosts}/coupled.hpp ${hosts}/own_flow.hpp

@@ -1,0 +1,517 @@
+// Models: steps, fields in place, and what a state tells.
+#include "own_module.hpp"
+#include "scene_handle.hpp"
+
+#include "assembly/geometry.hpp"
+#include "assembly/jacobian_check.hpp"
+#include "base/over_ranks.hpp"
+#include "model/fracture_table.hpp"
+#include "model/results.hpp"
+#include "model/steps.hpp"
+#include "physics/poroelasticity/given_pressure.hpp"
+
+#include <fmt/ranges.h>
+
+#include <optional>
+#include <string>
+
+namespace sprekk::python {
+
+using assembly::OutputField;
+using model::Model;
+
+namespace {
+
+/// Whether a solve is to stop, asked in each iteration of Newton's method: Python has been asked to (Ctrl-C), or what
+/// is written in Python has failed.
+struct Interrupt {
+  Failure failure;
+
+  bool operator()() const {
+    if (!failure->empty()) return true;
+    const py::gil_scoped_acquire hold;
+    if (PyErr_CheckSignals() == 0) return false;
+    PyErr_Clear();
+    return true;
+  }
+};
+
+py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces);
+py::dict local_mesh(const mesh::Mesh& mesh) { return mesh_of(mesh, mesh.n_fracture_faces()); }
+
+/// A model with what must not end before it.
+class ModelHandle {
+ public:
+  ModelHandle(const SceneHandle& scene, py::object comm, const std::optional<std::pair<bool, Real>>& host_fluid,
+              const py::object& modules)
+      : comm_(std::move(comm)) {
+    const auto ranks = comm_of(comm_);
+    has_modules_ = py::len(modules) > 0;
+    const auto more_modules = own_modules(modules, local_mesh, failure_);
+    const py::gil_scoped_release free;
+    auto own = scene.scene();
+    own.solver.should_stop = Interrupt{failure_};
+    if (host_fluid) own.host_fluid = physics::HostFluid{host_fluid->first, host_fluid->second};
+    model_ = std::make_unique<Model>(own, ranks, more_modules);
+  }
+
+  Model& operator*() const {
+    SPREKK_CHECK(model_, "the model has been closed");
+    return *model_;
+  }
+  Model* operator->() const { return &**this; }
+  void close() { model_.reset(); }
+
+  const py::object& comm() const { return comm_; }
+
+  void change(const SceneHandle& changed) {
+    auto own = changed.scene();
+    own.host_fluid = (*this)->scene().host_fluid;
+    own.solver.should_stop = Interrupt{failure_};
+    (*this)->change(own);
+  }
+
+  /// Throws on all ranks what has failed in Python on any, after what was evaluated there; `in_step`: the step is taken
+  /// back. Collective.
+  void check(bool in_step = true) {
+    const auto& ranks = *(*this)->mesh().comm;
+    if (!has_modules_ || !base::on_any_rank(ranks, !failure_->empty())) return;
+    const auto what = std::exchange(*failure_, "");
+    if (in_step) model_->take_back();
+    base::collectively(ranks, [&] { SPREKK_CHECK(what.empty(), "{}", what); });
+  }
+
+ private:
+  py::object comm_;
+  Failure failure_ = std::make_shared<std::string>();
+  bool has_modules_ = false;
+  std::unique_ptr<Model> model_;
+};
+
+/// Goes through the steps of a scene.
+struct StepsHandle {
+  ModelHandle& model;
+  model::Steps steps;
+
+  model::StepTaken take() {
+    const auto taken = steps.take();
+    model.check();
+    return taken;
+  }
+};
+
+/// A field's memory, with what owns it: arrays outlive models.
+py::array_t<Real> view_of(Model& model, const std::string& name) {
+  struct Owner {
+    model::FieldView field;
+    fields::BlockVector unknowns;
+  };
+  auto* owner = new Owner{model.field(name), model.state()};
+  const py::capsule held(owner, [](void* p) { delete static_cast<Owner*>(p); });
+  const auto& values = owner->field.values;
+  return py::array_t<Real>({values.extent(0), values.extent(1)}, values.data(), held);
+}
+
+py::array_t<Real> values_of(OutputField& output) {
+  const auto n = static_cast<py::ssize_t>(output.values.size()) / output.n_components;
+  if (output.n_components == 1) return array_of(std::move(output.values), {n});
+  return array_of(std::move(output.values), {n, output.n_components});
+}
+
+py::tuple kind_of(const fields::Field& field) {
+  return py::make_tuple(fields::name_of(field.entity), field.n_components, field.unit);
+}
+
+/// Names with what they live on, components and unit.
+py::dict fields_of(Model& model) {
+  py::dict all;
+  for (const auto& layout : model.system().layouts()) all[layout.field().name.c_str()] = kind_of(layout.field());
+  for (const auto& [field, values] : model.system().histories()) all[field.name.c_str()] = kind_of(field);
+  return all;
+}
+
+std::vector<OutputField> outputs_of(Model& model) { return model.system().outputs(model.state()); }
+
+py::dict dict_of(std::vector<OutputField> outputs) {
+  py::dict all;
+  for (auto& output : outputs) {
+    const auto kind = py::make_tuple(fields::name_of(output.entity), output.n_components, output.unit);
+    all[output.name.c_str()] = py::make_tuple(values_of(output), kind);
+  }
+  return all;
+}
+
+/// What the mean over a face at a side consists of: shares of the nodes [node], mean of the bubble.
+std::pair<std::vector<Real>, Real> face_mean(const mesh::Mesh& mesh, LocalIndex f, int side) {
+  const auto& face = mesh.fracture_faces[f];
+  return mesh::for_shape(mesh.shape, [&](auto shape) {
+    const auto shares = assembly::mean_shares<shape()>(mesh, face.cell[side], face.local_face[side]);
+    return std::pair(std::vector<Real>(shares.begin(), shares.begin() + mesh::n_face_nodes(shape())),
+                     assembly::bubble_mean<shape()>(mesh, face.cell[side], face.local_face[side]));
+  });
+}
+
+/// This rank's part of the mesh: owned entities first, all cells and nodes, and so many fracture faces.
+py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces) {
+  const py::ssize_t dim = mesh.dim(), per_cell = mesh.nodes_per_cell(), n = n_faces;
+  const py::ssize_t per_face = mesh::n_face_nodes(mesh.shape);
+  std::vector<int> fracture, single, nodes, face_cells;
+  std::vector<GlobalIndex> id;
+  std::vector<Real> area, centre, frame;
+  for (py::ssize_t f = 0; f < n; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    id.push_back(face.id);
+    fracture.push_back(face.fracture);
+    single.push_back(face.single);
+    area.push_back(face.area);
+    centre.insert(centre.end(), face.centre.begin(), face.centre.begin() + dim);
+    for (py::ssize_t i = 0; i < dim; ++i) frame.insert(frame.end(), face.frame[i].begin(), face.frame[i].begin() + dim);
+    face_cells.insert(face_cells.end(), face.cell.begin(), face.cell.end());
+    for (const auto& side : face.nodes) nodes.insert(nodes.end(), side.begin(), side.begin() + per_face);
+  }
+  std::vector<Real> shares, bubble, side_shares, side_bubble;
+  for (LocalIndex f = 0; f < n_faces; ++f) {
+    const bool known = mesh.fracture_faces[f].cell[mesh::minus] >= 0;  // else it is zero
+    const auto [nodes, own] = known ? face_mean(mesh, f, mesh::minus) : std::pair(std::vector<Real>(per_face), Real(0));
+    shares.insert(shares.end(), nodes.begin(), nodes.end());
+    bubble.push_back(own);
+  }
+  std::vector<LocalIndex> sides;
+  for (const auto& [f, side] : assembly::fracture_sides(mesh)) {
+    if (f >= n_faces) continue;
+    const auto [nodes, own] = face_mean(mesh, f, side);
+    sides.insert(sides.end(), {f, side});
+    side_shares.insert(side_shares.end(), nodes.begin(), nodes.end());
+    side_bubble.push_back(own);
+  }
+  const auto n_sides = static_cast<py::ssize_t>(side_bubble.size());
+  py::list singles;
+  for (const auto& one : mesh.single_fractures) singles.append(one.name);
+  constexpr const char* shapes[] = {"triangle",  "quadrilateral",  "tetrahedron",   "hexahedron",
+                                    "triangle6", "quadrilateral9", "tetrahedron10", "hexahedron27"};
+  py::dict all;
+  all["shape"] = shapes[static_cast<int>(mesh.shape)];
+  all["dim"] = mesh.dim();
+  all["n_owned_nodes"] = mesh.n_owned_nodes;
+  all["n_owned_cells"] = mesh.n_owned_cells;
+  all["coordinates"] = array_of(mesh.coordinates, {mesh.n_nodes(), dim});
+  all["cells"] = array_of(mesh.cells, {mesh.n_cells(), per_cell});
+  all["cell_region"] = array_of(mesh.cell_region);
+  all["node_id"] = array_of(mesh.node_id);
+  all["cell_id"] = array_of(mesh.cell_id);
+  all["face_id"] = array_of(std::move(id));
+  all["face_fracture"] = array_of(std::move(fracture));
+  all["face_single"] = array_of(std::move(single));
+  all["face_area"] = array_of(std::move(area));
+  all["face_centre"] = array_of(std::move(centre), {n, dim});
+  all["face_frame"] = array_of(std::move(frame), {n, dim, dim});
+  all["face_nodes"] = array_of(std::move(nodes), {n, 2, per_face});
+  all["face_share"] = array_of(std::move(shares), {n, per_face});
+  all["face_bubble"] = array_of(std::move(bubble));
+  all["face_cells"] = array_of(std::move(face_cells), {n, 2});
+  all["sides"] = array_of(std::move(sides), {n_sides, 2});
+  all["side_share"] = array_of(std::move(side_shares), {n_sides, per_face});
+  all["side_bubble"] = array_of(std::move(side_bubble));
+  all["regions"] = mesh.region_names;
+  all["boundaries"] = mesh.boundary_names;
+  all["fractures"] = mesh.fracture_names;
+  all["single_fractures"] = singles;
+  return all;
+}
+
+py::list table_of(const Model& model, std::vector<OutputField> outputs, bool singles) {
+  py::list columns;
+  const auto grouping = singles ? model::Grouping::singles : model::Grouping::sets;
+  for (auto& column : model::fracture_table(model.mesh(), outputs, grouping)) {
+    const auto n = static_cast<py::ssize_t>(column.values.size()) / column.n_components;
+    const auto name = column.full_name(), unit = column.unit;
+    const py::ssize_t width = column.n_components;
+    columns.append(py::make_tuple(name, unit, array_of(std::move(column.values), {n, width})));
+  }
+  return columns;
+}
+
+py::list reactions_of(Model& model) {
+  py::list all;
+  for (auto& reaction : model.system().reactions(model.state())) {
+    const std::vector<Real> moment(reaction.moment.begin(), reaction.moment.end());
+    all.append(py::make_tuple(reaction.condition, reaction.field, reaction.called.unit,
+                              array_of(std::move(reaction.force)), array_of(moment)));
+  }
+  return all;
+}
+
+/// Numbers that describe the whole state, by their names, "a > b".
+py::dict totals_of(Model& model) {
+  py::dict all;
+  for (const auto& total : model.system().totals(model.state()))
+    all[fmt::format("{}", fmt::join(total.names, " > ")).c_str()] = total.value;
+  return all;
+}
+
+void set_fluid_pressure(Model& model, const std::vector<Real>& cells, const std::vector<Real>& faces) {
+  physics::set_fluid_pressure(model.system(), cells, faces);
+}
+
+/// Everything that a state is, kept by Python.
+struct CheckpointHandle {
+  io::Checkpoint checkpoint;
+  RCP<const Comm> comm;
+  py::object ranks;  ///< that the communicator refers to
+};
+
+/// Rows and columns of a system with all blocks one after another, global numbers.
+struct Numbering {
+  std::vector<GlobalIndex> first;  ///< [block]
+  explicit Numbering(const assembly::System& system) {
+    GlobalIndex n = 0;
+    for (const auto& block : system.blocks()) {
+      first.push_back(n);
+      n += static_cast<GlobalIndex>(block.map->getGlobalNumElements());
+    }
+    first.push_back(n);
+  }
+};
+
+fields::BlockVector vectors_of(const assembly::System& system, const py::list& unknowns) {
+  fields::BlockVector x;
+  for (std::size_t b = 0; b < system.blocks().size(); ++b) {
+    x.push_back(rcp(new fields::Vector(system.blocks()[b].map)));
+    const auto values = unknowns[b].cast<py::array_t<Real, py::array::c_style | py::array::forcecast>>();
+    const auto local = x[b]->getLocalViewHost(Tpetra::Access::OverwriteAll);
+    SPREKK_CHECK(static_cast<std::size_t>(values.size()) == local.extent(0),
+                 "block \"{}\": {} values are given, it has {}", system.blocks()[b].name, values.size(),
+                 local.extent(0));
+    for (std::size_t i = 0; i < local.extent(0); ++i) local(i, 0) = values.data()[i];
+  }
+  return x;
+}
+
+/// The residual at x of a step that ends at t and takes dt, by blocks; no state changes but where loads stand.
+py::list residual_at(Model& model, const py::list& unknowns, Real t, Real dt) {
+  auto& system = model.system();
+  const auto x = vectors_of(system, unknowns);
+  auto r = fields::create_like(x);
+  system.set_time(t, dt);
+  system.residual(x, r);
+  py::list all;
+  for (const auto& block : r) {
+    const auto local = block->getLocalViewHost(Tpetra::Access::ReadOnly);
+    std::vector<Real> values;
+    for (std::size_t i = 0; i < local.extent(0); ++i) values.push_back(local(i, 0));
+    all.append(array_of(std::move(values)));
+  }
+  return all;
+}
+
+/// Its derivative, by rows, columns and values of this rank's entries; rows of prescribed unknowns are those of the
+/// identity. With the size of the whole system, and of each block the number of its first unknown.
+py::tuple jacobian_at(Model& model, const py::list& unknowns, Real t, Real dt) {
+  auto& system = model.system();
+  const auto x = vectors_of(system, unknowns);
+  const Numbering numbers(system);
+  auto J = system.create_matrix();
+  std::vector<GlobalIndex> rows, columns;
+  std::vector<Real> values;
+  const int n = J.n_blocks();
+  system.set_time(t, dt);
+  for (std::size_t m = 0; m < system.modules().size(); ++m) {
+    system.module_jacobian(static_cast<int>(m), x, J);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        if (J(i, j).is_null()) continue;
+        const auto held = system.constrained(i);
+        const auto local = J(i, j)->getLocalMatrixDevice();
+        const auto& row_map = *J(i, j)->getRowMap();
+        const auto& column_map = *J(i, j)->getColMap();
+        for (LocalIndex row = 0; row < local.numRows(); ++row) {
+          if (held(row)) continue;
+          for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
+            if (local.values(k) == 0) continue;
+            rows.push_back(numbers.first[i] + row_map.getGlobalElement(row));
+            columns.push_back(numbers.first[j] + column_map.getGlobalElement(local.graph.entries(k)));
+            values.push_back(local.values(k));
+          }
+        }
+      }
+  }
+  for (int i = 0; i < n; ++i) {
+    const auto held = system.constrained(i);
+    for (std::size_t row = 0; row < held.extent(0); ++row)
+      if (held(row)) {
+        rows.push_back(numbers.first[i] + system.blocks()[i].map->getGlobalElement(static_cast<LocalIndex>(row)));
+        columns.push_back(rows.back());
+        values.push_back(1);
+      }
+  }
+  py::list owned;
+  for (int i = 0; i < n; ++i) {
+    std::vector<GlobalIndex> here;
+    for (const GlobalIndex k : base::local_elements(*system.blocks()[i].map)) here.push_back(numbers.first[i] + k);
+    owned.append(array_of(std::move(here)));
+  }
+  return py::make_tuple(array_of(std::move(rows)), array_of(std::move(columns)), array_of(std::move(values)),
+                        numbers.first.back(), owned);
+}
+
+/// (module, row, column, error) of each part of the Jacobian at x against differences.
+py::list jacobian_errors(Model& model, const py::list& unknowns, Real t, Real dt) {
+  auto& system = model.system();
+  const auto x = vectors_of(system, unknowns);
+  system.set_time(t, dt);
+  py::list all;
+  for (const auto& error : assembly::check_jacobian(system, x))
+    all.append(py::make_tuple(error.module, error.row, error.column, error.error));
+  return all;
+}
+
+std::vector<std::string> blocks_of(const Model& model) {
+  std::vector<std::string> names;
+  for (const auto& block : model.system().blocks()) names.push_back(block.name);
+  return names;
+}
+
+/// Calls work() without the interpreter's lock, which other threads may take meanwhile.
+template <class Work>
+auto freely(const Work& work) {
+  const py::gil_scoped_release free;
+  return work();
+}
+
+void bind_reports(py::module_& m) {
+  using solve::StepReport;
+  py::class_<StepReport>(m, "StepReport", "How a step went.")
+      .def_readonly("converged", &StepReport::converged)
+      .def_readonly("stopped", &StepReport::stopped)
+      .def_readonly("time", &StepReport::time)
+      .def_readonly("newton_iterations", &StepReport::newton_iterations)
+      .def_property_readonly("linear_iterations",
+                             [](const StepReport& report) { return solve::iterations(report.linear_solves); })
+      .def_readonly("substeps", &StepReport::substeps)
+      .def_readonly("cuts", &StepReport::cuts)
+      .def_readonly("reason", &StepReport::reason)
+      .def_readonly("loose", &StepReport::loose);
+  using model::StepTaken;
+  py::class_<StepTaken>(m, "StepTaken", "A step of a run.")
+      .def_readonly("report", &StepTaken::report)
+      .def_readonly("begin", &StepTaken::begin)
+      .def_readonly("end", &StepTaken::end)
+      .def_readonly("stage", &StepTaken::stage)
+      .def_readonly("rejected", &StepTaken::n_rejected);
+}
+
+void bind_runs(py::module_& m) {
+  using model::Results;
+  py::class_<StepsHandle>(m, "Steps")
+      .def(py::init([](ModelHandle& model) {
+             return std::unique_ptr<StepsHandle>(new StepsHandle{model, model::Steps(*model)});
+           }),
+           py::keep_alive<1, 2>())
+      .def("any", [](const StepsHandle& self) { return self.steps.any(); })
+      .def("share_done", [](const StepsHandle& self) { return self.steps.share_done(); })
+      .def("take", &StepsHandle::take, py::call_guard<py::gil_scoped_release>());
+  py::class_<Results>(m, "Results")
+      .def(py::init([](ModelHandle& model, const std::string& folder) {
+             return freely([&] { return std::make_unique<Results>(*model, model->scene(), folder); });
+           }),
+           py::keep_alive<1, 2>())
+      .def("add_step", &Results::add_step, py::call_guard<py::gil_scoped_release>())
+      .def("take_warnings", &Results::take_warnings)
+      .def("finish", &Results::finish, py::call_guard<py::gil_scoped_release>());
+}
+
+}  // namespace
+
+void bind_model(py::module_& m) {
+  bind_reports(m);
+  py::class_<CheckpointHandle>(m, "Checkpoint", "All that the next step depends on.")
+      .def_property_readonly(
+          "time", [](const CheckpointHandle& self) { return self.checkpoint.content.at("time").get<Real>(); })
+      .def("write",
+           [](const CheckpointHandle& self, const std::string& folder) {
+             freely([&] {
+               io::Checkpoints all(self.comm, folder);
+               all.clear();
+               all.write(self.checkpoint);
+             });
+           })
+      .def_static("read", [](const std::string& folder, py::object comm) {
+        auto handle = std::make_unique<CheckpointHandle>();
+        handle->comm = comm_of(comm);
+        handle->ranks = std::move(comm);
+        std::vector<std::string> damage;
+        handle->checkpoint = io::Checkpoints(handle->comm, folder).read(damage);
+        for (const auto& line : damage)
+          if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1)) throw py::error_already_set();
+        return handle;
+      });
+
+  py::class_<ModelHandle>(m, "Model")
+      .def(py::init<const SceneHandle&, py::object, const std::optional<std::pair<bool, Real>>&, const py::object&>())
+      .def("close", &ModelHandle::close)
+      .def_property_readonly("comm", &ModelHandle::comm)
+      .def_property_readonly("time", [](ModelHandle& self) { return self->time(); })
+      .def("step_to",
+           [](ModelHandle& self, Real t) {
+             return freely([&] {
+               const auto report = self->step_to(t);
+               self.check();
+               return report;
+             });
+           })
+      .def("find_equilibrium",
+           [](ModelHandle& self) {
+             return freely([&] {
+               const auto report = self->find_equilibrium();
+               self.check();
+               return report;
+             });
+           })
+      .def("take_back", [](ModelHandle& self) { freely([&] { self->take_back(); }); })
+      .def("change", [](ModelHandle& self, const SceneHandle& scene) { freely([&] { self.change(scene); }); })
+      .def("warnings", [](ModelHandle& self) { return freely([&] { return self->warnings(); }); })
+      .def("save",
+           [](ModelHandle& self) {
+             auto handle = std::make_unique<CheckpointHandle>();
+             freely([&] { handle->checkpoint = self->save(); });
+             handle->comm = self->mesh().comm;
+             handle->ranks = self.comm();
+             return handle;
+           })
+      .def("restore",
+           [](ModelHandle& self, const CheckpointHandle& from) { freely([&] { self->restore(from.checkpoint); }); })
+      .def("fields", [](ModelHandle& self) { return fields_of(*self); })
+      .def("field", [](ModelHandle& self, const std::string& name) { return view_of(*self, name); })
+      .def("outputs", [](ModelHandle& self) { return dict_of(freely([&] { return outputs_of(*self); })); })
+      .def("mesh", [](ModelHandle& self) { return mesh_of(self->mesh(), self->mesh().n_owned_fracture_faces); })
+      .def("fracture_table",
+           [](ModelHandle& self, bool singles) {
+             return table_of(*self, freely([&] { return outputs_of(*self); }), singles);
+           })
+      .def("described_singles", [](ModelHandle& self) { return model::described_singles(self->mesh()).dump(); })
+      .def("reactions", [](ModelHandle& self) { return reactions_of(*self); })
+      .def("totals", [](ModelHandle& self) { return totals_of(*self); })
+      .def("set_fluid_pressure", [](ModelHandle& self, const std::vector<Real>& cells,
+                                    const std::vector<Real>& faces) { set_fluid_pressure(*self, cells, faces); })
+      .def("blocks", [](ModelHandle& self) { return blocks_of(*self); })
+      .def("residual_at",
+           [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+             const auto found = residual_at(*self, x, t, dt);
+             self.check(false);
+             return found;
+           })
+      .def("jacobian_errors",
+           [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+             const auto found = jacobian_errors(*self, x, t, dt);
+             self.check(false);
+             return found;
+           })
+      .def("jacobian_at", [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+        const auto found = jacobian_at(*self, x, t, dt);
+        self.check(false);
+        return found;
+      });
+  bind_runs(m);
+}
+
+}  // namespace sprekk::python

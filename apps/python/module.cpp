@@ -1,0 +1,25 @@
+// The extension module sprekk._sprekk. MPI is mpi4py's, which has begun it before this is imported and ends it after
+// the interpreter has ended. Kokkos is begun here and not ended: arrays may live as long as the interpreter.
+#include "bindings.hpp"
+
+#include "base/check.hpp"
+#include "base/heap.hpp"
+
+#include <Kokkos_Core.hpp>
+
+#ifndef SPREKK_VERSION
+#define SPREKK_VERSION "unknown"
+#endif
+
+PYBIND11_MODULE(_sprekk, m) {
+  namespace py = pybind11;
+  int mpi = 0;
+  MPI_Initialized(&mpi);
+  if (!mpi) throw py::import_error("sprekk._sprekk needs MPI: import mpi4py.MPI first, as the package sprekk does");
+  sprekk::base::keep_heap();
+  if (!Kokkos::is_initialized()) Kokkos::initialize();
+  py::register_exception<sprekk::Error>(m, "Error").doc() = "What is wrong, in the words of the program.";
+  m.attr("version") = SPREKK_VERSION;
+  sprekk::python::bind_scene(m);
+  sprekk::python::bind_model(m);
+}

@@ -1,0 +1,28 @@
+// A scene between Python and models.
+#pragma once
+
+#include "bindings.hpp"
+#include "model/scene.hpp"
+
+#include <string>
+
+namespace sprekk::python {
+
+class SceneHandle {
+ public:
+  /// Checks like model::read_scene. Collective on `comm`.
+  SceneHandle(Teuchos::ParameterList entries, std::string origin, std::string folder,
+              const std::vector<std::string>& overrides, const Comm& comm);
+
+  const Teuchos::ParameterList& entries() const { return entries_; }  ///< overrides included
+  const std::string& origin() const { return origin_; }
+  const std::string& folder() const { return folder_; }
+  const model::Scene& scene() const { return scene_; }
+
+ private:
+  Teuchos::ParameterList entries_;
+  std::string origin_, folder_;
+  model::Scene scene_;
+};
+
+}  // namespace sprekk::python

@@ -1,0 +1,71 @@
+"""Arrays that are the memory of a model."""
+import numpy as np
+
+
+class StaleField(RuntimeError):
+    """An array of equations that are gone: the model has been changed or closed since."""
+
+
+class Epoch:
+    """From one change of a model's equations to the next."""
+    over = False
+
+
+class Field(np.ndarray):
+    """A field in place: what is written counts in the model's next step. What is computed from it is an ordinary
+    array. Raises StaleField once the model has other equations; its memory stays."""
+
+    def __new__(cls, values, epoch):
+        field = np.asarray(values).view(cls)
+        field._epoch = epoch
+        return field
+
+    def __array_finalize__(self, source):
+        self._epoch = getattr(source, "_epoch", None)
+
+    def _check(self):
+        if self._epoch is not None and self._epoch.over:
+            raise StaleField("the model has been changed or closed since this array was asked for; ask for it again")
+
+    def __getitem__(self, key):
+        self._check()
+        return super().__getitem__(key)
+
+    def __setitem__(self, key, value):
+        self._check()
+        super().__setitem__(key, value)
+
+    def __iter__(self):
+        self._check()
+        return super().__iter__()
+
+    def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
+        if out is not None:
+            options["out"] = tuple(ordinary(array) for array in out)
+        result = getattr(ufunc, method)(*(ordinary(array) for array in inputs), **options)
+        return out[0] if out is not None and len(out) == 1 else result
+
+    def __array_function__(self, function, types, arguments, options):
+        return function(*ordinary_all(arguments), **{name: ordinary_all(value) for name, value in options.items()})
+
+    def __repr__(self):
+        return repr(ordinary(self))
+
+    def __reduce__(self):
+        return ordinary(self).copy().__reduce__()
+
+    def copy(self, order="C"):
+        return np.array(ordinary(self), order=order)
+
+
+def ordinary(array):
+    if not isinstance(array, Field):
+        return array
+    array._check()
+    return array.view(np.ndarray)
+
+
+def ordinary_all(value):
+    if isinstance(value, (list, tuple)):
+        return type(value)(ordinary_all(inner) for inner in value)
+    return ordinary(value)

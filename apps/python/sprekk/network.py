@@ -1,0 +1,55 @@
+"""Fracture networks: from tables of traces, and their meshes."""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from mpi4py import MPI
+
+from . import _sprekk
+
+
+def traces(table, geometry="geometry", name=None):
+    """A set of fractures, for `network > fractures`, from a table with a row for each trace: a GeoDataFrame, a
+    pandas.DataFrame or a dict of columns. Geometries are shapely's LineStrings or lists of points [x, y]; names are
+    those of a column, or the index."""
+    lines = list(table[geometry])
+    names = list(table[name] if name else getattr(table, "index", range(1, len(lines) + 1)))
+    return {"lines": {str(key): {"points": [float(x) for point in getattr(line, "coords", line) for x in point]}
+                      for key, line in zip(names, lines)}}
+
+
+def needs_mesh(entries):
+    file = entries.get("Mesh file", {})
+    return "network" in file and not file.get("path")
+
+
+def with_mesh(scene, comm=MPI.COMM_WORLD):
+    """The scene with the mesh of its network, which rank 0 makes with gmsh, as `./sprekk run` does."""
+    folder = error = None
+    if comm.rank == 0:
+        folder = tempfile.TemporaryDirectory()
+        try:
+            make_mesh(scene, Path(folder.name))
+        except _sprekk.Error as raised:
+            error = str(raised)
+    path, error = comm.bcast((folder and folder.name, error))
+    if error:
+        raise _sprekk.Error(error)
+    meshed = scene.changed({"Mesh file.path": f"{path}/network.msh"}, comm)
+    meshed._mesh_folder = folder  # which ends with the scene
+    return meshed
+
+
+def make_mesh(scene, folder):
+    program = Path(_sprekk.__file__).resolve().parents[2] / "apps/sprekk/sprekk"
+    maker = Path(__file__).resolve().parents[2] / "mesh"
+    if not (program.exists() and maker.exists()):
+        raise _sprekk.Error(f'{scene.name}: meshes of networks are made by `./sprekk python` in the source tree; elsewhere '
+                            'make one with `./sprekk mesh`, and name it by "path" of "Mesh file"')
+    file = folder / "scene.xml"
+    file.write_text(scene.to_xml(defaults=True))
+    done = subprocess.run([sys.executable, "-B", str(maker), "--program", str(program), str(file), "-o",
+                           str(folder / "network.msh"), "--quiet"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode:
+        raise _sprekk.Error(done.stderr.strip().removeprefix("sprekk: ").replace(str(file), scene.name))

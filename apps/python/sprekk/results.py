@@ -1,0 +1,50 @@
+"""What a run left in its folder, as tables."""
+import json
+from pathlib import Path
+
+from . import _sprekk
+
+
+class Results:
+    """The folder of `./sprekk run` or of model.run(output=...).
+
+    status     "completed", "interrupted" or "failed", then with a reason
+    steps      a pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
+    fractures  the same of each set of fractures, with the index (time, fracture); vectors have a column per component
+    content    all of results.json"""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        try:
+            self.content = json.loads((self.folder / "results.json").read_text())
+        except OSError as error:
+            raise _sprekk.Error(f"{self.folder}: has no results.json: {error.strerror}") from None
+        self.status, self.reason = self.content["status"], self.content.get("reason", "")
+
+    @property
+    def steps(self):
+        import pandas
+        return pandas.DataFrame([{name: value for name, value in step.items() if not isinstance(value, (dict, list))}
+                                 for step in self.content["steps"]])
+
+    @property
+    def fractures(self):
+        import pandas
+        rows = {(step["time"], name): dict(flat(numbers)) for step in self.content["steps"]
+                for name, numbers in step["fractures"].items()}
+        index = pandas.MultiIndex.from_tuples(rows, names=["time", "fracture"])
+        return pandas.DataFrame(list(rows.values()), index=index)
+
+    def probe(self, name):
+        """The table of a probe, an xarray.Dataset with units and dimensions."""
+        import xarray
+        return xarray.open_dataset(self.folder / "probes.h5", group=name, engine="h5netcdf")
+
+
+def flat(numbers, before=""):
+    """(name, number) of nested dicts and lists: "mean_jump_local_0"."""
+    for key, value in numbers.items() if isinstance(numbers, dict) else enumerate(numbers):
+        if isinstance(value, (dict, list)):
+            yield from flat(value, f"{before}{key}_")
+        else:
+            yield f"{before}{key}", value

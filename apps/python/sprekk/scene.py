@@ -1,0 +1,106 @@
+"""Scenes: from files, from text, or from entries in Python."""
+import os
+from collections.abc import Mapping
+
+from mpi4py import MPI
+
+from . import _sprekk
+
+
+class Scene:
+    """A scene, checked as the program checks it: what is wrong is an Error in its words.
+
+    source     the path of an XML file, XML as text, or entries: a dict of sections and values, {"Time": {"steps": 3}},
+               or an object of sprekk.entries. Values are numbers, texts ("30 GPa", "1e-3*t") or lists of these
+    overrides  entries that are other than in the source, {"Time.steps": 3}, or texts "Time.steps=3"
+    comm       ranks that read it together
+    folder     where its files are, of a source that is no file
+    name       opens messages, likewise"""
+
+    def __init__(self, source, overrides=(), *, comm=MPI.COMM_WORLD, folder="", name="scene"):
+        texts = override_texts(overrides)
+        if isinstance(source, _sprekk.Scene):
+            self._handle = source
+        elif isinstance(source, str) and source.lstrip().startswith("<"):
+            self._handle = _sprekk.Scene.from_text(source, name, texts, comm)
+        elif isinstance(source, (str, os.PathLike)):
+            self._handle = _sprekk.Scene.from_file(os.fspath(source), texts, comm)
+        else:
+            self._handle = _sprekk.Scene.from_entries(plain(source), name, str(folder), texts, comm)
+
+    @property
+    def entries(self):
+        """What is given, as a dict."""
+        return self._handle.entries()
+
+    @property
+    def all_entries(self):
+        """All that could be given, with defaults, as a dict."""
+        return self._handle.effective()
+
+    @property
+    def times(self):
+        """The ends of its steps; if their length is chosen, of those that must be met."""
+        return self._handle.times()
+
+    @property
+    def name(self):
+        return self._handle.origin
+
+    def to_xml(self, defaults=False):
+        """As text that a file may hold."""
+        return self._handle.effective_xml() if defaults else self._handle.xml()
+
+    def changed(self, overrides, comm=MPI.COMM_WORLD):
+        """The same with other entries: {"Materials.joint.friction coefficient": 0.3}; a dict as value is a section."""
+        sections = {path: value for path, value in dict(overrides).items() if is_section(value)}
+        entries = self.entries
+        for path, value in sections.items():
+            merge(entries, path.split("."), plain(value))
+        values = {path: value for path, value in dict(overrides).items() if path not in sections}
+        return Scene(entries, values, comm=comm, folder=self._handle.folder, name=self.name)
+
+    def __repr__(self):
+        return f"<sprekk.Scene {self.name!r}: {', '.join(self.entries)}>"
+
+
+def is_section(value):
+    return isinstance(value, Mapping) or hasattr(value, "to_entries")
+
+
+def plain(value):
+    """Entries without the types of numpy and of sprekk.entries; what is None is left out."""
+    if hasattr(value, "to_entries"):
+        value = value.to_entries()
+    if isinstance(value, Mapping):
+        return {name: plain(inner) for name, inner in value.items() if inner is not None}
+    if hasattr(value, "tolist"):  # of numpy
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+def merge(entries, path, section):
+    for name in path:
+        entries = entries.setdefault(name, {})
+    for name, value in section.items():
+        if isinstance(value, dict):
+            merge(entries, [name], value)
+        else:
+            entries[name] = value
+
+
+def override_texts(overrides):
+    """As the program takes them, "Path.to.entry=value"."""
+    if isinstance(overrides, Mapping):
+        return [f"{path}={value_text(plain(value))}" for path, value in overrides.items()]
+    return [overrides] if isinstance(overrides, str) else list(overrides)
+
+
+def value_text(value):
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return "{" + ", ".join(f'"{v}"' if isinstance(v, str) and "," in v else value_text(v) for v in value) + "}"
+    return value if isinstance(value, str) else repr(value)

@@ -1,0 +1,14 @@
+# Python, for tests and for the module sprekk. Debian's packages belong to its own interpreter, which need not be the one
+# found first.
+if(NOT Python_EXECUTABLE)
+  find_program(SPREKK_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(SPREKK_PYTHON python3)
+  set(Python_EXECUTABLE ${SPREKK_PYTHON})
+endif()
+set(SPREKK_PYTHON ${Python_EXECUTABLE})
+
+# The module is built where pybind11 is; what it links is then code that may be loaded anywhere.
+set(PYBIND11_FINDPYTHON ON)
+find_package(Python QUIET COMPONENTS Interpreter Development.Module)
+find_package(pybind11 2.10 QUIET)
+set(SPREKK_PYTHON_MODULE ${pybind11_FOUND})

@@ -1,0 +1,195 @@
+"""Own time loops, modules and laws, and derivatives, on any number of ranks: modules_test.py ROOT"""
+import sys
+import unittest
+from pathlib import Path
+
+import numpy as np
+import sprekk
+from mpi4py import MPI
+
+ROOT = Path(sys.argv[1])
+COMM = MPI.COMM_WORLD
+sys.path.append(str(ROOT / "apps/python/examples"))
+
+import coupled  # noqa: E402
+
+E = 10e9  # Pa
+
+
+def square(friction, **time):
+    """A square under an inclined load, with a fracture inside, parts of which slide."""
+    return sprekk.Scene({
+        "Mesh": {"cell": "triangle", "lower corner": [0, 0], "upper corner": [1, 1], "cells": [8, 8],
+                 "fractures": {"fracture": {"lower corner": [0.25, 0.5], "upper corner": [0.75, 0.5]}}},
+        "Materials": {"rock": {"type": "elastic", "Young's modulus": E, "Poisson's ratio": 0.2},
+                      "joint": {"type": "joint", "friction coefficient": friction, "tangential stiffness": 50e9}},
+        "Bulk": {"material": "rock"}, "Fractures": {"fracture": {"material": "joint"}},
+        "Boundary conditions": {"floor": {"boundary": "south", "displacement": [0, 0]},
+                                "top": {"boundary": "north", "traction": [4e6, -1e7]}},
+        "Time": {"end": 2, "steps": 2, **time}})
+
+
+class Viscous(sprekk.FaceLaw):
+    """As slow as the viscosity (Pa s/m) lets it."""
+    name = "viscous joint"
+
+    def __init__(self, viscosity):
+        self.viscosity = viscosity
+
+    def shear(self, w, traction, state):
+        return self.viscosity * state.rate * (w - state.histories["jump"])[:, 1:]
+
+
+class Failing(sprekk.Module):
+    name = "failing"
+
+    def blocks(self, mesh):
+        return [sprekk.Block("cells", ["displacement"], ["displacement"], self.residual)]
+
+    def residual(self, x, state):
+        if state.t > 1 and COMM.rank == COMM.size - 1:
+            raise ZeroDivisionError("here alone")
+        return {}
+
+
+class Coupled(unittest.TestCase):
+    def test_reservoir_by_exchange_and_in_one_jacobian(self):
+        self.assertTrue(coupled.main(8, 2))  # both within 1e-8 of Sprekk's own flow
+
+    def test_jacobian_of_the_reservoir(self):
+        model = coupled.together(4)
+        model.step(coupled.DT)
+        model.step(2 * coupled.DT)
+        errors = model.check_jacobian()
+        own = errors[(errors["module"] == "own flow")]
+        self.assertGreater(len(own), 3)
+        self.assertLess(own["error"].max(), 1e-6)
+
+
+class Laws(unittest.TestCase):
+    def test_viscous_joint_beside_rock_by_hand(self):
+        """A block whose top is moved by d: tau (2(1 + nu)/E + dt/viscosity) = d - jump of the last step."""
+        viscosity, nu, dt = 1e12, 0.2, 0.5
+        entries = square(0, steps=4).entries
+        scene = sprekk.Scene(entries | {"Mesh": entries["Mesh"] | {
+            "periodic": ["x"], "fractures": {"fracture": {"lower corner": [0, 0.5], "upper corner": [1, 0.5]}}},
+            "Boundary conditions": {"floor": {"boundary": "south", "displacement": [0, 0]},
+                                    "top": {"boundary": "north", "displacement": ["1e-3*t", -1e-3]}}})
+        model = sprekk.Model(scene, modules=[Viscous(viscosity)])
+        jump = 0
+        for t in scene.times:
+            model.step(t)
+            tau = (1e-3 * t - jump) / (2 * (1 + nu) / E + dt / viscosity)
+            jump += tau * dt / viscosity
+            np.testing.assert_allclose(np.asarray(model.field("own shear")), tau, rtol=1e-9)
+            np.testing.assert_allclose(np.asarray(model.output("jump local"))[:, 1], jump, rtol=1e-9)
+
+    def test_same_on_any_number_of_ranks(self):
+        together = sprekk.Model(square(0), COMM, modules=[Viscous(1e11)])
+        alone = sprekk.Model(square(0), MPI.COMM_SELF, modules=[Viscous(1e11)])
+        for model in (together, alone):
+            model.run()
+        for name in ("displacement", "own shear"):
+            whole, known = together.gather(name), alone.gather(name)
+            if COMM.rank == 0:
+                np.testing.assert_allclose(whole, known, atol=1e-9 * np.max(np.abs(known)), err_msg=name)
+
+    def test_derivatives_of_a_law(self):
+        model = sprekk.Model(square(0), modules=[Viscous(1e11)])
+        model.step(1)
+        errors = model.check_jacobian()
+        self.assertLess(errors[errors["module"] == "viscous joint"]["error"].max(), 1e-6)
+
+    def test_checkpoints_of_another_law_are_refused(self):
+        one, other = Viscous(1e11), Viscous(1e11)
+        other.fingerprint = "another"
+        model = sprekk.Model(square(0), modules=[one])
+        model.step(1)
+        with self.assertRaisesRegex(sprekk.Error, "viscous joint"):
+            sprekk.Model(square(0), modules=[other]).restore(model.save())
+
+    def test_an_exception_on_one_rank_is_raised_on_all(self):
+        model = sprekk.Model(square(0.3), modules=[Failing()])
+        model.step(1)
+        with self.assertRaisesRegex(sprekk.Error, 'module "failing": ZeroDivisionError: here alone'):
+            model.step(2)
+        self.assertEqual(model.time, 1)
+
+    def test_wrong_shapes_and_names(self):
+        class Wrong(Failing):
+            def residual(self, x, state):
+                return {"displacement": np.zeros((3, 1))}
+        with self.assertRaisesRegex(sprekk.Error, r'residual of "displacement" has the shape \(3, 1\), must have'):
+            sprekk.Model(square(0.3), modules=[Wrong()]).step(1)
+
+        class Nowhere(Failing):
+            def blocks(self, mesh):
+                return [sprekk.Block("corners", ["displacement"], ["displacement"], self.residual)]
+        with self.assertRaisesRegex(sprekk.Error, 'there is no loop "corners"'):
+            sprekk.Model(square(0.3), modules=[Nowhere()])
+
+
+class Derivatives(unittest.TestCase):
+    def test_adjoint_against_differences_of_solves(self):
+        """Materials, loads and friction, where parts of the fracture slide in the step and parts stick."""
+        parameters = {"Materials.rock.Young's modulus": E, "Materials.joint.tangential stiffness": 50e9,
+                      "Materials.joint.friction coefficient": 0.38, ("Boundary conditions.top.traction", 0): 4e6,
+                      ("Boundary conditions.top.traction", 1): -1e7}
+        scene = square(0.38)
+        model = sprekk.Model(scene)
+        value, found = sprekk.sensitivities(model, 1, self.quantity, list(parameters))
+        states = np.concatenate(COMM.allgather(model.output("state").ravel()))
+        self.assertEqual(set(states), {1, 2})  # stick and slip
+        for parameter, number in parameters.items():
+            ends = [self.after(scene, parameter, number * (1 + sign * 1e-5)) for sign in (1, -1)]
+            self.assertAlmostEqual(found[parameter] / ((ends[0] - ends[1]) / (2e-5 * number)), 1, delta=1e-6, msg=parameter)
+        self.assertAlmostEqual(value / self.after(scene, "Materials.rock.Young's modulus", E), 1, delta=1e-9)
+
+    def test_adjoint_with_a_law_of_ones_own(self):
+        scene, law = square(0), [Viscous(1e12)]
+        model = sprekk.Model(scene, modules=law)
+        model.step(1)
+        _, found = sprekk.sensitivities(model, 2, self.quantity, ["Materials.rock.Young's modulus"])
+        ends = []
+        for sign in (1, -1):  # the state at the beginning of the step is given
+            other = sprekk.Model(scene.changed({"Materials.rock.Young's modulus": E * (1 + sign * 1e-4)}), modules=law)
+            first = sprekk.Model(scene, modules=law)
+            first.step(1)
+            for name in first.fields:
+                other.field(name)[:] = first.field(name)
+            other.step(1)  # as long as the second step
+            ends.append(self.told(other))
+        self.assertAlmostEqual(found["Materials.rock.Young's modulus"] / ((ends[0] - ends[1]) / (2e-4 * E)), 1, delta=1e-6)
+
+    @staticmethod
+    def quantity(x):
+        u, traction = x["displacement"], x["traction"]
+        by_u, by_traction = np.zeros_like(u), np.zeros_like(traction)
+        by_u[:, 0] = 1
+        by_traction[:, 1] = 2e-16 * traction[:, 1]
+        return float(np.sum(u[:, 0]) + 1e-16 * np.sum(traction[:, 1]**2)), {"displacement": by_u, "traction": by_traction}
+
+    def after(self, scene, parameter, number):
+        path, index = parameter if isinstance(parameter, tuple) else (parameter, None)
+        if index is not None:
+            values = [4e6, -1e7]
+            values[index] = number
+            number = values
+        model = sprekk.Model(scene.changed({path: number}))
+        model.step(1)
+        return self.told(model)
+
+    def told(self, model):
+        whole = {name: model.gather(name, field=True) for name in ("displacement", "traction")}
+        return COMM.bcast(self.quantity(whole)[0] if COMM.rank == 0 else None)
+
+    def test_what_has_no_derivative(self):
+        model = sprekk.Model(square(0.38))
+        with self.assertRaisesRegex(sprekk.Error, 'no entry "Materials.rock.E"'):
+            sprekk.sensitivities(model, 1, self.quantity, ["Materials.rock.E"])
+        with self.assertRaisesRegex(sprekk.Error, "the quantity: KeyError"):
+            sprekk.sensitivities(model, 2, lambda x: (x["pressure"], {}), [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1 if COMM.rank == 0 else 0)
