@@ -480,6 +480,20 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::passed_on(const Bloc
   return all;
 }
 
+void System::prescribe(Real t, BlockVector& x) {
+  const auto views = rows(x);
+  for (std::size_t b = 0; b < constraints_.size(); ++b) {
+    base::collectively(*comm(), [&] { constraints_[b].evaluate(t); });
+    const auto mask = constraints_[b].mask();
+    const auto value = constraints_[b].values();
+    const auto unknown = views[b];
+    Kokkos::parallel_for(
+        "prescribed", Kokkos::RangePolicy<Execution>(0, mask.extent(0)), KOKKOS_LAMBDA(int i) {
+          if (mask(i)) unknown(i) = value(i);
+        });
+  }
+}
+
 void System::take_over(const BlockVector& x) {
   refresh_ghosts(x, false);
   for (std::size_t m = 0; m < modules_.size(); ++m) {

@@ -83,6 +83,8 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
+  /// Sets unknowns that are prescribed to what they are at t. Collective.
+  void prescribe(Real t, fields::BlockVector& x);
   /// What modules pass on to those of a system that goes on from x in this one's place, by the names of histories().
   /// Collective.
   std::vector<std::pair<fields::Field, View<Real**>>> passed_on(const fields::BlockVector& x);

@@ -13,6 +13,13 @@
 namespace sprekk::model {
 namespace {
 
+constexpr const char* reduction = "strength reduction factor";
+
+/// Without entries where there is none.
+Teuchos::ParameterList sublist_of(const Teuchos::ParameterList& list, const std::string& name) {
+  return list.isSublist(name) ? list.sublist(name) : Teuchos::ParameterList();
+}
+
 bool has_joint(const Material& material) { return material.type == "joint"; }
 
 Scene reduced(const Scene& scene, Real factor) {
@@ -26,6 +33,11 @@ void check(const Model& model) {
   const auto& scene = model.scene();
   const bool any = std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const auto& material) { return has_joint(material.second); });
+  for (const auto& [name, stage] : scene.stages)
+    for (const auto& [material, entries] : sublist_of(stage.changes, "Materials"))
+      SPREKK_CHECK(!entries.isList() || !stage.changes.sublist("Materials").sublist(material).isParameter(reduction),
+                   "{}: Sprekk > Stages > {} > Materials > {} > \"{}\": is what is looked for; leave it out",
+                   scene.origin, name, material, reduction);
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
                scene.origin);
   std::vector<std::string> stores;
@@ -78,10 +90,10 @@ Reduction reduce(Model& model, const Scene& own, Real factor) {
 
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
                                 const std::function<void(const Reduction&)>& tell) {
-  const Scene own = read_scene(*comm, options.scene, options.overrides);
-  Model model(reduced(own, options.first), comm);
+  Model model(reduced(read_scene(*comm, options.scene, options.overrides), options.first), comm);
   check(model);
   run_to_the_end(model, options.first);
+  const Scene own = reduced(model.scene(), 1 / options.first);  // with what stages have changed
   FactorOfSafety found{.least = options.first, .lost = {}, .reductions = {}, .states = {}};
   const auto holds = [&](Real factor) {
     found.reductions.push_back(reduce(model, own, factor));

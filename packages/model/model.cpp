@@ -139,10 +139,12 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   for (const auto& line : misfits(prepared, physics::names_of(*whole_mesh_))) errors.push_back(line);
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
-  physics::for_each_physics([&](auto physics) { physics.prepare_change(before, prepared.value); });
+  physics::for_each_physics([&](auto physics) { physics.prepare_change(*whole_mesh_, before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;
   physics::for_each_physics([&](auto physics) {
+    if (const auto why = physics.no_error_estimate(draft.scene); draft.scene.output.error_estimate && !why.empty())
+      lines.push_back("Output > \"error estimate\": " + why);
     for (auto& line : physics.refuses_change_in(*draft.mesh, before, draft.scene)) lines.push_back(std::move(line));
   });
   refuse(lines);
@@ -181,6 +183,7 @@ void Model::change(const Scene& changed) {
   auto scene = draft.scene;
   auto system = make_system(std::move(draft));
   auto x = system->initial();
+  system->prescribe(time_, x);  // where there was nothing before
   carry_over(*whole_mesh_, *system_, x_, *system, x);
   system->tell_unbalanced(x);
   scene_ = std::move(scene);

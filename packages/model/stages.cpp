@@ -100,6 +100,9 @@ std::vector<StagedScene> staged_scenes(const Scene& scene) {
     for (const auto& region : stage.excavate) list.sublist("Regions").sublist(region).set("excavated", true);
     for (const auto& region : stage.backfill) {
       auto& entries = list.sublist("Regions").sublist(region);
+      if (std::find(stage.excavate.begin(), stage.excavate.end(), region) != stage.excavate.end())
+        errors.push_back(
+            fmt::format("{}: \"backfill\": names \"{}\", and so does \"excavate\": take two stages", origin, region));
       if (!entries.isType<bool>("excavated") || !entries.get<bool>("excavated"))
         errors.push_back(
             fmt::format("{}: \"backfill\": names \"{}\", which is not excavated at this time", origin, region));

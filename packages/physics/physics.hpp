@@ -116,8 +116,8 @@ struct Physics {
   static std::vector<std::string> refuses_change_in(const mesh::Mesh&, const Scene& before, const Scene& after) {
     return {};
   }
-  /// Takes over from a scene into one that a live model goes on with what is no entry.
-  static void prepare_change(const Scene& before, Scene& after) {}
+  /// Takes over from a scene into one that a live model goes on with what is no entry. Collective.
+  static void prepare_change(const mesh::Mesh& whole, const Scene& before, Scene& after) {}
   /// Reports what does not fit together.
   static void compare(Comparison&) {}
   /// The same of conditions on a mesh that has all of their names; not collective.

@@ -85,7 +85,7 @@ class NodeMultigrid : public Preconditioner {
     std::array<GlobalIndex, 2> count{};
     look(system, [&](const auto& A) {
       const auto weak = multigrid::weak_couplings(A);
-      for (std::size_t k = 0; k < weak.size(); ++k) count[0] += weak[k] != weak_[k];
+      for (std::size_t k = 0; k < weak.size(); ++k) count[0] += k >= weak_.size() || weak[k] != weak_[k];
       count[1] = static_cast<GlobalIndex>(weak.size());
     });
     const auto all = base::sum_over_ranks(comm, count);

@@ -406,10 +406,10 @@ std::vector<std::string> Heat::warnings_of_state(const Setting& setting,
                   scene.origin, coldest_water, warmest_water)};
 }
 
-std::vector<std::string> Heat::refuses_change(const Scene& before, const Scene& after) {
+std::vector<std::string> Heat::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
   std::vector<std::string> lines;
-  if (!is_in(after) || !Mechanics::is_in(after)) return lines;
-  for (const auto& [name, filled] : changed_rock(before, after))
+  if (!is_in(after) || !Mechanics::is_in(before) || !Mechanics::is_in(after)) return lines;
+  for (const auto& [name, filled] : changed_rock(mesh, before, after))
     if (!filled && !is_zero(after.material_of(name).thermal_expansion))
       lines.push_back(fmt::format(
           "the rock of \"{}\" gets other elastic constants, and its thermal stress counts from the start", name));

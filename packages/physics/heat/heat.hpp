@@ -76,7 +76,7 @@ struct Heat : Physics<Heat> {
 
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial temperature", "thermal expansion"}; }
-  static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
+  static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
   static bool needs_facets(const Scene& scene) { return is_in(scene); }
   static bool has_rates(const Scene& scene) { return is_in(scene); }
   static bool has_initial_state(const Scene& scene);

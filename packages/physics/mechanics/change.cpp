@@ -8,6 +8,7 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -28,15 +29,6 @@ std::vector<std::string> laws_with_memory(const Material& material) {
   return names;
 }
 
-/// The elastic constants of a region, as they were written.
-std::vector<std::string> constants_of(const Scene& scene, const std::string& region) {
-  const auto& rock = scene.material_of(region);
-  std::vector<std::string> texts;
-  for (const auto* constant : {&rock.E, &rock.nu, &rock.G, &rock.lambda, &rock.K})
-    texts.push_back(*constant ? (*constant)->text() : "");
-  return texts;
-}
-
 bool is_excavated(const Scene& scene, const std::string& region) {
   const auto found = scene.regions.find(region);
   return found != scene.regions.end() && found->second.excavated;
@@ -53,17 +45,22 @@ auto springs_of(const Scene& scene) {
 
 }  // namespace
 
-std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after) {
+std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
+  constexpr Real rounding = 1e-12;
+  std::vector<int> others(mesh.region_names.size());
+  base::collectively(*mesh.comm, [&] {
+    const auto old = elasticity(before, mesh), now = elasticity(after, mesh);
+    const auto differ = [](Real a, Real b) { return !(std::abs(a - b) <= rounding * std::abs(a)); };
+    for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
+      const auto &a = old.of_cell(mesh, c), &b = now.of_cell(mesh, c);
+      if (differ(a.G, b.G) || differ(a.youngs_modulus(), b.youngs_modulus())) others[mesh.cell_region[c]] = 1;
+    }
+  });
+  others = base::max_over_ranks(*mesh.comm, others);
   std::map<std::string, bool> changed;
-  std::set<std::string> names = {"bulk"};
-  for (const auto* scene : {&before, &after})
-    for (const auto& named_region : scene->regions) names.insert(named_region.first);
-  for (const auto& name : names) {
-    if (is_excavated(after, name)) continue;
-    if (const bool filled = is_excavated(before, name);
-        filled || constants_of(before, name) != constants_of(after, name))
-      changed[name] = filled;
-  }
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (const auto& name = mesh.region_names[k]; !is_excavated(after, name))
+      if (const bool filled = is_excavated(before, name); filled || others[k]) changed[name] = filled;
   return changed;
 }
 
@@ -72,15 +69,17 @@ std::vector<std::string> Mechanics::fixed_entries() {
   return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump"};
 }
 
-void Mechanics::prepare_change(const Scene& before, Scene& after) {
+void Mechanics::prepare_change(const mesh::Mesh& mesh, const Scene& before, Scene& after) {
   after.keeps_stress =
-      before.keeps_stress || !changed_rock(before, after).empty() || springs_of(before) != springs_of(after);
+      before.keeps_stress || (is_in(before) && is_in(after) &&
+                              (!changed_rock(mesh, before, after).empty() || springs_of(before) != springs_of(after)));
 }
 
 /// The stress that goes on is that of the nodes: not of the bubbles of fractures' sides, nor of functions around tips.
 std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
-  const auto changed = changed_rock(before, after);
-  if (changed.empty() || !is_in(after)) return {};
+  if (!is_in(before) || !is_in(after)) return {};
+  const auto changed = changed_rock(mesh, before, after);
+  if (changed.empty()) return {};
   const std::size_t n_regions = mesh.region_names.size();
   std::vector<int> meets(n_regions * mesh.fracture_names.size()), has_tips(n_regions);  // [fracture, region]
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
@@ -91,6 +90,11 @@ std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, co
   meets = base::max_over_ranks(*mesh.comm, meets);
   has_tips = base::max_over_ranks(*mesh.comm, has_tips);
   std::vector<std::string> lines;
+  if (has_solid_pressure(before) || has_solid_pressure(after))
+    lines.push_back(
+        fmt::format("the rock of \"{}\" changes, and some rock is nearly incompressible, with a pressure that "
+                    "counts from the start",
+                    changed.begin()->first));
   for (const auto& [name, filled] : changed) {
     const char* what = filled ? "is filled" : "gets other elastic constants";
     const auto region = index_of(mesh.region_names, name);
@@ -119,12 +123,6 @@ std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Sc
                       "these have kept means nothing to others",
                       name, fmt::join(laws, "\", \""), fmt::join(old_laws, "\", \"")));
   }
-  const auto changed = changed_rock(before, after);
-  if (is_in(after) && !changed.empty() && (has_solid_pressure(before) || has_solid_pressure(after)))
-    lines.push_back(
-        fmt::format("the rock of \"{}\" changes, and some rock is nearly incompressible, with a pressure that "
-                    "counts from the start",
-                    changed.begin()->first));
   if (!after.bulk.lithostatic_stress) return lines;
   const auto density = [](const Scene& scene) { return scene.material_of("bulk").density.value_or(0).text(); };
   if (before.bulk.gravity != after.bulk.gravity || density(before) != density(after))

@@ -315,6 +315,7 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
   if (std::any_of(conditions.begin(), conditions.end(),
                   [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))
     return "is of boundaries whose tractions or displacements are given; not available with \"foundation stiffness\"";
+  if (scene.keeps_stress) return "is of the strain alone, and stress goes on from other constants or before a fill";
   return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
 }
 

@@ -112,7 +112,7 @@ struct Mechanics : Physics<Mechanics> {
   static std::vector<std::string> fixed_entries();
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
   static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
-  static void prepare_change(const Scene& before, Scene& after);
+  static void prepare_change(const mesh::Mesh& mesh, const Scene& before, Scene& after);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);
@@ -130,8 +130,8 @@ Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& me
 /// which the bubbles of facets would have to see.
 bool has_solid_pressure(const Scene& scene, int order = 1);
 
-/// Regions that a changed scene fills (true), or gives other elastic constants, by their names.
-std::map<std::string, bool> changed_rock(const Scene& before, const Scene& after);
+/// Regions of a mesh that a changed scene fills (true), or gives other elastic constants, by their names. Collective.
+std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
 
 /// Young's, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);

@@ -1,10 +1,12 @@
 #include "physics/mechanics/modules.hpp"
 
 #include "base/over_ranks.hpp"
-#include "physics/mechanics/carried_forces.hpp"
 #include "physics/mechanics/interface_traction_balance.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
+#include "physics/mechanics/spring_origin.hpp"
 #include "physics/mechanics/tip_enrichment.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -34,6 +36,15 @@ std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh, const s
   return result;
 }
 
+/// Springs that are elsewhere are others. Names of histories have no "/".
+std::string module_name(const std::string& condition, const mesh::Mesh& mesh,
+                        const ElasticFoundationParameters& foundation) {
+  auto name = fmt::format("elastic foundation of {} on {}", condition, mesh.boundary_names[foundation.boundary]);
+  if (foundation.region >= 0) name += " at " + mesh.region_names[foundation.region];
+  std::replace(name.begin(), name.end(), '/', ':');
+  return name;
+}
+
 }  // namespace
 
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
@@ -59,8 +70,8 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
   std::vector<std::unique_ptr<assembly::Module>> modules;
   modules.push_back(make_bulk_momentum(mesh.shape, bulk));
   for (const auto& [name, foundation] : parameters.foundations)
-    modules.push_back(make_carried_forces(make_elastic_foundation(mesh, foundation), "elastic foundation of " + name,
-                                          bulk.keeps_stress));
+    modules.push_back(make_spring_origin(make_elastic_foundation(mesh, foundation), module_name(name, mesh, foundation),
+                                         foundation.stiffness, bulk.keeps_stress));
   if (!parameters.solid_modulus.values.empty())
     modules.push_back(make_solid_pressure(mesh, {.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
   if (mesh.fracture_names.empty()) return modules;

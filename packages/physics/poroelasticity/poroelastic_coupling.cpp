@@ -128,6 +128,9 @@ class PoroelasticCoupling final : public assembly::Module {
     put_initial(*mesh_, parameters_.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
+  /// Rates count from the state that is there, also in cells that are new.
+  void take_over(assembly::State& state) const override { commit(state); }
+
   /// What was in the rows of pressures, times dt.
   void commit(assembly::State& state) const override {
     assembly::Rows volumes;

@@ -69,6 +69,13 @@ TEST(FactorOfSafety, BelowOne) {
       tan_of(20) / tan_of(30));
 }
 
+/// Of the joint that a stage leaves.
+TEST(FactorOfSafety, AfterStages) {
+  expect_between(safety("plane_2d.xml", {"Stages.s.time=0.5", "Stages.s.Materials.joint.friction angle=50",
+                                         "Time.end=1", "Time.steps=1"}),
+                 tan_of(50) / tan_of(30));
+}
+
 TEST(FactorOfSafety, OfAWedgeOnTwoPlanes) {
   expect_between(safety("wedge_3d.xml"), (7.7 * tan_of(35) + 4 * tan_of(25)) / 4);
 }
@@ -90,6 +97,8 @@ TEST(FactorOfSafety, Refuses) {
   };
   EXPECT_THAT(message({"Materials.joint.friction angle=20", "Mesh.cells={4, 4}"}),
               testing::HasSubstr("found no equilibrium with its own strength"));
+  EXPECT_THAT(message({"Stages.s.time=0.5", "Stages.s.Materials.joint.strength reduction factor=2", "Time.end=1"}),
+              testing::HasSubstr("is what is looked for; leave it out"));
   EXPECT_THAT(message({"Materials.joint.strength reduction factor=0"}), testing::HasSubstr("must be positive"));
 }
 
