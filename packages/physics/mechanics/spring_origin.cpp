@@ -75,9 +75,10 @@ class SpringOrigin final : public assembly::Module {
   template <class Value>
   View<Real**> of_sprung(const assembly::State& state, const Value& value) const {
     const View<Real**> result("of springs", layout_->n_owned_entities(), dim_);
-    const auto values = Kokkos::create_mirror_view(result), none = Kokkos::create_mirror(result);
+    const View<Real**> before = keeps_ ? state.history.back() : View<Real**>("none", result.extent(0), dim_);
+    const auto values = Kokkos::create_mirror_view(result);
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    const auto kept = keeps_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history.back()) : none;
+    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), before);
     for (const auto& [unknown, i] : springs_->supports().value())
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
         values(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
