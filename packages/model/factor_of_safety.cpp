@@ -34,10 +34,12 @@ void check(const Model& model) {
   const bool any = std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const auto& material) { return has_joint(material.second); });
   for (const auto& [name, stage] : scene.stages)
-    for (const auto& [material, entries] : sublist_of(stage.changes, "Materials"))
-      SPREKK_CHECK(!entries.isList() || !stage.changes.sublist("Materials").sublist(material).isParameter(reduction),
+    for (const auto& named_entry : sublist_of(stage.changes, "Materials")) {
+      const auto& material = named_entry.first;
+      SPREKK_CHECK(!sublist_of(stage.changes.sublist("Materials"), material).isParameter(reduction),
                    "{}: Sprekk > Stages > {} > Materials > {} > \"{}\": is what is looked for; leave it out",
                    scene.origin, name, material, reduction);
+    }
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
                scene.origin);
   std::vector<std::string> stores;

@@ -457,6 +457,8 @@ class Material(Section):
         "linear softening"; default none)
     cohesion: bond "constant cohesion", "linear softening", required: c: what the bond adds to the bound on the shear
         traction (Pa; at least 0)
+    opening_without_cohesion: bond "constant cohesion": o_0: faces that part lose c in proportion to their opening up to
+        this; 0: at once, after which there may be no equilibrium where some would just open (m; at least 0; default 0)
     tensile_strength: bond "linear softening": T, of the whole bond (Pa; at least 0; default 0)
     fracture_energy: bond "linear softening": G_I that opening dissipates per area until the bond is lost (J/m^2;
         positive)
@@ -545,6 +547,7 @@ class Material(Section):
     stiffening_exponent: float | str | None
     bond: Literal["none", "constant cohesion", "linear softening"] | None
     cohesion: float | str | None
+    opening_without_cohesion: float | str | None
     tensile_strength: float | str | None
     fracture_energy: float | str | None
     shear_fracture_energy: float | str | None
@@ -561,7 +564,7 @@ class Material(Section):
     residual_aperture: float | str | None
     tangential_permeability: float | str | None
     normal_permeability: float | str | None
-    def __init__(self, *, type: Literal["elastic", "joint"] | None = ..., source: str | None = ..., youngs_modulus: float | str | None = ..., poissons_ratio: float | str | None = ..., shear_modulus: float | str | None = ..., lames_first_parameter: float | str | None = ..., bulk_modulus: float | str | None = ..., density: float | str | None = ..., permeability: Sequence[float | str] | None = ..., porosity: float | str | None = ..., compressibility_of_pores: float | str | None = ..., biot_modulus: float | str | None = ..., biot_coefficient: float | str | None = ..., thermal_conductivity: Sequence[float | str] | None = ..., volumetric_heat_capacity: float | str | None = ..., thermal_expansion: float | str | None = ..., tangential_elasticity: Literal["linear", "power"] | None = ..., tangential_stiffness: float | str | None = ..., shear_stiffening_stress: float | str | None = ..., shear_stiffening_exponent: float | str | None = ..., friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening"] | None = ..., friction_coefficient: float | str | None = ..., friction_angle: float | str | None = ..., joint_roughness_coefficient: float | str | None = ..., joint_wall_strength: float | str | None = ..., residual_friction_angle: float | str | None = ..., largest_friction_angle: float | str | None = ..., joint_length: float | str | None = ..., sample_length: float | str | None = ..., peak_slip: float | str | None = ..., basic_friction_coefficient: float | str | None = ..., basic_friction_angle: float | str | None = ..., asperity_angle: float | str | None = ..., asperity_friction_coefficient: float | str | None = ..., transition_stress: float | str | None = ..., transition_exponent: float | str | None = ..., residual_friction_coefficient: float | str | None = ..., weakening_distance: float | str | None = ..., dilation: Literal["constant angle", "mobilised", "decaying angle", "limited"] | None = ..., dilation_angle: float | str | None = ..., asperity_damage_coefficient: float | str | None = ..., residual_dilation_angle: float | str | None = ..., dilation_decay_distance: float | str | None = ..., largest_dilation: float | str | None = ..., initial_gap: float | str | None = ..., closure: Literal["Barton-Bandis", "Barton-Bandis with memory", "Bandis", "power", "linear"] | None = ..., maximum_closure: float | str | None = ..., normal_stiffness: float | str | None = ..., irrecoverable_part_of_closure: float | str | None = ..., joint_aperture: float | str | None = ..., loading_cycle: float | str | None = ..., stiffening_stress: float | str | None = ..., stiffening_exponent: float | str | None = ..., bond: Literal["none", "constant cohesion", "linear softening"] | None = ..., cohesion: float | str | None = ..., tensile_strength: float | str | None = ..., fracture_energy: float | str | None = ..., shear_fracture_energy: float | str | None = ..., damage: Literal["none", "isotropic", "anisotropic"] | None = ..., residual_part_of_friction: float | str | None = ..., damage_length_of_friction: float | str | None = ..., residual_part_of_dilation: float | str | None = ..., damage_length_of_dilation: float | str | None = ..., damage_driver: Literal["slip", "compression", "frictional work"] | None = ..., reference_stress: float | str | None = ..., hydraulic_aperture: Literal["mechanical", "Barton"] | None = ..., initial_aperture: float | str | None = ..., strength_reduction_factor: float | str | None = ..., residual_aperture: float | str | None = ..., tangential_permeability: float | str | None = ..., normal_permeability: float | str | None = ...) -> None: ...
+    def __init__(self, *, type: Literal["elastic", "joint"] | None = ..., source: str | None = ..., youngs_modulus: float | str | None = ..., poissons_ratio: float | str | None = ..., shear_modulus: float | str | None = ..., lames_first_parameter: float | str | None = ..., bulk_modulus: float | str | None = ..., density: float | str | None = ..., permeability: Sequence[float | str] | None = ..., porosity: float | str | None = ..., compressibility_of_pores: float | str | None = ..., biot_modulus: float | str | None = ..., biot_coefficient: float | str | None = ..., thermal_conductivity: Sequence[float | str] | None = ..., volumetric_heat_capacity: float | str | None = ..., thermal_expansion: float | str | None = ..., tangential_elasticity: Literal["linear", "power"] | None = ..., tangential_stiffness: float | str | None = ..., shear_stiffening_stress: float | str | None = ..., shear_stiffening_exponent: float | str | None = ..., friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening"] | None = ..., friction_coefficient: float | str | None = ..., friction_angle: float | str | None = ..., joint_roughness_coefficient: float | str | None = ..., joint_wall_strength: float | str | None = ..., residual_friction_angle: float | str | None = ..., largest_friction_angle: float | str | None = ..., joint_length: float | str | None = ..., sample_length: float | str | None = ..., peak_slip: float | str | None = ..., basic_friction_coefficient: float | str | None = ..., basic_friction_angle: float | str | None = ..., asperity_angle: float | str | None = ..., asperity_friction_coefficient: float | str | None = ..., transition_stress: float | str | None = ..., transition_exponent: float | str | None = ..., residual_friction_coefficient: float | str | None = ..., weakening_distance: float | str | None = ..., dilation: Literal["constant angle", "mobilised", "decaying angle", "limited"] | None = ..., dilation_angle: float | str | None = ..., asperity_damage_coefficient: float | str | None = ..., residual_dilation_angle: float | str | None = ..., dilation_decay_distance: float | str | None = ..., largest_dilation: float | str | None = ..., initial_gap: float | str | None = ..., closure: Literal["Barton-Bandis", "Barton-Bandis with memory", "Bandis", "power", "linear"] | None = ..., maximum_closure: float | str | None = ..., normal_stiffness: float | str | None = ..., irrecoverable_part_of_closure: float | str | None = ..., joint_aperture: float | str | None = ..., loading_cycle: float | str | None = ..., stiffening_stress: float | str | None = ..., stiffening_exponent: float | str | None = ..., bond: Literal["none", "constant cohesion", "linear softening"] | None = ..., cohesion: float | str | None = ..., opening_without_cohesion: float | str | None = ..., tensile_strength: float | str | None = ..., fracture_energy: float | str | None = ..., shear_fracture_energy: float | str | None = ..., damage: Literal["none", "isotropic", "anisotropic"] | None = ..., residual_part_of_friction: float | str | None = ..., damage_length_of_friction: float | str | None = ..., residual_part_of_dilation: float | str | None = ..., damage_length_of_dilation: float | str | None = ..., damage_driver: Literal["slip", "compression", "frictional work"] | None = ..., reference_stress: float | str | None = ..., hydraulic_aperture: Literal["mechanical", "Barton"] | None = ..., initial_aperture: float | str | None = ..., strength_reduction_factor: float | str | None = ..., residual_aperture: float | str | None = ..., tangential_permeability: float | str | None = ..., normal_permeability: float | str | None = ...) -> None: ...
 
 class BulkLithostaticStress(Section):
     """initial stress of rock at rest under gravity along the last coordinate (may be absent)
@@ -972,6 +975,8 @@ class Stage(Section):
     without: paths of sections and entries that are no longer there: Boundary conditions > pull (default {})
     excavate: regions that are taken away: their walls are boundaries by the same names, and fractures end there
         (default {})
+    backfill: regions that were taken away and are filled now, with the materials that "Regions" names: free of stress
+        as they are placed (default {})
     release: time over which forces that are out of balance when the stage begins are let go, in proportion to the time;
         absent: they are in its first step (s; positive)
     sections: sections as they stand in the scene
@@ -979,9 +984,46 @@ class Stage(Section):
     time: float | str | None
     without: Sequence[str] | None
     excavate: Sequence[str] | None
+    backfill: Sequence[str] | None
     release: float | str | None
     sections: dict[str, Any] | None
-    def __init__(self, *, time: float | str | None = ..., without: Sequence[str] | None = ..., excavate: Sequence[str] | None = ..., release: float | str | None = ..., sections: dict[str, Any] | None = ...) -> None: ...
+    def __init__(self, *, time: float | str | None = ..., without: Sequence[str] | None = ..., excavate: Sequence[str] | None = ..., backfill: Sequence[str] | None = ..., release: float | str | None = ..., sections: dict[str, Any] | None = ...) -> None: ...
+
+class AccuracyQuantitie(Section):
+    """by names of your choice: numbers and the errors they may have
+
+    quantity: slip, opening: the mean over the area of fractures; normal force, shear force: the integral of
+        compression, of the size of shear traction; reaction: the force that holds a boundary; stress: root of the
+        integral of s : C^-1 s, twice the elastic energy ("slip" | "opening" | "normal force" | "shear force" |
+        "reaction" | "stress"; required)
+    fractures: over which it is taken together; absent: all (default {})
+    boundary: of a reaction: where displacements are prescribed (default "")
+    component: of a reaction ("x" | "y" | "z"; default x)
+    relative: error by the value at the end of the run (between 1e-08 and 1)
+    absolute: error; of forces in N (2D: N/m), of stress in sqrt(J) (2D: sqrt(J/m)); with relative the larger one counts
+        (m; positive)
+    """
+    quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress"] | None
+    fractures: Sequence[str] | None
+    boundary: str | None
+    component: Literal["x", "y", "z"] | None
+    relative: float | str | None
+    absolute: float | str | None
+    def __init__(self, *, quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress"] | None = ..., fractures: Sequence[str] | None = ..., boundary: str | None = ..., component: Literal["x", "y", "z"] | None = ..., relative: float | str | None = ..., absolute: float | str | None = ...) -> None: ...
+
+class Accuracy(Section):
+    """numbers that are to be reached with a given error, on meshes that the run refines (may be absent)
+
+    cells: no mesh is to have more (at least 1; default 1000000)
+    seconds: of the clock, after which no finer mesh is begun; absent: any (s; positive)
+    memory: bytes of all ranks that no mesh is to need more of; absent: any (positive)
+    quantities: by names of your choice: numbers and the errors they may have
+    """
+    cells: int | None
+    seconds: float | str | None
+    memory: float | str | None
+    quantities: dict[str, AccuracyQuantitie] | None
+    def __init__(self, *, cells: int | None = ..., seconds: float | str | None = ..., memory: float | str | None = ..., quantities: dict[str, AccuracyQuantitie] | None = ...) -> None: ...
 
 class Sprekk(Section):
     """A scene.
@@ -1002,6 +1044,7 @@ class Sprekk(Section):
     solver: Newton's method
     output: what is written beside results.json
     stages: by names of your choice: what of the scene changes when, see docs/stages.md
+    accuracy: numbers that are to be reached with a given error, on meshes that the run refines (may be absent)
     """
     tables: dict[str, Table] | None
     expressions: dict[str, Any] | None
@@ -1019,4 +1062,5 @@ class Sprekk(Section):
     solver: Solver | None
     output: Output | None
     stages: dict[str, Stage] | None
-    def __init__(self, *, tables: dict[str, Table] | None = ..., expressions: dict[str, Any] | None = ..., mesh_file: MeshFile | None = ..., mesh: Mesh | None = ..., materials: dict[str, Material] | None = ..., bulk: Bulk | None = ..., flow: Flow | None = ..., heat: Heat | None = ..., regions: dict[str, Region] | None = ..., fractures: dict[str, Fracture | str] | None = ..., boundary_conditions: dict[str, BoundaryCondition] | None = ..., probes: dict[str, Probe] | None = ..., time: Time | None = ..., solver: Solver | None = ..., output: Output | None = ..., stages: dict[str, Stage] | None = ...) -> None: ...
+    accuracy: Accuracy | None
+    def __init__(self, *, tables: dict[str, Table] | None = ..., expressions: dict[str, Any] | None = ..., mesh_file: MeshFile | None = ..., mesh: Mesh | None = ..., materials: dict[str, Material] | None = ..., bulk: Bulk | None = ..., flow: Flow | None = ..., heat: Heat | None = ..., regions: dict[str, Region] | None = ..., fractures: dict[str, Fracture | str] | None = ..., boundary_conditions: dict[str, BoundaryCondition] | None = ..., probes: dict[str, Probe] | None = ..., time: Time | None = ..., solver: Solver | None = ..., output: Output | None = ..., stages: dict[str, Stage] | None = ..., accuracy: Accuracy | None = ...) -> None: ...
