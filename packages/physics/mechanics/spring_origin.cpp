@@ -79,7 +79,8 @@ class SpringOrigin final : public assembly::Module {
     const auto values = Kokkos::create_mirror_view(result);
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
     const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), before);
-    for (const auto& [unknown, i] : springs_->supports().value())
+    const auto sprung = springs_->supports().value();
+    for (const auto& [unknown, i] : sprung)
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
         values(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
     Kokkos::deep_copy(result, values);
