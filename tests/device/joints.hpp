@@ -35,7 +35,7 @@ inline Real entry(const std::string& name) {
                                                      {"loading cycle", 1},
                                                      {"maximum closure", 2e-4},
                                                      {"normal stiffness", 50e9},
-                                                     {"opening without cohesion", 1e-3},
+                                                     {"opening without cohesion", 2e-5},
                                                      {"peak slip", 2e-3},
                                                      {"reference stress", 5e6},
                                                      {"residual dilation angle", 1},

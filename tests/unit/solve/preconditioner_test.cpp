@@ -388,7 +388,7 @@ TEST(Preconditioner, FollowsWhatConducts) {
     return e.norm2() / start;
   };
   const Real anew = left({now});
-  EXPECT_LT(anew, 0.1);
+  EXPECT_LT(anew, 0.2);  // with the groups of the open network it is 0.4
   EXPECT_LT(left({open, now}), 1.01 * anew);
 }
 
