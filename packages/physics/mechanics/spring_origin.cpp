@@ -10,6 +10,11 @@ namespace {
 
 View<Real*> flat(const View<Real**>& values) { return View<Real*>(values.data(), values.size()); }
 
+View<Real*> values_of(fields::Vector& vector) {
+  const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  return View<Real*>(local.data(), local.extent(0));
+}
+
 class SpringOrigin final : public assembly::Module {
  public:
   SpringOrigin(std::unique_ptr<assembly::Module> springs, std::string name, const std::array<Real, 3>& stiffness,
@@ -44,12 +49,10 @@ class SpringOrigin final : public assembly::Module {
   void start_step(const assembly::State& state) override {
     if (!keeps_) return;
     fields::Vector owned(layout_->owned()), all(layout_->ghosted());
-    const auto values = owned.getLocalViewDevice(Tpetra::Access::OverwriteAll);
-    Kokkos::deep_copy(View<Real*>(values.data(), values.extent(0)), flat(state.history.back()));
+    Kokkos::deep_copy(values_of(owned), flat(state.history.back()));
     all.doImport(owned, *layout_->import(), Tpetra::REPLACE);
-    const auto origin = all.getLocalViewDevice(Tpetra::Access::ReadOnly);
     auto there = state;
-    there.x[displacement_] = ConstView<Real*>(origin.data(), origin.extent(0));
+    there.x[displacement_] = values_of(all);
     assembly::Rows forces;
     forces.resize(displacement_ + 1);
     forces[displacement_] = View<Real*>("forces of springs", layout_->n_owned());
