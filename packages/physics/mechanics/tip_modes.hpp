@@ -28,12 +28,12 @@ class TipModes {
     for (const auto& face : mesh.fracture_faces)
       for (std::size_t k = 0; k < face.nodes[0].size(); ++k)
         if (const LocalIndex node = face.nodes[0][k]; node >= 0 && node == face.nodes[1][k] && mesh.tip[node])
-          add(face, node);
+          add(face, static_cast<int>(k));
   }
 
   /// Around a tip, a corner of a local cell, seen from a point of the cell: the front goes from the tip to the other
-  /// tips of the cell, or, where there are none, as the normals and faces of the fracture around the tip say. Pa m^0.5.
-  /// Nothing where no fracture is known to end, as at a node that is tied to a tip.
+  /// tips of the cell, or, where there are none, as the edges of the front around the tip say. Pa m^0.5. Nothing where
+  /// no fracture is known to end, as at a node that is tied to a tip.
   std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x,
                                           Real poisson) const {
     using namespace mesh;
@@ -41,8 +41,10 @@ class TipModes {
     if (found == frames_.end()) return {};
     Vector along{}, normal = found->second.normal, ahead = Real(-1) * found->second.behind;
     if constexpr (dim == 3) {
-      along = front(cell, tip);
+      const Vector other = front(cell, tip);
+      along = found->second.along;
       if (!(dot(along, along) > 0)) along = cross(ahead, normal);
+      if (dot(other, other) > 0) along = (dot(other, along) < 0 ? Real(-1) : Real(1)) * other;
       along = (1 / norm(along)) * along;
       normal = normal - dot(normal, along) * along;
       ahead = ahead - dot(ahead, along) * along;
@@ -57,28 +59,41 @@ class TipModes {
 
  private:
   struct Frame {
-    mesh::Vector normal{}, behind{};  // not of unit length
+    mesh::Vector normal{}, behind{}, along{};  // not of unit length; along: as ahead x normal
   };
 
-  void add(const mesh::Mesh::FractureFace& face, LocalIndex node) {
+  mesh::Vector from_to(LocalIndex a, LocalIndex b) const {
+    mesh::Vector d{};
+    for (int i = 0; i < dim; ++i) d[i] = mesh_.coordinates[b * dim + i] - mesh_.coordinates[a * dim + i];
+    return d;
+  }
+
+  /// For the tip that is the k-th node of a face. Edges that both sides share, as the normal says which way round, add
+  /// up to those of the front: of others two faces have opposite directions.
+  void add(const mesh::Mesh::FractureFace& face, int k) {
     using namespace mesh;
+    const LocalIndex node = face.nodes[0][k];
     auto& frame = frames_[node];
     Vector from{};
     for (int i = 0; i < dim; ++i) from[i] = face.centre[i] - mesh_.coordinates[node * dim + i];
     frame.normal = frame.normal + face.area * face.frame[0];
     frame.behind = frame.behind + from;
+    const int n = n_face_corners(mesh_.shape);
+    if (dim == 2 || k >= n) return;
+    const int next = (k + 1) % n, last = (k + n - 1) % n;
+    const auto to = [&](int other) { return from_to(node, face.nodes[0][other]); };
+    const Real sign = dot(cross(to(next), to(last)), face.frame[0]) > 0 ? 1 : -1;
+    for (const auto& [other, way] : {std::pair(next, -sign), std::pair(last, sign)})
+      if (face.nodes[0][other] == face.nodes[1][other]) frame.along = frame.along + way * to(other);
   }
 
   /// From a tip to another one of the cell; zero if there is none.
   mesh::Vector front(LocalIndex cell, LocalIndex tip) const {
     const int n_nodes = mesh_.nodes_per_cell();
-    mesh::Vector along{};
     for (int k = 0; k < n_nodes; ++k)
-      if (const LocalIndex other = mesh_.cells[cell * n_nodes + k]; other != tip && mesh_.tip[other]) {
-        for (int i = 0; i < dim; ++i) along[i] = mesh_.coordinates[other * dim + i] - mesh_.coordinates[tip * dim + i];
-        break;
-      }
-    return along;
+      if (const LocalIndex other = mesh_.cells[cell * n_nodes + k]; other != tip && mesh_.tip[other])
+        return from_to(tip, other);
+    return {};
   }
 
   /// The modes at (x1, x2) in global components; `axes` are rows.
