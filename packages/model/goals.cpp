@@ -15,6 +15,8 @@ namespace {
 /// What terms of both signs may hide of their sum: so much of their sizes counts in any case. Tractions that faces take
 /// over from each other cancel almost wholly.
 constexpr Real cancelled_jumps = 0.3, cancelled_tractions = 0.1;
+/// Of the area that slips, or slipped when cells were weighted last, so much has to be other for new weights.
+constexpr Real changed = 0.1;
 
 const OutputField& named(const std::vector<OutputField>& outputs, const std::string& name) {
   return *std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; });
@@ -50,10 +52,12 @@ void Goals::follow_slip(const std::vector<OutputField>& outputs, const ErrorEsti
              &better = named(estimate.improved, "jump local");
   const int dim = plastic.n_components;
   lacks_.resize(model_.mesh().n_owned_fracture_faces);
+  slips_.assign(lacks_.size(), 0);
   plastic_.resize(plastic.values.size());
   for (std::size_t f = 0; f < lacks_.size(); ++f) {
     const auto face = static_cast<LocalIndex>(f);
     if (std::equal(&plastic_[f * dim], &plastic_[f * dim] + dim, &plastic.values[f * dim])) continue;
+    slips_[f] = 1;
     const auto p = of_face(plastic, face), v = of_face(jump, face), w = of_face(better, face);
     const std::array<Real, 3> d = {0, w[1] - v[1], w[2] - v[2]};
     lacks_[f] = {(p[1] * d[1] + p[2] * d[2]) / std::max(tangential(p), std::numeric_limits<Real>::min()),
@@ -137,15 +141,41 @@ std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<Ou
   return result;
 }
 
-void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator) {
+bool Goals::others_slip() const {
+  std::array<Real, 2> areas{};  // of faces that slip in one of both, and in one alone
+  for (std::size_t f = 0; f < slips_.size(); ++f) {
+    const bool before = !weighted_.empty() && weighted_[f];
+    const Real area = model_.mesh().fracture_faces[f].area;
+    areas[0] += slips_[f] || before ? area : 0;
+    areas[1] += (slips_[f] != 0) != before ? area : 0;
+  }
+  areas = base::sum_over_ranks(*model_.mesh().comm, areas);
+  return areas[1] > changed * areas[0];
+}
+
+bool Goals::need(bool last) const {
+  const auto& quantities = model_.scene().accuracy->quantities;
+  return last ||
+         std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.what == "slip"; });
+}
+
+void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate) {
   follow_slip(outputs, estimate);
-  for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
+  for (const auto& [name, quantity] : model_.scene().accuracy->quantities)
     estimates_[name] = quantity.what == "stress"     ? Estimate{estimate.stress_norm, estimate.stress}
                        : quantity.what == "reaction" ? of_boundary(quantity, estimate)
                                                      : of_fractures(quantity, outputs, estimate);
+}
+
+void Goals::weigh(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
+                  bool last) {
+  const bool others = others_slip();
+  if (others || last) weighted_ = slips_;
+  for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
+    if (!last && !(others && quantity.what == "slip")) continue;
     const auto energies = this->energies(quantity, outputs, estimate, estimator);
     auto& bound = bounds_[name];
-    if (quantity.what != "slip" || bound.empty()) bound.assign(energies.size(), 0);
+    bound.resize(energies.size(), 0);
     for (std::size_t c = 0; c < energies.size(); ++c) bound[c] = std::max(bound[c], energies[c]);
   }
 }

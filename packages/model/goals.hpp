@@ -15,9 +15,14 @@ class Goals {
 
   explicit Goals(Model& model);
 
+  /// Whether a state has to be added: the last one, and with slip, which adds up, each. Stored data.
+  bool need(bool last) const;
   /// Takes the present state, with its outputs and their errors. A face that does not slip in a step keeps what its
   /// slip lacked before.
-  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator);
+  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate);
+  /// Weighs cells for the state added last: if it is the `last` one, and for slip where others slip than before.
+  void weigh(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate,
+             ErrorEstimator& estimator, bool last);
 
   /// Of the last state, by the names of the quantities.
   const std::map<std::string, Estimate>& estimates() const { return estimates_; }
@@ -34,14 +39,16 @@ class Goals {
   std::vector<LocalIndex> faces_of(const Quantity& quantity) const;
   Estimate of_boundary(const Quantity& quantity, const ErrorEstimate& estimate) const;
   void follow_slip(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate);
+  bool others_slip() const;
   Estimate of_fractures(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                         const ErrorEstimate& estimate) const;
   std::vector<Real> energies(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                              const ErrorEstimate& estimate, ErrorEstimator& estimator) const;
 
   Model& model_;
-  std::vector<Real> plastic_;  // jump of the last state, as in its output
-  std::vector<Lack> lacks_;    // [owned fracture face]
+  std::vector<Real> plastic_;           // jump of the last state, as in its output
+  std::vector<Lack> lacks_;             // [owned fracture face]
+  std::vector<char> slips_, weighted_;  // [owned fracture face] in the last step, and when cells were weighted last
   std::map<std::string, Estimate> estimates_;
   std::map<std::string, std::vector<Real>> bounds_;  // [quantity][owned cell]
 };

@@ -284,10 +284,13 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   add_probes(step, outputs);
-  if (estimator_) {
+  if (estimator_ && (model_.scene().output.error_estimate || goals_->need(last))) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
-    if (goals_ && report.converged) goals_->add(outputs, estimate, *estimator_);
+    if (goals_ && report.converged) {
+      goals_->add(outputs, estimate);
+      goals_->weigh(outputs, estimate, *estimator_, last);
+    }
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
   add(step);
