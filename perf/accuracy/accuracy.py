@@ -34,11 +34,12 @@ class Case:
     fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component
     coarse: object        # entries, or a function of a folder that makes a mesh: where adaptive runs begin
     uniform: list         # the same, from coarse to fine
-    exact: float = None   # None: that of a run of order 2 that is asked for REFERENCE
+    exact: float = None   # None: that of a run of order 2 that is asked for `reference`
     sets: tuple = ()
     dimension: int = 2
     requests: tuple = REQUESTS
     orders: tuple = (1, 2)
+    reference: float = REFERENCE
 
 
 @dataclass
@@ -77,7 +78,8 @@ def cases():
     drop = load * math.sin(psi) * (math.cos(psi) - math.tan(math.radians(30)) * math.sin(psi))
     nu = (K - 2 * G / 3) / (2 * (K + G / 3))
     simplices = ("Mesh.cell=triangle",)
-    penny = lambda h, smallest, growth: lambda folder: meshes.penny(folder, h, smallest, growth)  # noqa: E731
+    penny = lambda h, growth=0: lambda folder: meshes.polygon(folder, max(h, 1) if growth else h, h, growth)  # noqa: E731
+    slab = lambda n: (f"Mesh.cells={{{4 * n}, {n}, {4 * n}}}",)  # noqa: E731
     junction = lambda h, ratio: lambda folder: meshes.t_junction(folder, h, ratio, 32000)  # noqa: E731
     strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
     wavy = exact.Wavy(0.4, 1, 0.25)
@@ -85,8 +87,12 @@ def cases():
         Case("crack opening", **crack("sneddon", "opening", 1.5e-3 * mean)),
         Case("sliding", **crack("sneddon_shear", "slip", 1.5e-3 * mean)),
         Case("inclined with friction", **crack("inclined_crack", "slip", 2 * (1 - nu) * drop / G * mean, 20)),
-        Case("penny", "verification/penny.xml", "opening", "crack", penny(1, 0.5, 0.5),
-             [penny(1, 0.4, 0), penny(0.4, 0.4, 0), penny(0.25, 0.25, 0), penny(0.16, 0.16, 0)], dimension=3, requests=REQUESTS[:2]),
+        Case("penny", "verification/penny.xml", "opening", "crack", penny(0.55, 0.5), [penny(0.5), penny(0.25), penny(0.17), penny(0.125)],
+             dimension=3, requests=REQUESTS[:2], reference=3e-3),
+        Case("tearing", "verification/tearing_3d.xml", "slip", "crack", slab(2), [slab(2), slab(4), slab(8), slab(12)], 2e-3 * mean,
+             dimension=3),
+        Case("network", "networks/random_3d_50.xml", "slip", "", network, [(network, f"Mesh file.refinements={n}") for n in (0, 1, 2)],
+             dimension=3, requests=REQUESTS[:1], reference=0.05, sets=("Time.schedule={1, 11}",)),
         Case("wavy contact", "verification/wavy.xml", "opening", "", strip(0.1), [strip(h) for h in (0.1, 0.05, 0.025, 0.0125, 0.00625)],
              float(wavy.opening_mean(0.0, 0.5))),
         Case("T junction", "verification/t_junction.xml", "slip", "horizontal", junction(1, 0.5),
@@ -97,7 +103,21 @@ def cases():
     ]
 
 
+def network(folder):
+    """Of the scene random_3d_50, with cells twice as large."""
+    file = folder / "network_50.msh"
+    if not file.is_file():
+        sizes = ("relative size=1", "size at tips=2 m", "size=4")
+        command = [sys.executable, "-B", ROOT / "apps/mesh", "--program", ROOT / "build/apps/sprekk/sprekk", ROOT / "xml/networks/random_3d_50.xml",
+                   "-o", file, "--quiet", *(word for size in sizes for word in ("--set", f"Mesh file.network.{size}"))]
+        if subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL).returncode:
+            raise meshes.NoGmsh("no mesh of a network could be made")
+    return file
+
+
 def entries(source, folder):
+    if isinstance(source, tuple) and callable(source[0]):
+        return entries(source[0], folder) + source[1:]
     return (f"Mesh file.path={source(folder)}",) if callable(source) else tuple(source)
 
 
@@ -106,7 +126,7 @@ def start(options, case, order, source, asked, label, others=()):
     directory = options.output / re.sub(r"\W+", "_", case.name) / label
     shutil.rmtree(directory, ignore_errors=True)
     mesh = entries(source, options.output / "meshes")
-    section = "Mesh file" if callable(source) else "Mesh"
+    section = "Mesh file" if mesh[0].startswith("Mesh file") else "Mesh"
     sets = ["Output.vtu=false", *case.sets, *mesh, f"{section}.order={order}", *others]
     if asked:
         goal = "Accuracy.quantities.goal"
@@ -141,7 +161,8 @@ def value_of(case, results):
 
 
 def uniform(options, case, order, k, source, steps):
-    results = start(options, case, order, source, None, f"uniform_{order}_{k}", (f"Time.steps={steps}",))
+    chosen = () if any("schedule" in entry for entry in case.sets) else (f"Time.steps={steps}",)
+    results = start(options, case, order, source, None, f"uniform_{order}_{k}", chosen)
     timing = {name: phase["seconds"] for name, phase in results["timing"].items()}
     seconds = sum(timing[name] for name in ("mesh", "set-up_of_the_solver", "time_steps"))
     return Row("uniform", order, math.nan, results["mesh"]["cells"], seconds, value_of(case, results))
@@ -177,7 +198,7 @@ def measure(options, case):
     """Uniform runs have the steps of the most accurate adaptive one."""
     requests = case.requests[:2] if options.quick else case.requests
     runs = [adaptive(options, case, order, asked) for order in case.orders for asked in requests]
-    reference, steps = (case.exact, runs[-1][1]) if case.exact else known(adaptive(options, case, 2, 1e-3 if options.quick else REFERENCE, "reference"))
+    reference, steps = (case.exact, runs[-1][1]) if case.exact else known(adaptive(options, case, 2, 1e-3 if options.quick else case.reference, "reference"))
     rows = [uniform(options, case, order, k, source, steps) for order in case.orders
             for k, source in enumerate(case.uniform[:(len(case.uniform) if order == 1 else -1)][:2 if options.quick else None])]
     rows += [row for row, _ in runs]

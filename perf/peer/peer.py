@@ -25,6 +25,7 @@ TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of 
 HEAT = ((23.0, 14.5), (13.5, 8.7), (9.4, 6.0))  # the same of thm.xml
 FINE = ((0.5, 0.1, 0.5), (0.4, 0.06, 0.5), (0.3, 0.04, 0.5), (0.25, 0.025, 0.5), (0.2, 0.015, 0.4))  # ours alone: meshes of ours.tilted_mesh
 CRACK = (0.1, 0.05, 0.025, 0.0125, 0.00625)      # sizes on the crack, theirs
+REQUESTS = (0.1, 0.03, 0.01, 0.003)              # relative errors that adaptive runs are to reach, from the coarsest mesh on
 GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # as `graded` of perf/verification, order 2
 FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
 SIDES = (("west", "east"), ("south", "north"), ("bottom", "top"))
@@ -116,12 +117,14 @@ def compare_heat(options, count):
 
 
 def compare_errors(options, same, count):
-    """{what: ([their run], [our run], error)}: of the mean slip, and of the jump of the crack."""
+    """{what: ([their run], [our run], error)}: of the mean slip, and of the jump of the crack; for each also of our adaptive runs."""
     table, found = linear.Table(ERRORS, 46), {}
     fine = [ours.tilted(options, ours.tilted_mesh(options.output / "meshes", *sizes), f"fine_{k}", "Mesh file.order=2")
             for k, sizes in enumerate(FINE[:count + 1])]
     exact = runs.limit(*fine[-2:], SLIP)
     found[SLIP] = (same["PorePy"], fine, lambda run: abs(run.values[SLIP] / exact - 1))
+    coarse = ours.tilted_mesh(options.output / "meshes", 0.5, 0.25, 0.5)
+    adaptive = {SLIP: [ours.tilted(options, coarse, f"adaptive_{asked:g}", *ours.to("slip", asked)) for asked in REQUESTS[:3][:count]]}
     for mode in ours.MODES:
         both = {"PorePy": [], "Sprekk": []}
         for h in CRACK[:count + 1]:
@@ -130,12 +133,16 @@ def compare_errors(options, same, count):
         for k, (h, ratio) in enumerate(GRADED[:count + 1]):
             file = meshes.graded_crack(options.output / "meshes", h, ratio)
             both["Sprekk"].append(ours.crack(options, mode, file, f"{mode}_{k}", "Mesh file.order=2"))
+        coarse = meshes.graded_crack(options.output / "meshes", *GRADED[0])
+        goal = "slip" if mode == "sliding" else mode
+        asked_for = [ours.crack(options, mode, coarse, f"{mode}_{asked:g}", *ours.to(goal, asked)) for asked in REQUESTS[:count + 1]]
         for what in both["PorePy"][0].values:
+            adaptive[what] = asked_for
             found[what] = (both["PorePy"], both["Sprekk"], lambda run, what=what: run.values[what])
     for what, (their, our, error) in found.items():
-        for run in their + our:
+        for run in their + our + adaptive[what]:
             table.add([f"{what}, {run.code}", *cells(run), error(run)])
-    return table, found, exact
+    return found, {what: (found[what][0], our, found[what][2]) for what, our in adaptive.items()}, exact
 
 
 def compare_flow(options, count):
@@ -246,9 +253,11 @@ def main(words):
             wrong += tell_apart(of)
     if "contact" in parts:
         print()
-        _, found, exact = compare_errors(options, same["tilted"], meshes_of(options, FINE))
+        found, adaptive, exact = compare_errors(options, same["tilted"], meshes_of(options, FINE))
         print(f"\nmean slip without error: {exact:.4e}\n")
         total["ratio_equal_error"] = tell_equal(found)
+        print("\nwith adaptive meshes")
+        total["ratio_adaptive"] = tell_equal(adaptive)
         draw(same["tilted"], found, options.output / "peer.png")
     if "flow" in parts:
         print("\nmean pressure of the regular network")
@@ -263,7 +272,7 @@ def main(words):
     missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()
               if not total.get(name, 0) >= asked and not (options.only and name not in total)]
     print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and pictures in {options.output}"]))
-    print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED))
+    print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED or name == "ratio_adaptive"))
     return 1 if wrong else 0
 
 

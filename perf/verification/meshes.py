@@ -119,9 +119,13 @@ def plane_strip(h, width=0.5, height=2):
 
 def penny(folder, h, smallest, growth):
     """Tetrahedra of a box around a disc of radius 1: edges of `smallest` at its front, growing by `growth` per length to h."""
+    return around_disc(folder / f"penny_{h:g}_{smallest:g}_{growth:g}.msh", h, smallest, growth, "Disk(7) = {0, 0, 0, 1};")
+
+
+def around_disc(file, h, smallest, growth, disc):
     script = f"""SetFactory("OpenCASCADE");
 Box(1) = {{-2, -2, -2, 4, 4, 4}};
-Disk(7) = {{0, 0, 0, 1}};
+{disc}
 BooleanFragments{{ Volume{{1}}; Delete; }}{{ Surface{{7}}; Delete; }}
 Physical Surface("crack") = {{7}};
 Physical Surface("boundary") = Abs(CombinedBoundary{{Volume{{:}};}});
@@ -132,7 +136,16 @@ Mesh.Optimize = 1;
 {QUIET}Field[1].F = "{smallest:g}+{growth:g}*Sqrt((Sqrt(x^2+y^2)-1)^2+z^2)";
 Mesh.MeshSizeMax = {h:g};
 """
-    return with_gmsh(script, folder / f"penny_{h:g}_{smallest:g}_{growth:g}.msh", 3)
+    return with_gmsh(script, file, 3)
+
+
+def polygon(folder, h, smallest, growth, sides=12):
+    """The same around a regular polygon with corners at 1 from its centre."""
+    corners = [(math.cos(2 * math.pi * k / sides), math.sin(2 * math.pi * k / sides)) for k in range(sides)]
+    points = "".join(f"Point({100 + k}) = {{{x:.17g}, {y:.17g}, 0}};\n" for k, (x, y) in enumerate(corners))
+    lines = "".join(f"Line({100 + k}) = {{{100 + k}, {100 + (k + 1) % sides}}};\n" for k in range(sides))
+    return around_disc(folder / f"polygon_{sides}_{h:g}_{smallest:g}_{growth:g}.msh", h, smallest, growth,
+                       f"{points}{lines}Curve Loop(100) = {{100 : {99 + sides}}};\nPlane Surface(7) = {{100}};")
 
 
 # Of flow
