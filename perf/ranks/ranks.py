@@ -23,7 +23,7 @@ TIMES = 3   # each timed run, by turns: what else a machine does makes single on
 KINDS = ("blocks", "network")
 BOUNDS = {"speedup2": 1.8, "growth16": 0.2, "growth64": 0.2}
 COLUMNS = {"scene, ranks": "", "size": "d", "unknowns": "d", "per rank": "d", "Newton": ".4g", "mean": ".1f", "max": ".4g", "residual": ".0e", "halo kB": ".1f", "messages": "d",
-           "exchanges": "d", "cut edges": "d", "levels": "d", "last": "d",
+           "exchanges": "d", "cut edges": "d", "levels": "d", "last": "d", "its ranks": "d",
            "of a cycle": ".0f", "kB of a cycle": ".0f", "MB": ".0f", "MB of a rank": ".0f", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f"}
 
 
@@ -96,7 +96,7 @@ class Row:
         run, results = self.run, self.run.results
         return [self.case.name, self.case.size, run.unknowns, run.unknowns // self.case.ranks, run.newton, run.mean, run.most, run.residual,
                 self.halo / 1e3, self.of_fields("halo_messages"), results.get("timing", {}).get("ghost_exchange", {}).get("count", 0), results["partition"]["cut_edges"],
-                *(self.cycle.get(what) for what in ("levels", "unknowns_of_last_level", "messages_largest_rank")),
+                self.cycle.get("levels"), *(self.cycle.get(what, [None])[-1] for what in ("unknowns_of_levels", "ranks_of_levels")), self.cycle.get("messages_largest_rank"),
                 self.cycle.get("message_bytes_largest_rank", 0) / 1e3, run.bytes[0] / 1e6, run.bytes[1] / 1e6, *(run.seconds(what) for what in linear.TIMERS)]
 
 
@@ -122,7 +122,7 @@ def model(rows, unknowns=UNKNOWNS, machine=Machine()):
     matrix = 8 * 45  # bytes per unknown: a product with the matrix
     for ranks in (100, 1000, 10000, 100000):
         deeper = levels + math.log(more * ranks / most, 20)
-        last = cycle["unknowns_of_last_level"] / most * ranks
+        last = cycle["unknowns_of_levels"][-1] / most * ranks
         yield ranks, {"memory": unknowns * (cycle["cycle_bytes_largest_rank"] / own + matrix) / machine.memory,
                       "messages": cycle["messages_largest_rank"] * deeper / levels * machine.latency,
                       "their bytes": cycle["message_bytes_largest_rank"] * more ** (2 / 3) / machine.network,
