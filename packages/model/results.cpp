@@ -422,12 +422,10 @@ void Results::write_json() {
         comm, std::array<Real, 5>{cost.setup_seconds, cost.application_seconds, static_cast<Real>(cost.cycle_bytes),
                                   static_cast<Real>(cost.messages), static_cast<Real>(cost.message_bytes)});
     json of_levels = json::object();
-    if (cost.n_levels > 0)
-      of_levels = {{"levels", cost.n_levels},
-                   {"unknowns_of_last_level", cost.n_last},
-                   {"cycle_bytes_largest_rank", most[2]},
-                   {"messages_largest_rank", most[3]},
-                   {"message_bytes_largest_rank", most[4]}};
+    if (!cost.n_unknowns.empty())
+      of_levels = {{"levels", cost.n_unknowns.size()}, {"unknowns_of_levels", cost.n_unknowns},
+                   {"ranks_of_levels", cost.n_ranks},  {"cycle_bytes_largest_rank", most[2]},
+                   {"messages_largest_rank", most[3]}, {"message_bytes_largest_rank", most[4]}};
     parts.push_back({{"name", cost.name},
                      {"setups", cost.n_setups},
                      {"applications", cost.n_applications},

@@ -102,6 +102,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
   nodes.n_modes = modes.is_null() ? size : static_cast<int>(modes->getNumVectors());
   nodes.motion.assign(static_cast<std::size_t>(n_rows) * size * nodes.n_modes, 0);
   nodes.neighbours.start.push_back(0);
+  nodes.beyond.start.push_back(0);
   using Given = decltype(std::declval<const MultiVector&>().getLocalViewHost(Tpetra::Access::ReadOnly));
   const Given given = modes.is_null() ? Given() : modes->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto motion = [&](LocalIndex row, int m) { return modes.is_null() ? Real(row % size == m) : given(row, m); };
@@ -131,11 +132,16 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
       if (most <= zero) continue;
       if (!nodes.weak.empty() && nodes.weak[begin + k]) continue;
       nodes.free[i] = true;
-      if (j < n_rows) nodes.neighbours.node.push_back(j);
+      if (j < n_rows)
+        nodes.neighbours.node.push_back(j);
+      else
+        nodes.beyond.node.push_back(graph.columns->all()->getGlobalElement(j));
       if (j != i && !places.is_null())
         nodes.nearest[i] = std::fmin(nodes.nearest[i], distance(&place(3 * i), &place(3 * j)));
     }
     nodes.neighbours.start.push_back(nodes.neighbours.node.size());
+    nodes.beyond.start.push_back(nodes.beyond.node.size());
+    nodes.number.push_back(graph.columns->owned()->getGlobalElement(i));
     for (int r = 0; r < size; ++r)
       for (int m = 0; m < nodes.n_modes && !prescribed[r]; ++m)
         nodes.motion[(static_cast<std::size_t>(i) * size + r) * nodes.n_modes + m] = motion(i * size + r, m);
@@ -152,6 +158,15 @@ void Nodes::add_smoothed(std::size_t n) {
   if (!place.empty()) place.resize(n);
   nearest.resize(n, infinite);
   neighbours.start.resize(n + 1, neighbours.node.size());
+  beyond.start.resize(n + 1, beyond.node.size());
+  number.resize(n, -1);
+}
+
+void find_nearest(Nodes& nodes) {
+  nodes.nearest.assign(nodes.free.size(), infinite);
+  for (std::size_t i = 0; i < nodes.place.size(); ++i)
+    for (std::size_t k = nodes.neighbours.start[i]; k < nodes.neighbours.start[i + 1]; ++k)
+      nodes.nearest[i] = std::fmin(nodes.nearest[i], distance(nodes.place[i], nodes.place[nodes.neighbours.node[k]]));
 }
 
 std::vector<Real> reach(const Nodes& nodes) {
@@ -234,11 +249,7 @@ std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& ag
       for (LocalIndex i : members[I])
         for (int k = 0; k < 3; ++k) coarse.place[I][k] += nodes.place[i][k] / static_cast<Real>(members[I].size());
   }
-  coarse.nearest.assign(aggregates.n, infinite);
-  for (std::size_t I = 0; I < coarse.place.size(); ++I)
-    for (std::size_t k = coarse.neighbours.start[I]; k < coarse.neighbours.start[I + 1]; ++k)
-      coarse.nearest[I] =
-          std::fmin(coarse.nearest[I], distance(coarse.place[I], coarse.place[coarse.neighbours.node[k]]));
+  find_nearest(coarse);
   coarse.contact_edge.assign(aggregates.n, 0);
   for (std::size_t i = 0; i < nodes.contact_edge.size(); ++i)
     if (const Real edge = nodes.contact_edge[i]; edge > 0 && aggregates.of[i] >= 0)

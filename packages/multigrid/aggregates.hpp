@@ -8,15 +8,19 @@
 
 namespace sprekk::multigrid {
 
-/// Which owned nodes are neighbours, in rows as in NodeGraph; without ghosts, and without a node itself.
-struct Neighbours {
+/// Which nodes are neighbours of an owned one, in rows as in NodeGraph, without itself.
+template <class Node>
+struct NeighboursBy {
   std::vector<std::size_t> start;
-  std::vector<LocalIndex> node;
+  std::vector<Node> node;
 };
+using Neighbours = NeighboursBy<LocalIndex>;  ///< owned ones
 
 /// What is known of the nodes of a level before they are grouped.
 struct Nodes {
   Neighbours neighbours;
+  NeighboursBy<GlobalIndex> beyond;  ///< those on other ranks, by their number
+  std::vector<GlobalIndex> number;   ///< [node] through all ranks, -1 of nodes that were added
   std::vector<bool> free;    ///< [node]: couples to others, ghosts included; those that do not are left to smoothing
   std::vector<Real> motion;  ///< [node, unknown, mode]: motions that cost next to no energy; zero where prescribed
   int n_modes = 0;
@@ -42,6 +46,9 @@ std::vector<bool> weak_couplings(const NodeMatrix& A);
 Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes,
                const RCP<const MultiVector>& places = Teuchos::null);
 
+/// Finds how near the neighbours on this rank are, where places are known. Stored data.
+void find_nearest(Nodes& nodes);
+
 /// How far each node reaches, [node] m: not much farther than to its nearest neighbour. Nodes couple strongly that one
 /// of the two reaches: in cells that are much longer than wide, those across short edges, where a smoother does little;
 /// what they join is less flat on the next level. Without limit where places are not known. Stored data.
@@ -58,7 +65,8 @@ struct Aggregates {
 Aggregates aggregate(const Nodes& nodes, std::size_t enough = 0);
 
 /// An orthonormal basis of the motions on each aggregate: [node, unknown, mode], zero for motions that others make up.
-/// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis. Stored data.
+/// `coarse` receives the nodes that the aggregates become, with the same motions in terms of the basis, but for
+/// neighbours on other ranks: see coarsen_beyond(). Stored data.
 std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& aggregates, Nodes& coarse);
 
 }  // namespace sprekk::multigrid

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <set>
+#include <unordered_map>
 
 #include "base/over_ranks.hpp"
 
@@ -68,7 +70,39 @@ std::vector<bool> out_of_reach(const NodeGraph& graph, const Nodes& nodes, const
   return far;
 }
 
+/// [entry of `beyond`] the same nodes in local numbers of the graph, -1: not among its columns. Collective.
+std::vector<LocalIndex> ghosts_beyond(const NodeGraph& graph, const Nodes& nodes) {
+  const LocalIndex n_all = graph.columns->n_all();
+  const View<GlobalIndex*> number("number", n_all);
+  std::copy(nodes.number.begin(), nodes.number.end(), number.data());
+  graph.columns->exchange(number, 1);
+  std::unordered_map<GlobalIndex, LocalIndex> local;
+  for (LocalIndex j = graph.n_rows(); j < n_all; ++j) local[number(j)] = j;
+  std::vector<LocalIndex> ghosts;
+  for (const GlobalIndex node : nodes.beyond.node) {
+    const auto found = local.find(node);
+    ghosts.push_back(found == local.end() ? -1 : found->second);
+  }
+  return ghosts;
+}
+
 }  // namespace
+
+void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<LocalIndex*>& aggregate, const Map& numbers,
+                    Nodes& coarse) {
+  const auto ghosts = ghosts_beyond(graph, nodes);
+  std::vector<std::set<GlobalIndex>> found(coarse.free.size());
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i)
+    for (std::size_t k = nodes.beyond.start[i]; k < nodes.beyond.start[i + 1] && aggregate(i) >= 0; ++k)
+      if (const LocalIndex j = ghosts[k]; j >= 0 && aggregate(j) >= 0)
+        found[aggregate(i)].insert(numbers.getGlobalElement(aggregate(j)));
+  coarse.beyond = {{0}, {}};
+  for (std::size_t I = 0; I < found.size(); ++I) {
+    coarse.number.push_back(numbers.getGlobalElement(static_cast<LocalIndex>(I)));
+    coarse.beyond.node.insert(coarse.beyond.node.end(), found[I].begin(), found[I].end());
+    coarse.beyond.start.push_back(coarse.beyond.node.size());
+  }
+}
 
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   auto far = out_of_reach(graph, nodes, reach(nodes));
@@ -81,17 +115,23 @@ Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
   const auto& [start, neighbour] = nodes.neighbours;
   nodes.weak.assign(graph.n_entries(), false);
   nodes.contact_edge.resize(nodes.free.size(), 0);
-  std::vector<LocalIndex> neighbour_of(graph.n_rows(), -1);
+  const auto ghosts = ghosts_beyond(graph, nodes);
+  const View<Real*> free("free", graph.columns->n_all());
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i) free(i) = nodes.free[i];
+  graph.columns->exchange(free, 1);
+  std::vector<LocalIndex> neighbour_of(graph.columns->n_all(), -1);
   std::vector<std::size_t> contact;  // entries of a row
   std::array<double, 3> here{};      // sum of squares, number, nodes in contact
   for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
     neighbour_of[i] = i;
     for (std::size_t k = start[i]; k < start[i + 1]; ++k) neighbour_of[neighbour[k]] = i;
+    for (std::size_t k = nodes.beyond.start[i]; k < nodes.beyond.start[i + 1]; ++k)
+      if (ghosts[k] >= 0) neighbour_of[ghosts[k]] = i;
     contact.clear();
     bool out = false;
     for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
       const LocalIndex j = graph.column(e);
-      if (j >= graph.n_rows() || neighbour_of[j] == i || !nodes.free[i] || !nodes.free[j]) continue;
+      if (neighbour_of[j] == i || free(i) == 0 || free(j) == 0) continue;
       contact.push_back(e);
       out = out || far[e];
     }

@@ -48,9 +48,14 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map);
 /// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 
+/// Adds to `coarse` the numbers of aggregates and their neighbours on other ranks; `aggregate` [node of the graph] in
+/// local numbers of `numbers`, -1: none. Collective.
+void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<LocalIndex*>& aggregate, const Map& numbers,
+                    Nodes& coarse);
+
 /// Makes contact weak at nodes from which some of it is out of reach, as in faces with a long edge: jumps that
 /// alternate along that edge do no work on contact, so that a prolongator which took all of a face to jump alike would
-/// resist them. Contact is what couples free nodes of this rank that are no neighbours. Puts the shortest edge of such
+/// resist them. Contact is what couples free nodes that are no neighbours. Puts the shortest edge of such
 /// nodes into `nodes.contact_edge`, that of a finer level where there is one, and 0 of all others; returns how flat
 /// cells are at nodes that are left out now and were not on the finer level: the distance of their nearest neighbour
 /// over that edge, the root of the mean square; 0 if they are less than a tenth of those in contact. Collective.

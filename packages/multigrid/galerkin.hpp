@@ -25,6 +25,7 @@ class Galerkin {
   const ShortNodeMatrix& prolongation() const { return P_; }  ///< [fine, coarse]
   const ShortNodeMatrix& restriction() const { return R_; }   ///< [coarse, fine]
   const NodeMatrix& coarse() const { return coarse_; }
+  const View<LocalIndex*>& aggregate() const { return aggregate_; }  ///< [all nodes] column of P, -1: none
   std::size_t bytes() const;  ///< of values, and of columns that only products need
 
  private:
@@ -42,7 +43,7 @@ class Galerkin {
   View<float*> value_P_all_;
   View<std::size_t*> start_AP_all_;  // the same of A P, of which there are slices only
   View<LocalIndex*> column_AP_all_;
-  View<LocalIndex*> aggregate_;      // [all nodes] column of P, -1: none
+  View<LocalIndex*> aggregate_;      // [all nodes]
   View<std::uint64_t*> far_;         // bit e % 64 of word e / 64: entry e of A is out of reach; empty: none is
   View<std::size_t*> first_member_;  // [coarse row]
   View<LocalIndex*> member_;

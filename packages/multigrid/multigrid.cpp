@@ -70,7 +70,7 @@ bool Multigrid::can_solve(int n_components, int n_modes) {
 Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
                      const RCP<const MultiVector>& modes, const Options& options)
     : map_(matrix->row_map()), finest_(matrix), size_(n_components), options_(options) {
-  add_level(node_matrix(*matrix, size_));
+  add_level(node_matrix(*matrix, size_), nullptr);
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
   levels_.front().degree = std::max(options.degree, options_.finest_degree);
   while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
@@ -82,19 +82,23 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
     auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
     if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
+    coarsen_beyond(A.graph, nodes, galerkin->aggregate(), *galerkin->coarse().graph.columns->all(), coarse);
+    auto moved = on_fewer_ranks(*galerkin, coarse);
     levels_.back().smoother = std::make_unique<Chebyshev>(A);
     if (modes.is_null()) {  // what is weak on the next level its matrix tells
       levels_.back().smoother->update(A);
       galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
-      nodes = nodes_of(galerkin->coarse(), modes);
+      if (moved) moved->update(galerkin->coarse());
+      nodes = nodes_of(moved ? moved->matrix() : galerkin->coarse(), modes);
       nodes.motion = std::move(coarse.motion);
       nodes.place = std::move(coarse.place);
       nodes.nearest = std::move(coarse.nearest);
     } else {
       nodes = std::move(coarse);
     }
+    const auto next = moved ? moved->matrix() : galerkin->coarse();
     levels_.back().to_coarse = std::move(galerkin);
-    add_level(levels_.back().to_coarse->coarse());
+    add_level(next, std::move(moved));
   }
   for (const auto& level : levels_)
     levels_.front().degree = std::max(levels_.front().degree, std::min(level.degree, most_finest_degree));
@@ -104,16 +108,36 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
   operator_complexity_ = all[1] / all[0];
 }
 
-void Multigrid::add_level(const NodeMatrix& A) {
+/// The coarse level, where ranks have little of its matrix; else null.
+std::unique_ptr<FewerRanks> Multigrid::on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const {
+  const auto& coarse = galerkin.coarse();
+  const auto numbers = base::sum_over_ranks(*map_->getComm(), static_cast<double>(coarse.value.extent(0)));
+  const bool is_last = n_nodes(coarse) * coarse.height <= options_.coarse_size;
+  const double n_ranks = n_ranks_of(coarse.graph), wanted = is_last ? 1 : numbers / (2.0 * options_.least_of_a_rank);
+  if (n_ranks <= 1 || 2 * wanted > n_ranks) return nullptr;
+  return std::make_unique<FewerRanks>(coarse, galerkin.prolongation(), nodes,
+                                      std::max(1, static_cast<int>(std::lround(wanted))));
+}
+
+void Multigrid::add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved) {
   const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
-  const auto& halo = *A.graph.columns;
+  const LocalIndex n = A.graph.columns->n_all(), n_above = moved ? moved->prolongation().graph.columns->n_all() : n,
+                   n_given = moved ? moved->gathered().columns->n_all() : A.graph.n_rows();
+  n_ranks_.push_back(n_ranks_of(A.graph));
   levels_.push_back({A,
                      {},
+                     std::move(moved),
                      {},
-                     vector(levels_.empty() ? 0 : halo.n_owned()),
-                     vector(halo.n_all()),
-                     vector(halo.n_all()),
+                     vector(levels_.empty() ? 0 : n_given),
+                     vector(std::max(n, n_above)),
+                     vector(n),
                      options_.degree});
+}
+
+/// From the next level.
+const ShortNodeMatrix& Multigrid::prolongation(std::size_t level) const {
+  const auto& moved = levels_[level + 1].moved;
+  return moved ? moved->prolongation() : levels_[level].to_coarse->prolongation();
 }
 
 void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful) {
@@ -126,13 +150,16 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
     levels_.front().A.value = values;
   }
   finest_ = matrix;
+  const NodeMatrix* above = nullptr;
   for (auto& level : levels_) {
+    if (level.moved) level.moved->update(*above);
     if (!level.to_coarse) continue;
     const int least = &level == &levels_.front() ? options_.finest_degree : 0;
     level.smoother->update(level.A, symmetric ? level.degree : std::max(options_.degree, least));
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
+    above = &level.to_coarse->coarse();
   }
-  factor_last(symmetric);
+  base::collectively(*map_->getComm(), [&] { factor_last(symmetric); });
   for (int widenings = 0; careful && !symmetric && !(growth() <= most_growth) && widenings < most_widenings;
        ++widenings)
     for (auto& level : levels_)
@@ -140,8 +167,10 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
 }
 
 void Multigrid::factor_last(bool symmetric) {
-  if (n_nodes(levels_.back().A) == 0) return;  // no node couples to another: smoothing is all
-  const auto last = crs_matrix(levels_.back().A);
+  const auto& A = levels_.back().A;
+  const bool on_one = n_ranks_.back() == 1;
+  if (n_nodes(A) == 0 || (on_one && A.graph.n_rows() == 0)) return;  // no node couples to another: smoothing is all
+  const auto last = crs_matrix(on_one ? alone(A) : A);
   raise_diagonal(*last);
   if (last_.is_null()) {
     last_matrix_ = last;
@@ -179,13 +208,14 @@ void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Re
 }
 
 void Multigrid::cycle(std::size_t level, const ConstView<Real*>& b) const {
-  const auto& [A, smoother, to_coarse, _, x, r, degree] = levels_[level];
+  const auto& [A, smoother, moved, to_coarse, _, x, r, degree] = levels_[level];
+  if (moved) moved->gathered().columns->exchange(levels_[level].b, A.height);
   if (!to_coarse) return solve_last(b);
   smoother->apply(b, x, false);
   residual(A, x, b, r);
   product(to_coarse->restriction(), r, levels_[level + 1].b);
   cycle(level + 1, levels_[level + 1].b);
-  add_product(to_coarse->prolongation(), levels_[level + 1].x, x);
+  add_product(prolongation(level), levels_[level + 1].x, x);
   residual(A, x, b, r);
   smoother->apply(r, x, true);
 }
@@ -194,7 +224,7 @@ void Multigrid::solve_last(const ConstView<Real*>& from) const {
   if (last_.is_null()) return;
   const auto to = levels_.back().x;
   MultiVector b(last_->getDomainMap(), 1), x(last_->getRangeMap(), 1);
-  const Policy rows(0, from.extent(0));
+  const Policy rows(0, b.getLocalLength());
   {
     const auto values = b.getLocalViewDevice(Tpetra::Access::OverwriteAll);
     Kokkos::parallel_for(
@@ -211,12 +241,13 @@ double Multigrid::bytes() const {
   for (const auto& level : levels_) {
     if (level.smoother) sum += level.smoother->bytes();
     if (level.to_coarse) sum += level.to_coarse->bytes();
+    if (level.moved) sum += level.moved->bytes();
   }
   return sum;
 }
 
 /// On each level exchanges for two residuals, for products of the smoother, for restriction, and for prolongation those
-/// of the next one.
+/// of the next one, and what is handed over to fewer ranks.
 Multigrid::Traffic Multigrid::traffic() const {
   Traffic all;
   const auto add = [&](int times, const NodeGraph& graph, int width) {
@@ -224,15 +255,21 @@ Multigrid::Traffic Multigrid::traffic() const {
     all.messages += times * static_cast<double>(halo.n_messages());
     all.bytes += times * width * sizeof(Real) * static_cast<double>(halo.n_all() - halo.n_owned());
   };
-  for (const auto& level : levels_) {
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    const auto& level = levels_[k];
+    if (level.moved) add(1, level.moved->gathered(), level.A.height);
     if (!level.to_coarse) continue;
     add(2 * level.smoother->degree() + 1, level.A.graph, level.A.width);
-    add(1, level.to_coarse->prolongation().graph, level.to_coarse->prolongation().width);
+    add(1, prolongation(k).graph, prolongation(k).width);
   }
   return all;
 }
 
-GlobalIndex Multigrid::n_last() const { return n_nodes(levels_.back().A) * levels_.back().A.height; }
+std::vector<GlobalIndex> Multigrid::n_unknowns() const {
+  std::vector<GlobalIndex> n;
+  for (const auto& level : levels_) n.push_back(n_nodes(level.A) * level.A.height);
+  return n;
+}
 
 /// Of each level: its matrix twice for residuals, its copy for the smoother, interpolation and restriction.
 double Multigrid::cycle_bytes() const {

@@ -3,14 +3,16 @@
 
 #include "multigrid/chebyshev.hpp"
 #include "multigrid/direct_inverse.hpp"
-#include "multigrid/options.hpp"
+#include "multigrid/fewer_ranks.hpp"
 #include "multigrid/galerkin.hpp"
+#include "multigrid/options.hpp"
 
 namespace sprekk::multigrid {
 
-/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Each
-/// rank, and each piece of rock on it, keeps at least one node on every level. It throws where the last level is
-/// singular. All members are collective unless they return stored data.
+/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Levels
+/// of whose matrices ranks would have little move to fewer ranks, the last ones to one. Each piece of rock keeps at
+/// least one node on every level. It throws where the last level is singular. All members are collective unless they
+/// return stored data.
 class Multigrid : public fields::Operator {
  public:
   /// Whether there is code for that many unknowns of a node and motions.
@@ -43,19 +45,22 @@ class Multigrid : public fields::Operator {
   };
   Traffic traffic() const;
   int n_levels() const { return static_cast<int>(levels_.size()); }
-  /// Of the last level. Collective.
-  GlobalIndex n_last() const;
+  std::vector<GlobalIndex> n_unknowns() const;                  ///< [level], all ranks; collective
+  const std::vector<int>& n_ranks() const { return n_ranks_; }  ///< [level] that have some of them
 
  private:
   struct Level {
     NodeMatrix A;
     std::unique_ptr<Chebyshev> smoother;
-    std::unique_ptr<Galerkin> to_coarse;
-    View<Real*> b, x, r;  // [owned], none on the finest level; [all], [all]
-    int degree;           // of the smoother, of a symmetric matrix
+    std::unique_ptr<FewerRanks> moved;    // null: its nodes are where the level above has made them
+    std::unique_ptr<Galerkin> to_coarse;  // null: the last level
+    View<Real*> b, x, r;                  // [owned, and those handed over], none on the finest level; [all], [all]
+    int degree;                           // of the smoother, of a symmetric matrix
   };
 
-  void add_level(const NodeMatrix& A);
+  void add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved);
+  std::unique_ptr<FewerRanks> on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const;
+  const ShortNodeMatrix& prolongation(std::size_t level) const;
   void factor_last(bool symmetric);
   Real growth() const;
   void cycle(std::size_t level, const ConstView<Real*>& b) const;
@@ -68,6 +73,7 @@ class Multigrid : public fields::Operator {
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
   std::vector<Level> levels_;
+  std::vector<int> n_ranks_;  // [level]
   RCP<CrsMatrix> last_matrix_;
   RCP<DirectInverse> last_;
 };

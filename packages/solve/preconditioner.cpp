@@ -40,7 +40,8 @@ class NodeMultigrid : public Preconditioner {
     list.set("type", "multigrid");
     list.sublist("multigrid")
         .set("degree", options_.degree, "of Chebyshev's polynomial")
-        .set("coarsest level", options_.coarse_size, "unknowns at most");
+        .set("coarsest level", options_.coarse_size, "unknowns at most")
+        .set("least of a rank", options_.least_of_a_rank, "numbers of a matrix, on average");
     for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
   }
 
@@ -53,8 +54,8 @@ class NodeMultigrid : public Preconditioner {
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();
     cost.cycle_bytes = multigrid_->cycle_bytes();
-    cost.n_levels = multigrid_->n_levels();
-    cost.n_last = multigrid_->n_last();
+    cost.n_unknowns = multigrid_->n_unknowns();
+    cost.n_ranks = multigrid_->n_ranks();
     const auto traffic = multigrid_->traffic();
     cost.messages = traffic.messages;
     cost.message_bytes = traffic.bytes;

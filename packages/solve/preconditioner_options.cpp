@@ -8,6 +8,8 @@ void MultigridOptions::describe(base::Section& section) {
                 "of Chebyshev's polynomial, the smoother; the finest level takes a higher one in flat cells");
   section.entry(coarse_size, "coarsest level", "-", base::at_least(1),
                 "unknowns, at or below which a level is solved directly");
+  section.entry(least_of_a_rank, "least of a rank", "-", base::at_least(1),
+                "numbers of its matrix: a level of which ranks have fewer on average moves to fewer ranks");
 }
 
 void BlockOptions::describe(base::Section& section) {

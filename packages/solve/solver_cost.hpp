@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fields/types.hpp"
 
@@ -18,9 +19,9 @@ struct SolverCost {
   double operator_complexity = 0;  ///< entries of the matrices of all levels over those of the finest; 0: not multigrid
   double bytes = 0;                ///< that it stores on this rank
   double cycle_bytes = 0;          ///< of matrices that an application reads on this rank; 0: not known
-  int n_levels = 0;                ///< 0: not known, as the following
+  std::vector<GlobalIndex> n_unknowns;     ///< [level] of all ranks; empty: not known, as the following
+  std::vector<int> n_ranks;                ///< [level] that have some of them
   double messages = 0, message_bytes = 0;  ///< that this rank receives in an application
-  GlobalIndex n_last = 0;                  ///< unknowns of the last level, all ranks
 };
 
 /// Adds the time that work() takes to `seconds`.

@@ -114,9 +114,7 @@ def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE, residua
     run must be small enough."""
     directory = options.output / directory
     shutil.rmtree(directory, ignore_errors=True)
-    command = [str(options.binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
-    command += [word for entry in (*ALWAYS, *sets, *options.set) for word in ("--set", entry)]
-    done = started(["timeout", "--kill-after=5", str(time_limit), *on_ranks(ranks, command)])
+    done = started(["timeout", "--kill-after=5", str(time_limit), *on_ranks(ranks, command(options, sets, directory, scene))])
     file = directory / "results.json"
     found = Run(json.loads(file.read_text()) if file.is_file() else {})
     if done.returncode in (124, 137, -9):  # timeout ends itself as it ended the program
@@ -127,6 +125,11 @@ def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE, residua
     elif (residual(found) or 0) > ROUNDING * RESIDUAL:
         found.failure = f"true residual {residual(found):.1e} after a linear solve"
     return found
+
+
+def command(options, sets, directory, scene=SCENE):
+    words = [str(options.binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
+    return words + [word for entry in (*ALWAYS, *sets, *options.set) for word in ("--set", entry)]
 
 
 def on_ranks(ranks, command):

@@ -178,8 +178,7 @@ int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
   }
 }
 
-/// Contact of flat cells does not resist jumps that alternate along their long edges. Where a face is shared by ranks it
-/// is not looked at.
+/// Contact of flat cells does not resist jumps that alternate along their long edges.
 TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
   const int most = Tpetra::getDefaultComm()->getSize() == 1 ? 15 : 20;
   for (const Real h : {1.0, 0.1, 0.01}) {
@@ -203,10 +202,7 @@ TEST(Aggregates, LeaveOutContactOfFlatCellsOnly) {
       for (std::size_t i = 0; i < nodes.free.size(); ++i) {
         const int z = layers.place(layers.map->getGlobalElement(static_cast<LocalIndex>(i)))[2];
         const bool inside = z == 0 || z == 3 * Layers::n_layers - 1 || z % 3 == 1;
-        const bool known = layers.map->getComm()->getSize() == 1;  // else contact may be with nodes of other ranks
-        if (!some || inside || known) {
-          EXPECT_NEAR(nodes.contact_edge[i], some && !inside ? h : 0, 1e-12);
-        }
+        EXPECT_NEAR(nodes.contact_edge[i], some && !inside ? h : 0, 1e-12);
       }
       EXPECT_TRUE(some || std::count(nodes.weak.begin(), nodes.weak.end(), true) == 0);
     }
@@ -247,13 +243,14 @@ TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
   }
 }
 
-/// Flat cells are coarsened across their short edges first: which are those, the places tell.
+/// Flat cells are coarsened across their short edges first: which are those, the places tell. Of four ranks each has
+/// four nodes of a column, which make two aggregates.
 TEST(Multigrid, ContractsInFlatCells) {
   const FlatCells cells(16);
   const auto with = [&](const RCP<MultiVector>& places) {
     multigrid::Multigrid M(wrapped(cells.matrix), *wrapped(cells.matrix), 1, Teuchos::null, places);
     M.setup(wrapped(cells.matrix), true);
-    EXPECT_LT(M.operator_complexity(), 1.8);
+    EXPECT_LT(M.operator_complexity(), Tpetra::getDefaultComm()->getSize() < 4 ? 1.8 : 2.2);
     return contraction(*cells.matrix, M);
   };
   EXPECT_LT(with(cells.places), 0.5);
