@@ -137,9 +137,31 @@ std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<Ou
   return result;
 }
 
-void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator) {
+/// What is of a balance with an error of its own; false: it is of another.
+bool Goals::add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last) {
+  if (quantity.what == "flux") {
+    const auto& now = fluxes_.back().front();
+    estimates_[name] = {now.whole, now.error};
+    auto& bound = bounds_[name];
+    bound.resize(now.energy.size(), 0);
+    for (std::size_t c = 0; c < bound.size(); ++c) bound[c] = std::max(bound[c], now.energy[c]);
+    return true;
+  }
+  if (!last || fluxes_.back().empty()) return !fluxes_.back().empty();
+  const auto of_functional = estimator.of_functional(quantity, fluxes_);
+  if (!of_functional) return false;
+  estimates_[name] = {of_functional->value, of_functional->error};
+  bounds_[name] = of_functional->indicators;
+  return true;
+}
+
+void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
+                bool last) {
   follow_slip(outputs, estimate);
+  if (!model_.system().has_rates()) fluxes_.clear();
+  fluxes_.push_back(estimate.fluxes);
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
+    if (add_flux(name, quantity, estimator, last)) continue;
     estimates_[name] = quantity.what == "stress"     ? Estimate{estimate.stress_norm, estimate.stress}
                        : quantity.what == "reaction" ? of_boundary(quantity, estimate)
                                                      : of_fractures(quantity, outputs, estimate);

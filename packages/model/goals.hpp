@@ -16,8 +16,9 @@ class Goals {
   explicit Goals(Model& model);
 
   /// Takes the present state, with its outputs and their errors. A face that does not slip in a step keeps what its
-  /// slip lacked before.
-  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator);
+  /// slip lacked before. `last`: no other state follows.
+  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
+           bool last = true);
 
   /// Of the last state, by the names of the quantities.
   const std::map<std::string, Estimate>& estimates() const { return estimates_; }
@@ -39,7 +40,10 @@ class Goals {
   std::vector<Real> energies(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                              const ErrorEstimate& estimate, ErrorEstimator& estimator) const;
 
+  bool add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last);
+
   Model& model_;
+  std::vector<std::vector<ErrorEstimate::Flux>> fluxes_;  // of all steps
   std::vector<Real> plastic_;  // jump of the last state, as in its output
   std::vector<Lack> lacks_;    // [owned fracture face]
   std::map<std::string, Estimate> estimates_;

@@ -287,7 +287,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   if (estimator_) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
-    if (goals_ && report.converged) goals_->add(outputs, estimate, *estimator_);
+    if (goals_ && report.converged) goals_->add(outputs, estimate, *estimator_, last);
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
   add(step);
