@@ -17,9 +17,7 @@ using assembly::OutputField;
 
 namespace {
 
-/// Of the product of two bounds, each of which is of the errors of fluxes and of a potential, the part of fluxes; and
-/// what of terms of both signs counts in any case.
-constexpr Real part_of_fluxes = 0.6, cancelled_fluxes = 0.1;
+constexpr Real cancelled_fluxes = 0.1;  ///< so much of terms of both signs counts in any case
 constexpr Real solve_tolerance = 1e-6;  ///< of an iterative solver; an estimate needs no more
 
 const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, const std::string& name) {
@@ -59,6 +57,8 @@ ErrorEstimator::ErrorEstimator(Model& model)
   physics::for_each_physics([&](auto physics) {
     if (auto error = physics.mesh_error(model.setting(), model.system())) flux_errors_.push_back(std::move(error));
   });
+  if (model.system().has_rates())
+    for (const auto& error : flux_errors_) error->of_state(model.state(), model.time());
 }
 
 int ErrorEstimator::block(const std::string& name) const {
@@ -184,7 +184,7 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
     sums[1] += std::abs(share);
   }
   sums = base::sum_over_ranks(*model_.mesh().comm, sums);
-  result.error = part_of_fluxes * std::max(std::abs(sums[0]), cancelled_fluxes * sums[1]);
+  result.error = std::max(std::abs(sums[0]), cancelled_fluxes * sums[1]);
   return result;
 }
 

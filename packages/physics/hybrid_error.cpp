@@ -2,6 +2,7 @@
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "physics/flow/face_plane.hpp"
 #include "physics/simplex_flux.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 namespace sprekk::physics {
 
@@ -32,6 +34,7 @@ class Places {
     import_ = rcp(new const fields::Import(Tpetra::createOneToOne(map_), map_));
   }
   std::size_t size() const { return ids_.size(); }
+  GlobalIndex id(int place) const { return ids_[place]; }
 
   /// Collective.
   template <std::size_t m>
@@ -118,27 +121,39 @@ class Error final : public HybridError {
     find_cells();
     find_faces();
     find_sides();
+    join_places();
     n_of_energy_ = cell_of_component_.size();
     for (LocalIndex f = 0; dim == 2 && f < mesh_->n_owned_fracture_faces; ++f)
       cell_of_component_.insert(cell_of_component_.end(), parameters_.fed.count(f) ? 3 : 1,
                                 mesh_->fracture_faces[f].cell[mesh::minus]);
     find_held(held_facets);
     places_.close(mesh_->comm);
+    find_stiffness();
+    for (LocalIndex c = 0; varies() && c < mesh_->n_owned_cells; ++c)
+      cell_of_component_.insert(cell_of_component_.end(), n, c);
   }
 
   const std::vector<LocalIndex>& cells() const override { return cell_of_component_; }
   std::size_t n_of_energy() const override { return n_of_energy_; }
 
-  MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) const override {
-    return parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}), t);
+  MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) override {
+    auto [result, s] = parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}), t);
+    if (varies()) add_rates(s, t, result);
+    return result;
   }
   MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
                              const fields::Vector& d_facets) const override {
-    return parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0);
+    auto [result, s] = parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0);
+    for (LocalIndex c = 0; varies() && c < mesh_->n_owned_cells; ++c)
+      for (const Real one : variation(c, s)) result.error.push_back(one);
+    result.whole.resize(result.error.size(), 0);
+    return result;
   }
 
  private:
   using Of = Potentials::Of;
+  using Numbers = std::vector<std::array<Real, 1>>;
+  static constexpr int n_sweeps = 5;
 
   struct Cell {
     InCell flux;
@@ -157,6 +172,7 @@ class Error final : public HybridError {
   struct Side {
     LocalIndex face, cell;
     int local_face;
+    std::array<int, dim> corner;                         // of the cell, by those of the face
     std::array<int, InFace::n_places> of_cell, of_face;  // places, by those of the face
     Real resistance;                                     // R, Pa s/m; 0: none
     Real spring;                                         // area / R
@@ -245,20 +261,83 @@ class Error final : public HybridError {
       const auto& face = mesh_->fracture_faces[f];
       const LocalIndex c = face.cell[s];
       if (c >= mesh_->n_owned_cells) continue;
-      Side side{f, c, face.local_face[s], {}, places_of_face(f), 1 / exchange(f), 0};
-      side.spring = face.area * exchange(f);
-      std::array<int, dim> corner{};
+      Side side{f, c, face.local_face[s], {}, {}, places_of_face(f), 1 / exchange(f), face.area * exchange(f)};
       for (int k = 0; k < dim; ++k)
         for (int a = 0; a < n; ++a)
-          if (node(c, a) == face.nodes[s][k]) corner[k] = a;
-      if (dim == 2) cells_[c].place[InCell::place(corner[0], corner[1])] = places_.add(side_place(face.id, s));
-      for (int a = 0; a < dim; ++a)
-        for (int b = a; b < dim; ++b)
-          side.of_cell[InFace::place(a, b)] = cells_[c].place[InCell::place(corner[a], corner[b])];
+          if (node(c, a) == face.nodes[s][k]) side.corner[k] = a;
+      if (dim == 2)
+        cells_[c].place[InCell::place(side.corner[0], side.corner[1])] = places_.add(side_place(face.id, s));
       sides_.push_back(side);
-      if (side.resistance > 0) resistance_[c * n + side.local_face] = side.resistance / face.area;
-      if (side.resistance > 0) cell_of_component_.insert(cell_of_component_.end(), n_face_points, c);
+      if (side.resistance == 0) continue;
+      resistance_[c * n + side.local_face] = side.resistance / face.area;
+      cell_of_component_.insert(cell_of_component_.end(), n_face_points, c);
     }
+  }
+
+  /// Where nothing resists, rock has the places of the fracture. Any cell may touch these with a corner, so all ranks
+  /// are told.
+  void join_places() {
+    std::vector<GlobalIndex> joined;  // place of the rock, of the fracture
+    const auto for_each_pair = [](const auto& visit) {
+      for (int a = 0; a < dim; ++a)
+        for (int b = a; b < dim; ++b) visit(a, b, InFace::place(a, b));
+    };
+    for (const auto& side : sides_)
+      for_each_pair([&](int a, int b, int k) {
+        if (side.resistance > 0) return;
+        const int in_cell = cells_[side.cell].place[InCell::place(side.corner[a], side.corner[b])];
+        joined.insert(joined.end(), {places_.id(in_cell), places_.id(side.of_face[k])});
+      });
+    joined = base::gather_over_ranks(*mesh_->comm, joined);
+    std::unordered_map<GlobalIndex, GlobalIndex> of_fracture;
+    for (std::size_t k = 0; k < joined.size(); k += 2) of_fracture[joined[k]] = joined[k + 1];
+    for (auto& cell : cells_)
+      for (int& place : cell.place)
+        if (const auto found = of_fracture.find(places_.id(place)); found != of_fracture.end())
+          place = places_.add(found->second);
+    for (auto& side : sides_)
+      for_each_pair([&](int a, int b, int k) {
+        side.of_cell[k] = cells_[side.cell].place[InCell::place(side.corner[a], side.corner[b])];
+      });
+  }
+
+  /// Sums of the sizes of second derivatives of half of the energy, by places: at least as large as any of its
+  /// curvatures, over values at places that are scaled by them.
+  void find_stiffness() {
+    Numbers sums(places_.size());
+    const auto add = [&](const auto& entity) {
+      const auto of = entity.flux.derivatives();
+      for (std::size_t i = 0; i < of.size(); ++i)
+        for (std::size_t j = 0; j < of.size(); ++j) sums[entity.place[i]][0] += std::abs(product(of[i], of[j]));
+    };
+    for (const auto& cell : cells_) add(cell);
+    for (const auto& face : faces_) add(face);
+    for_each_point_of_sides([&](const Side& side, Real spring, const auto& N) {
+      Real all = 0;
+      for (const Real value : N) all += 2 * std::abs(value);
+      for (std::size_t k = 0; k < N.size(); ++k)
+        for (const int place : {side.of_cell[k], side.of_face[k]}) sums[place][0] += spring * std::abs(N[k]) * all;
+    });
+    places_.sum_over_ranks(sums);
+    stiffness_ = std::move(sums);
+  }
+
+  template <std::size_t m>
+  static Real product(const std::array<Real, m>& a, const std::array<Real, m>& b) {
+    Real sum = 0;
+    for (std::size_t k = 0; k < m; ++k) sum += a[k] * b[k];
+    return sum;
+  }
+
+  /// Calls visit(side, what an area of the point stands for over R, shape functions) on sides that resist.
+  template <class Visit>
+  void for_each_point_of_sides(const Visit& visit) const {
+    for (const auto& side : sides_)
+      for (int p = 0; side.resistance > 0 && p < n_face_points; ++p) {
+        std::array<Real, dim> l{};
+        const Real share = face_point(p, l);
+        visit(side, share * side.spring, InFace::shapes(l));
+      }
   }
 
   void find_held(ConstView<char*> held_facets) {
@@ -350,7 +429,7 @@ class Error final : public HybridError {
   }
 
   /// What adds up at a place.
-  enum Sum { weight, weighted, held, held_values, springs, drops, unresisted, sides, inflow, n_sums };
+  enum Sum { weight, weighted, held, held_values, springs, drops, sides, inflow, n_sums };
   using Sums = std::vector<std::array<Real, n_sums>>;
 
   /// Adds what an entity says of the potential at its places.
@@ -363,7 +442,8 @@ class Error final : public HybridError {
     }
   }
 
-  MeshError::Parts parts(const Potentials& u, Real t) const {
+  /// And s at all places.
+  std::pair<MeshError::Parts, std::vector<Real>> parts(const Potentials& u, Real t) const {
     Sums sums(places_.size());
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
@@ -378,11 +458,11 @@ class Error final : public HybridError {
     }
     for (const auto& side : sides_) {
       const Real q = in_cells[side.cell][opposite(side.local_face)], drop = side.resistance * q / area(side);
-      for (std::size_t k = 0; k < side.of_cell.size(); ++k) {
+      for (std::size_t k = 0; side.resistance > 0 && k < side.of_cell.size(); ++k) {
         auto& sum = sums[side.of_cell[k]];
         ++sum[sides];
-        side.resistance > 0 ? sum[springs] += side.spring : ++sum[unresisted];
-        if (side.resistance > 0) sum[drops] += side.spring * drop;
+        sum[springs] += side.spring;
+        sum[drops] += side.spring * drop;
       }
       sums[side.of_face.back()][inflow] += q;
     }
@@ -394,7 +474,9 @@ class Error final : public HybridError {
       sums[one.place][held_values] += given.back();
     }
     places_.sum_over_ranks(sums);
-    auto result = errors(u, in_cells, in_faces, sums, common_potential(sums));
+    auto s = common_potential(sums);
+    for (int k = 0; k < n_sweeps; ++k) improve(u, in_cells, in_faces, sums, s);
+    auto result = errors(u, in_cells, in_faces, sums, s);
     for (const auto& face : held_faces_) {
       const Real q = face.in_rock ? in_cells[face.entity][face.opposite] : in_faces[face.entity][face.opposite];
       Real missed = -u(Of::facet, held_[face.begin].facet);
@@ -402,7 +484,30 @@ class Error final : public HybridError {
       result.error.push_back(u.is_answer() ? -q : missed);
       result.whole.push_back(0);
     }
-    return result;
+    return {std::move(result), std::move(s)};
+  }
+
+  /// Something adds to or takes from the flow in cells that need not be constant in them.
+  bool varies() const { return !parameters_.storage.empty() || !parameters_.rock.source.empty(); }
+  typename InCell::Flows variation(LocalIndex c, const std::vector<Real>& s) const {
+    const auto of_cell = at(s, cells_[c].place);
+    return cells_[c].flux.variation([&](const auto&, const auto& l) { return InCell::quadratic(of_cell, l); });
+  }
+  /// What is stored per time, less the source.
+  void add_rates(const std::vector<Real>& s, Real t, MeshError::Parts& parts) {
+    const bool stores = !parameters_.storage.empty() && !before_.empty() && t > time_before_;
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
+      typename InCell::Flows rate{};
+      if (!parameters_.rock.source.empty())
+        rate = cells_[c].flux.variation([&](const auto& x, const auto&) { return -parameters_.rock.source[0](x, t); });
+      const auto now = variation(c, s), then = stores ? variation(c, before_) : now;
+      for (int k = 0; k < n; ++k)
+        parts.error.push_back(rate[k] +
+                              (stores ? parameters_.storage[c] * (now[k] - then[k]) / (t - time_before_) : 0));
+    }
+    parts.whole.resize(parts.error.size(), 0);
+    before_ = s;
+    time_before_ = t;
   }
 
   /// s at all places, see HybridErrorParameters.
@@ -416,15 +521,13 @@ class Error final : public HybridError {
     };
     for (const auto& side : sides_)
       for (std::size_t k = 0; k < side.of_cell.size(); ++k) {
+        if (!is_apart(side, k)) continue;
         const auto& sum = sums[side.of_cell[k]];
-        auto [w, value] = own(side.of_cell[k]);
-        if (sum[unresisted] == 0) {
-          value -= sum[drops] / sum[springs];
-          w *= sum[springs] / (w + sum[springs]);
-        }
+        const auto [w, value] = own(side.of_cell[k]);
+        const Real share = w * sum[springs] / (w + sum[springs]) / sum[sides];
         auto& of = of_rock[side.of_face[k]];
-        of[0] += w / sum[sides];
-        of[1] += w / sum[sides] * value;
+        of[0] += share;
+        of[1] += share * (value - sum[drops] / sum[springs]);
       }
     places_.sum_over_ranks(of_rock);
     std::vector<Real> s(sums.size());
@@ -435,19 +538,48 @@ class Error final : public HybridError {
     std::vector<std::array<Real, 2>> beside_fractures(s.size());  // of rock: sum over sides, and how many
     for (const auto& side : sides_)
       for (std::size_t k = 0; k < side.of_cell.size(); ++k) {
+        if (!is_apart(side, k)) continue;
         const auto& sum = sums[side.of_cell[k]];
         const auto [w, value] = own(side.of_cell[k]);
-        const Real beside = s[side.of_face[k]];
+        const Real c = sum[springs], beside = s[side.of_face[k]];
         auto& of = beside_fractures[side.of_cell[k]];
-        of[0] += sum[held] > 0         ? value
-                 : sum[unresisted] > 0 ? beside
-                                       : (w * value + sum[springs] * beside + sum[drops]) / (w + sum[springs]);
+        of[0] += sum[held] > 0 ? value : (w * value + c * beside + sum[drops]) / (w + c);
         ++of[1];
       }
     places_.sum_over_ranks(beside_fractures);  // a cell may touch a fracture with a corner alone
     for (std::size_t p = 0; p < s.size(); ++p)
       if (beside_fractures[p][1] > 0) s[p] = beside_fractures[p][0] / beside_fractures[p][1];
     return s;
+  }
+
+  /// Whether place k of a side is one of the fracture and one of the rock.
+  static bool is_apart(const Side& side, std::size_t k) {
+    return side.resistance > 0 && side.of_cell[k] != side.of_face[k];
+  }
+
+  /// A step of Jacobi's method towards the s with the least energy.
+  void improve(const Potentials& u, const std::vector<typename InCell::Flows>& in_cells,
+               const std::vector<typename InFace::Flows>& in_faces, const Sums& sums, std::vector<Real>& s) const {
+    constexpr Real relaxation = 1.5;  // stable below 2
+    Numbers slopes(s.size());
+    const auto add = [&](const auto& entity, const auto& q, const auto& w) {
+      const auto error = entity.flux.error(q, at(s, entity.place), w);
+      const auto of = entity.flux.derivatives();
+      for (std::size_t k = 0; k < of.size(); ++k) slopes[entity.place[k]][0] += product(of[k], error);
+    };
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add(cells_[c], in_cells[c], weight_in_cell(c, u));
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) add(faces_[f], in_faces[f], weight_in_face(f, u));
+    for_each_point_of_sides([&](const Side& side, Real spring, const auto& N) {
+      const Real q = in_cells[side.cell][opposite(side.local_face)] / area(side);
+      const Real error = product(at(s, side.of_cell), N) - product(at(s, side.of_face), N) - side.resistance * q;
+      for (std::size_t k = 0; k < N.size(); ++k) {
+        slopes[side.of_cell[k]][0] += spring * error * N[k];
+        slopes[side.of_face[k]][0] -= spring * error * N[k];
+      }
+    });
+    places_.sum_over_ranks(slopes);
+    for (std::size_t p = 0; p < s.size(); ++p)
+      if (sums[p][held] == 0 && stiffness_[p][0] > 0) s[p] -= relaxation * slopes[p][0] / stiffness_[p][0];
   }
 
   MeshError::Parts errors(const Potentials& u, const std::vector<typename InCell::Flows>& in_cells,
@@ -558,11 +690,14 @@ class Error final : public HybridError {
   std::vector<Cell> cells_;
   std::vector<Face> faces_;
   std::vector<Side> sides_;
+  Numbers stiffness_;  // [place]
   std::vector<HeldPlace> held_;
   std::vector<HeldFace> held_faces_;
   std::unordered_map<LocalIndex, Real> resistance_;  // [cell * n + face] Pa s/m^3
   std::vector<LocalIndex> cell_of_component_;
   std::size_t n_of_energy_ = 0;
+  std::vector<Real> before_;  // s of the state before
+  Real time_before_ = 0;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace sprekk::physics {
 struct HybridErrorParameters {
   HybridDiffusionParameters rock = {};                  ///< as in the module
   std::vector<Real> transmissivity = {};                ///< [local fracture face] m^3/(Pa s)
+  std::vector<Real> storage = {};                       ///< [owned cell] 1/Pa; empty: nothing is stored
   std::vector<assembly::DirichletCondition> held = {};  ///< what is prescribed on facets
   std::map<LocalIndex, Real> fed = {};  ///< 2D: fracture faces that a well feeds, and how far it is from their middle
 };
@@ -26,18 +27,22 @@ struct HybridErrorParameters {
 /// quadratic, too: in each place the mean of p~ over the cells around it, weighted by their mobility. Rock is split
 /// along fractures, which have an s of their own (Varela et al. 2023); where they meet, both are such that the sum of
 /// the squares
-///   sum w_K (s - p~_K)^2 + sum h/R (s - s_F - R q_n)^2 + sum T_F/h (s_F - p~_F)^2
-/// is the least: equal without a resistance. Simplices with the scheme rt0. In 2D fluxes along fractures are of two
-/// points: as if something resisted between a face and its middle, h/(6 T), which is a component, too, but not one of
-/// the energy; nor are what the pressure in the middle of a face on the boundary misses of its mean, and the flow
-/// there.
+///   sum w_K (s - p~_K)^2 + sum A/R (s - s_F - R q_n)^2 + sum T_F/h (s_F - p~_F)^2
+/// is the least: equal without a resistance. Some steps of Jacobi's method then bring |q_h + K grad s| close to the
+/// least. Simplices with the scheme rt0.
+///
+/// Components that are none of the energy are of functionals alone. In 2D fluxes along fractures are of two points: as
+/// if something resisted between a face and its middle, h/(6 T). On the boundary the pressure in the middle of a face
+/// is not its mean, with the flow there as the answer's part. A source, less what is stored per time, is other than its
+/// mean in a cell, and so is the answer's potential.
 class HybridError {
  public:
   virtual ~HybridError() = default;
   virtual const std::vector<LocalIndex>& cells() const = 0;
   virtual std::size_t n_of_energy() const = 0;
   /// Of potentials on cells and on facets, [owned unknown]; `answer`: small changes of these. Collective.
-  virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) const = 0;
+  /// What is stored is since the state before, of which this was asked.
+  virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) = 0;
   virtual MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
                                      const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
 };

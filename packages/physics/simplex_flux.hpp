@@ -25,6 +25,7 @@ class SimplexFlux {
   static constexpr int n = d + 1, n_places = n * (d + 2) / 2, n_components = n * d;
   using Flows = std::array<Real, n>;
   using Weight = std::array<Real, d>;
+  using Barycentric = std::array<Real, n>;
   using AtPlaces = std::array<Real, n_places>;
   using Components = std::array<Real, n_components>;
 
@@ -39,11 +40,10 @@ class SimplexFlux {
   }
 
   SimplexFlux(const Real (&corners)[n][d], const laws::Mobility& mobility) {
-    for (int k = 0; k < n; ++k)
-      for (int i = 0; i < d; ++i) {
-        X_[k][i] = corners[k][i];
-        for (int l = 0; l < n; ++l) X_[k][i] -= corners[l][i] / n;
-      }
+    for (int i = 0; i < d; ++i) {
+      for (int l = 0; l < n; ++l) centre_[i] += corners[l][i] / n;
+      for (int k = 0; k < n; ++k) X_[k][i] = corners[k][i] - centre_[i];
+    }
     Real edges[d][d];  // [k][i] of corner k + 1 from corner 0
     for (int k = 0; k < d; ++k)
       for (int i = 0; i < d; ++i) edges[k][i] = X_[k + 1][i] - X_[0][i];
@@ -87,35 +87,72 @@ class SimplexFlux {
     return p;
   }
 
+  /// The quadratic functions that are 1 at one place and 0 at others.
+  static AtPlaces shapes(const Barycentric& l) {
+    AtPlaces N{};
+    for (int a = 0; a < n; ++a)
+      for (int b = a; b < n; ++b) N[place(a, b)] = a == b ? l[a] * (2 * l[a] - 1) : 4 * l[a] * l[b];
+    return N;
+  }
   /// A quadratic function at barycentric coordinates.
-  static Real quadratic(const AtPlaces& s, const std::array<Real, n>& l) {
+  static Real quadratic(const AtPlaces& s, const Barycentric& l) {
     Real sum = 0;
-    for (int a = 0; a < n; ++a) {
-      sum += l[a] * (2 * l[a] - 1) * s[a];
-      for (int b = a + 1; b < n; ++b) sum += 4 * l[a] * l[b] * s[place(a, b)];
-    }
+    const auto N = shapes(l);
+    for (int k = 0; k < n_places; ++k) sum += N[k] * s[k];
     return sum;
   }
 
   /// Components of root^-1 (q + K (grad s - w)) at points of a rule that is exact for their squares.
   Components error(const Flows& q, const AtPlaces& s, const Weight& w) const {
-    return components([&](const Real(&l)[n], Real(&e)[d]) {
+    return components([&](const Barycentric& l, Real(&e)[d]) {
       flux(q, l, e);
       for (int i = 0; i < d; ++i) e[i] -= w[i];
-      for (int k = 0; k < n; ++k)
-        for (int i = 0; i < d; ++i) {
-          e[i] += (4 * l[k] - 1) * gradient_[k][i] * s[k];
-          for (int m = 0; m < n; ++m)
-            if (m != k) e[i] += 4 * l[m] * gradient_[k][i] * s[place(k, m)];
-        }
+      for (int k = 0; k < n_places; ++k) {
+        Real g[d] = {};
+        gradient(k, l, g);
+        for (int i = 0; i < d; ++i) e[i] += g[i] * s[k];
+      }
     });
+  }
+  /// Their derivatives in s.
+  std::array<Components, n_places> derivatives() const {
+    std::array<Components, n_places> result;
+    for (int k = 0; k < n_places; ++k)
+      result[k] = components([&](const Barycentric& l, Real(&e)[d]) { gradient(k, l, e); });
+    return result;
+  }
+  /// What values(x, l) at places x with barycentric coordinates l are above their mean, so that sums of products are
+  /// integrals, as far as both are linear.
+  template <class ValuesAt>
+  Flows variation(const ValuesAt& values) const {
+    Flows result{};
+    Real mean = 0;
+    for (int p = 0; p < n; ++p) {
+      Barycentric l;
+      std::array<Real, 3> x{};
+      for (int k = 0; k < n; ++k) l[k] = k == p ? outer : (1 - outer) / d;
+      for (int i = 0; i < d; ++i) {
+        x[i] = centre_[i];
+        for (int k = 0; k < n; ++k) x[i] += l[k] * X_[k][i];
+      }
+      mean += (result[p] = values(x, l)) / n;
+    }
+    for (Real& value : result) value = std::sqrt(volume_ / n) * (value - mean);
+    return result;
   }
   /// The same of q alone.
   Components whole(const Flows& q) const {
-    return components([&](const Real(&l)[n], Real(&e)[d]) { flux(q, l, e); });
+    return components([&](const Barycentric& l, Real(&e)[d]) { flux(q, l, e); });
   }
 
  private:
+  /// Of the function of a place.
+  void gradient(int number, const Barycentric& l, Real (&g)[d]) const {
+    for (int a = 0; a < n; ++a)
+      for (int b = a; b < n; ++b)
+        for (int i = 0; i < d && place(a, b) == number; ++i)
+          g[i] = a == b ? (4 * l[a] - 1) * gradient_[a][i] : 4 * (l[b] * gradient_[a][i] + l[a] * gradient_[b][i]);
+  }
   /// q = a + b x: sum of q_k (x - X_k)/(d V).
   std::pair<std::array<Real, d>, Real> affine(const Flows& q) const {
     std::array<Real, d> a{};
@@ -127,7 +164,7 @@ class SimplexFlux {
     return {a, b};
   }
   /// K^-1 q at barycentric coordinates.
-  void flux(const Flows& q, const Real (&l)[n], Real (&e)[d]) const {
+  void flux(const Flows& q, const Barycentric& l, Real (&e)[d]) const {
     const auto [a, b] = affine(q);
     Real v[d];
     for (int i = 0; i < d; ++i) {
@@ -150,10 +187,10 @@ class SimplexFlux {
   /// Of vectors e = K^-1 v that at(barycentric coordinates, e) finds: their squares are the integral of v . K^-1 v.
   template <class At>
   Components components(const At& at) const {
-    constexpr Real outer = d == 1 ? 0.788675134594813 : d == 2 ? 2.0 / 3 : 0.585410196624969;
     Components result{};
     for (int p = 0; p < n; ++p) {
-      Real l[n], e[d];
+      Barycentric l;
+      Real e[d] = {};
       for (int k = 0; k < n; ++k) l[k] = k == p ? outer : (1 - outer) / d;
       at(l, e);
       for (int i = 0; i < d; ++i)
@@ -182,7 +219,10 @@ class SimplexFlux {
     return det;
   }
 
-  Real X_[n][d], gradient_[n][d], resistance_[d][d], root_[d][d] = {}, volume_;
+  /// Of the points of a rule that is exact for quadratic functions.
+  static constexpr Real outer = d == 1 ? 0.788675134594813 : d == 2 ? 2.0 / 3 : 0.585410196624969;
+
+  Real centre_[d] = {}, X_[n][d], gradient_[n][d], resistance_[d][d], root_[d][d] = {}, volume_;
 };
 
 }  // namespace sprekk::physics

@@ -162,6 +162,17 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
   return fractures;
 }
 
+/// Of the pores of local cells. Collective.
+Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
+  Properties<Capacity> result;
+  base::collectively(*setting.mesh.comm, [&] {
+    result = by_cell(
+        setting.scene, setting.mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
+        [&](const Material& rock, const auto& x) { return rock.capacity(of_fluid, x); });
+  });
+  return result;
+}
+
 /// What modules are made of, and the estimate of the error.
 struct Parts {
   HybridDiffusionParameters darcy;
@@ -265,11 +276,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(darcy)));
   StorageParameters storage{
       .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure, .change = change};
-  base::collectively(*mesh.comm, [&] {
-    storage.capacity = by_cell(
-        scene, mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
-        [&](const Material& rock, const auto& x) { return rock.capacity(fluid.compressibility, x); });
-  });
+  storage.capacity = capacities(setting, fluid.compressibility);
   const bool denser = fluid.compressibility > 0 || change;
   const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
                                   [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
@@ -288,7 +295,13 @@ std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::Sy
   SPREKK_CHECK(parts.darcy.scheme == FluxScheme::rt0,
                "{}: the estimate of the error of flow is of triangles and tetrahedra, with the scheme rt0",
                setting.scene.origin);
+  const Real of_fluid = parts.darcy.fluid.compressibility;
   HybridErrorParameters error{.rock = std::move(parts.darcy)};
+  const auto capacity = capacities(setting, of_fluid);
+  for (LocalIndex c = 0; system.has_rates() && c < setting.mesh.n_owned_cells; ++c) {
+    const auto& of = capacity.of_cell(setting.mesh, c);
+    error.storage.push_back(of.growth + of_fluid * of.room);
+  }
   for (const auto& face : parts.fractures.faces) error.transmissivity.push_back(face.along.transmissivity());
   error.held = dirichlet_conditions(setting.scene.boundary_conditions, {}, names_of(setting.mesh), "face pressure");
   return make_flow_error(system, std::move(error), std::move(parts.wells));

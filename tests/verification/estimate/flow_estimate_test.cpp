@@ -120,12 +120,16 @@ Measured measure(model::Scene scene, const Exact& exact, const model::Quantity& 
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, Tpetra::getDefaultComm());
-  EXPECT_TRUE(model.step_to(1).converged);
   model::ErrorEstimator estimator(model);
   model::Goals goals(model);
-  const auto outputs = Outputs(model).all();
-  const auto estimate = estimator(outputs);
-  goals.add(outputs, estimate, estimator);
+  model::ErrorEstimate estimate;
+  const auto times = model.scene().time.times();
+  for (const Real t : times) {
+    EXPECT_TRUE(model.step_to(t).converged);
+    const auto outputs = Outputs(model).all();
+    estimate = estimator(outputs);
+    goals.add(outputs, estimate, estimator, t == times.back());
+  }
   const auto& goal = goals.estimates().at("goal");
   const Real error = mesh::dimension(model.mesh().shape) == 2 ? true_error<mesh::Shape::triangle>(model, exact)
                                                               : true_error<mesh::Shape::tetrahedron>(model, exact);
@@ -186,6 +190,35 @@ std::vector<Case> cases() {
                         : Vector3{-f * std::sin(half), f * std::cos(half), 0};
       };
     };
+    /// What is stored flows out: with implicit Euler sin(pi x) sin(pi y) falls by a factor in each step. The fracture
+    /// in the middle neither conducts nor resists.
+    constexpr Real storage = 10, dt = 0.2, T = 1e-9;
+    constexpr int n_steps = 5;
+    const Real left = std::pow(1 + 2 * M_PI * M_PI / storage * dt, -n_steps);
+    all.push_back({"what is stored",
+                   cell,
+                   [=](int n) {
+                     auto scene = closed_box(cell, false, n);
+                     scene.flow->viscosity = 1;
+                     scene.flow->initial_pressure = base::Expression("sin(pi*x)*sin(pi*y)");
+                     scene.materials.at("rock").compressibility = storage;
+                     scene.materials.at("joint").tangential_permeability = T / aperture;
+                     for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, "0");
+                     scene.time.end = n_steps * dt;
+                     scene.time.steps = n_steps;
+                     return scene;
+                   },
+                   {.flux =
+                        [=](const Vector3& x) {
+                          return Vector3{-left * M_PI * std::cos(M_PI * x[0]) * std::sin(M_PI * x[1]),
+                                         -left * M_PI * std::sin(M_PI * x[0]) * std::cos(M_PI * x[1]), 0};
+                        },
+                    .transmissivity = T},
+                   pressure_of_a(),
+                   left * 2 / M_PI,
+                   1,
+                   2,
+                   meshes});
     const std::string r = "(x^2+y^2)^0.25", half = "(atan2(y,x)/2)";
     all.push_back({"tip that conducts",
                    cell,
@@ -220,6 +253,7 @@ std::vector<Case> cases() {
                    meshes});
     for (const Real T : {0.1, 10.0})
       for (const Real R : {0.0, 0.01, 10.0}) {
+        if (!flat && R == 0.01) continue;  // as 0
         /// cos(k x) (a exp(-k |y|) + b exp(k |y|)) in rock, A cos(k x) in the fracture, no source: what flows in from
         /// both sides, 2 k (b - a) cos(k x), flows along, T k^2 A cos(k x).
         const Real k = 1.5, D = T * k / (2 + T * R * k * k), a = (1 - D) / 2, b = (1 + D) / 2, A = 1 - R * k * D;
@@ -257,8 +291,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// The estimate is a bound, but for how a source varies in a cell, and at most twice the error; so is that of a
-/// quantity, to a factor of two. Errors fall as the solution lets them.
+/// The estimate is a bound, but for how a source, or what is stored, varies in a cell; for smooth solutions it is the
+/// error, as is that of a quantity, and near tips it is not far above. Errors fall as the solution lets them.
 TEST(FlowEstimate, BoundsTheErrorOfFluxes) {
   for (const auto& one : cases()) {
     SCOPED_TRACE(one.name + ", " + one.cell);
@@ -266,16 +300,20 @@ TEST(FlowEstimate, BoundsTheErrorOfFluxes) {
     for (const int n : one.meshes) {
       const auto got = measure(one.scene(n), one.exact, one.quantity);
       const Real ratio = got.estimate / got.error, missed = std::abs(got.value - one.value);
-      EXPECT_GT(ratio, one.name == "smooth" ? 0.99 : 1);
-      EXPECT_LT(ratio, 2);
+      const bool smooth = one.order == 1, oscillates = one.name == "smooth" || one.name == "what is stored";
+      EXPECT_GT(ratio, oscillates ? 0.98 : 1);
+      EXPECT_LT(ratio, smooth ? 1.03 : 1.4);
       if (one.goal_order > 0) {
-        EXPECT_GT(got.goal_error / missed, 0.5);
-        EXPECT_LT(got.goal_error / missed, 2);
+        EXPECT_GT(got.goal_error / missed, 0.95);
+        EXPECT_LT(got.goal_error / missed, smooth ? 1.15 : 1.7);
       }
       const bool last = n == one.meshes.back();
-      if (last) EXPECT_NEAR(std::log2(before.error / got.error), one.order, 0.1);
-      if (n == one.meshes.back() && one.goal_order > 0)
+      if (last) {
+        EXPECT_NEAR(std::log2(before.error / got.error), one.order, 0.1);
+      }
+      if (last && one.goal_order > 0) {
         EXPECT_NEAR(std::log2(std::abs(before.value - one.value) / missed), one.goal_order, 0.1);
+      }
       before = got;
       if (Tpetra::getDefaultComm()->getRank() == 0)
         fmt::print("  {}, {}, {}: {:.2e}, estimate {:.2f}; quantity {:.2e}, estimate {:.2f}\n", one.name, one.cell, n,
