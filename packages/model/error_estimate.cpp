@@ -57,8 +57,6 @@ ErrorEstimator::ErrorEstimator(Model& model)
   physics::for_each_physics([&](auto physics) {
     if (auto error = physics.mesh_error(model.setting(), model.system())) flux_errors_.push_back(std::move(error));
   });
-  if (model.system().has_rates())
-    for (const auto& error : flux_errors_) error->of_state(model.state(), model.time());
 }
 
 int ErrorEstimator::block(const std::string& name) const {
@@ -135,14 +133,14 @@ ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const 
   return flux;
 }
 
-/// Rates of what is stored, in the last step.
-fields::BlockMatrix ErrorEstimator::storage() const {
+/// Rates of what is stored, in the last step, of each module that stores something.
+std::vector<fields::BlockMatrix> ErrorEstimator::storage() const {
   auto& system = model_.system();
-  auto result = system.create_matrix();
+  std::vector<fields::BlockMatrix> all;
   for (std::size_t k = 0; k < system.modules().size(); ++k)
     if (system.modules()[k]->declare(model_.mesh()).stores)
-      system.module_jacobian(static_cast<int>(k), model_.state(), result);
-  return result;
+      system.module_jacobian(static_cast<int>(k), model_.state(), all.emplace_back(system.create_matrix()));
+  return all;
 }
 
 std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
@@ -156,8 +154,8 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
   OfFunctional result{error.value(J, model_.state()), std::numeric_limits<Real>::infinity(), {}};
   auto right_side = fields::create_like(model_.state()), z = fields::create_like(model_.state());
   error.add_derivative(J, model_.state(), right_side);
-  const bool stores = model_.system().has_rates();
-  const auto rates = stores ? storage() : fields::BlockMatrix();
+  const auto rates = storage();
+  auto product = fields::create_like(model_.state());
   result.indicators.assign(model_.mesh().n_owned_cells, 0);
   std::vector<Real> products(error.cells().size(), 0);
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
@@ -174,8 +172,11 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
     }
     const auto weight = by_cell(error, squares);
     for (std::size_t c = 0; c < weight.size(); ++c) result.indicators[c] += std::sqrt(weight[c] * of_step.energy[c]);
-    if (!stores) break;
-    rates.apply(z, right_side);
+    for (auto& block : right_side) block->putScalar(0);
+    for (const auto& of_module : rates) {
+      of_module.apply(z, product);
+      for (std::size_t b = 0; b < product.size(); ++b) right_side[b]->update(1, *product[b], 1);
+    }
     hold(right_side);
   }
   std::array<Real, 2> sums{};  // with signs and without

@@ -80,7 +80,7 @@ class ErrorEstimator {
 
   ErrorEstimate::Flux flux_error(physics::MeshError& error) const;
   std::vector<Real> by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const;
-  fields::BlockMatrix storage() const;
+  std::vector<fields::BlockMatrix> storage() const;
   /// Sets all rows of prescribed unknowns to zero.
   void hold(fields::BlockVector& right_side) const;
 

@@ -129,6 +129,7 @@ class Error final : public HybridError {
     find_held(held_facets);
     places_.close(mesh_->comm);
     find_stiffness();
+    find_before();
     for (LocalIndex c = 0; varies() && c < mesh_->n_owned_cells; ++c)
       cell_of_component_.insert(cell_of_component_.end(), n, c);
   }
@@ -495,19 +496,27 @@ class Error final : public HybridError {
   }
   /// What is stored per time, less the source.
   void add_rates(const std::vector<Real>& s, Real t, MeshError::Parts& parts) {
-    const bool stores = !parameters_.storage.empty() && !before_.empty() && t > time_before_;
+    const Real dt = t - time_before_;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
       typename InCell::Flows rate{};
       if (!parameters_.rock.source.empty())
         rate = cells_[c].flux.variation([&](const auto& x, const auto&) { return -parameters_.rock.source[0](x, t); });
-      const auto now = variation(c, s), then = stores ? variation(c, before_) : now;
-      for (int k = 0; k < n; ++k)
-        parts.error.push_back(rate[k] +
-                              (stores ? parameters_.storage[c] * (now[k] - then[k]) / (t - time_before_) : 0));
+      const auto now = variation(c, s);
+      for (int k = 0; !before_.empty() && dt > 0 && k < n; ++k)
+        rate[k] += parameters_.storage[c] * (now[k] - before_[c][k]) / dt;
+      if (!before_.empty()) before_[c] = now;
+      parts.error.insert(parts.error.end(), rate.begin(), rate.end());
     }
     parts.whole.resize(parts.error.size(), 0);
-    before_ = s;
     time_before_ = t;
+  }
+  /// At the start.
+  void find_before() {
+    for (LocalIndex c = 0; !parameters_.storage.empty() && c < mesh_->n_owned_cells; ++c)
+      before_.push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
+        return parameters_.rock.initial ? (*parameters_.rock.initial)(x, 0) : 0;
+      }));
+    time_before_ = parameters_.start;
   }
 
   /// s at all places, see HybridErrorParameters.
@@ -696,7 +705,7 @@ class Error final : public HybridError {
   std::unordered_map<LocalIndex, Real> resistance_;  // [cell * n + face] Pa s/m^3
   std::vector<LocalIndex> cell_of_component_;
   std::size_t n_of_energy_ = 0;
-  std::vector<Real> before_;  // s of the state before
+  std::vector<typename InCell::Flows> before_;  // [owned cell] variation of the potential in the state before
   Real time_before_ = 0;
 };
 

@@ -15,6 +15,7 @@ struct HybridErrorParameters {
   HybridDiffusionParameters rock = {};                  ///< as in the module
   std::vector<Real> transmissivity = {};                ///< [local fracture face] m^3/(Pa s)
   std::vector<Real> storage = {};                       ///< [owned cell] 1/Pa; empty: nothing is stored
+  Real start = 0;                                       ///< time of the initial state
   std::vector<assembly::DirichletCondition> held = {};  ///< what is prescribed on facets
   std::map<LocalIndex, Real> fed = {};  ///< 2D: fracture faces that a well feeds, and how far it is from their middle
 };
@@ -41,7 +42,7 @@ class HybridError {
   virtual const std::vector<LocalIndex>& cells() const = 0;
   virtual std::size_t n_of_energy() const = 0;
   /// Of potentials on cells and on facets, [owned unknown]; `answer`: small changes of these. Collective.
-  /// What is stored is since the state before, of which this was asked.
+  /// What is stored is since the state of which this was asked before, or the initial one.
   virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) = 0;
   virtual MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
                                      const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;

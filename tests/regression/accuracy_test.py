@@ -75,7 +75,7 @@ class Accuracy(ProgramTest):
             self.assertIn(words, accuracy["ended"])
 
     def test_flow_in_rock_and_fractures(self):
-        """Of xml/flow/network_2d.xml, that no time passes in: flow through the west and into a well on a fracture, their sum, and pressure."""
+        """Of xml/flow/network_2d.xml, that no time passes in: flow through the west and into a well on a fracture, and pressure."""
         steady = ["Flow.compressibility=0", "Time.steps=1", "Mesh.cells={10, 10}", QUIET]
         well = ["Flow.Wells.well.points={60, 70}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.pressure=0.5e6"]
         sets = [*goal("flow", "through", boundary="west", relative=0.02), *goal("flow", "out", well="well", relative=0.02),
@@ -97,6 +97,17 @@ class Accuracy(ProgramTest):
                     self.assertAlmostEqual(quantity[key] / other["quantities"][name][key], 1, delta=1e-4)
         through = runs[0]["accuracy"]["quantities"]["through"]
         self.assertLess(abs(through["value"] - fine["accuracy"]["quantities"]["through"]["value"]), 1.5 * through["asked"])
+
+    def test_errors_of_earlier_steps_last(self):
+        """Flow that hardly changes any more has the error of steady flow, which all steps before have made."""
+        goals = [*goal("flow", "through", boundary="west", relative=0.5), *goal("pressure", "in", fractures="{short, branch}", relative=0.5)]
+        single = ["Mesh.cells={20, 20}", "Accuracy.cells=10", QUIET]  # the first mesh is the last
+        errors = []
+        for sets in (["Flow.compressibility=0", "Time.steps=1"], ["Time.end=1e5", "Time.steps=40"]):
+            results = self.run_scene(NETWORK, *goals, *single, *sets)
+            errors.append({name: one["error"] for name, one in results["accuracy"]["meshes"][0]["quantities"].items()})
+        for name, steady in errors[0].items():
+            self.assertAlmostEqual(errors[1][name] / steady, 1, delta=0.03)
 
     def test_refuses_in_words(self):
         good = goal("slip", relative=0.01)

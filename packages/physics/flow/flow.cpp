@@ -296,7 +296,7 @@ std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::Sy
                "{}: the estimate of the error of flow is of triangles and tetrahedra, with the scheme rt0",
                setting.scene.origin);
   const Real of_fluid = parts.darcy.fluid.compressibility;
-  HybridErrorParameters error{.rock = std::move(parts.darcy)};
+  HybridErrorParameters error{.rock = std::move(parts.darcy), .start = setting.start};
   const auto capacity = capacities(setting, of_fluid);
   for (LocalIndex c = 0; system.has_rates() && c < setting.mesh.n_owned_cells; ++c) {
     const auto& of = capacity.of_cell(setting.mesh, c);
