@@ -307,7 +307,7 @@ class Error final : public HybridError {
   void find_stiffness() {
     Numbers sums(places_.size());
     const auto add = [&](const auto& entity) {
-      const auto of = entity.flux.derivatives();
+      const auto of = entity.flux.gradients();
       for (std::size_t i = 0; i < of.size(); ++i)
         for (std::size_t j = 0; j < of.size(); ++j) sums[entity.place[i]][0] += std::abs(product(of[i], of[j]));
     };
@@ -429,6 +429,11 @@ class Error final : public HybridError {
     return q;
   }
 
+  /// Of SimplexFlux::flux().
+  struct Components {
+    std::vector<typename InCell::Components> in_cells;
+    std::vector<typename InFace::Components> in_faces;
+  };
   /// What adds up at a place.
   enum Sum { weight, weighted, held, held_values, springs, drops, sides, inflow, n_sums };
   using Sums = std::vector<std::array<Real, n_sums>>;
@@ -476,8 +481,13 @@ class Error final : public HybridError {
     }
     places_.sum_over_ranks(sums);
     auto s = common_potential(sums);
-    for (int k = 0; k < n_sweeps; ++k) improve(u, in_cells, in_faces, sums, s);
-    auto result = errors(u, in_cells, in_faces, sums, s);
+    Components fluxes;
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+      fluxes.in_cells.push_back(cells_[c].flux.flux(in_cells[c], weight_in_cell(c, u)));
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      fluxes.in_faces.push_back(faces_[f].flux.flux(in_faces[f], weight_in_face(f, u)));
+    for (int k = 0; k < n_sweeps; ++k) improve(fluxes, in_cells, sums, s);
+    auto result = errors(u, fluxes, in_cells, in_faces, sums, s);
     for (const auto& face : held_faces_) {
       const Real q = face.in_rock ? in_cells[face.entity][face.opposite] : in_faces[face.entity][face.opposite];
       Real missed = -u(Of::facet, held_[face.begin].facet);
@@ -567,17 +577,17 @@ class Error final : public HybridError {
   }
 
   /// A step of Jacobi's method towards the s with the least energy.
-  void improve(const Potentials& u, const std::vector<typename InCell::Flows>& in_cells,
-               const std::vector<typename InFace::Flows>& in_faces, const Sums& sums, std::vector<Real>& s) const {
+  void improve(const Components& fluxes, const std::vector<typename InCell::Flows>& in_cells, const Sums& sums,
+               std::vector<Real>& s) const {
     constexpr Real relaxation = 1.5;  // stable below 2
     Numbers slopes(s.size());
-    const auto add = [&](const auto& entity, const auto& q, const auto& w) {
-      const auto error = entity.flux.error(q, at(s, entity.place), w);
-      const auto of = entity.flux.derivatives();
+    const auto add = [&](const auto& entity, const auto& flux) {
+      const auto of = entity.flux.gradients();
+      const auto error = entity.flux.error(flux, of, at(s, entity.place));
       for (std::size_t k = 0; k < of.size(); ++k) slopes[entity.place[k]][0] += product(of[k], error);
     };
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add(cells_[c], in_cells[c], weight_in_cell(c, u));
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) add(faces_[f], in_faces[f], weight_in_face(f, u));
+    for (std::size_t c = 0; c < cells_.size(); ++c) add(cells_[c], fluxes.in_cells[c]);
+    for (std::size_t f = 0; f < faces_.size(); ++f) add(faces_[f], fluxes.in_faces[f]);
     for_each_point_of_sides([&](const Side& side, Real spring, const auto& N) {
       const Real q = in_cells[side.cell][opposite(side.local_face)] / area(side);
       const Real error = product(at(s, side.of_cell), N) - product(at(s, side.of_face), N) - side.resistance * q;
@@ -591,21 +601,18 @@ class Error final : public HybridError {
       if (sums[p][held] == 0 && stiffness_[p][0] > 0) s[p] -= relaxation * slopes[p][0] / stiffness_[p][0];
   }
 
-  MeshError::Parts errors(const Potentials& u, const std::vector<typename InCell::Flows>& in_cells,
+  MeshError::Parts errors(const Potentials& u, const Components& fluxes,
+                          const std::vector<typename InCell::Flows>& in_cells,
                           const std::vector<typename InFace::Flows>& in_faces, const Sums& sums,
                           const std::vector<Real>& s) const {
     MeshError::Parts result;
     const auto put = [](std::vector<Real>& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
-      const auto& flux = cells_[c].flux;
-      put(result.error, flux.error(in_cells[c], at(s, cells_[c].place), weight_in_cell(c, u)));
-      put(result.whole, flux.whole(in_cells[c]));
-    }
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const auto& face = faces_[f];
-      put(result.error, face.flux.error(in_faces[f], at(s, face.place), weight_in_face(f, u)));
-      put(result.whole, face.flux.whole(in_faces[f]));
-    }
+    const auto add = [&](const auto& entity, const auto& flux, const auto& q) {
+      put(result.error, entity.flux.error(flux, entity.flux.gradients(), at(s, entity.place)));
+      put(result.whole, entity.flux.flux(q, {}));
+    };
+    for (std::size_t c = 0; c < cells_.size(); ++c) add(cells_[c], fluxes.in_cells[c], in_cells[c]);
+    for (std::size_t f = 0; f < faces_.size(); ++f) add(faces_[f], fluxes.in_faces[f], in_faces[f]);
     for (const auto& side : sides_)
       if (side.resistance > 0) add_side(side, in_cells[side.cell][opposite(side.local_face)] / area(side), s, result);
     for (LocalIndex f = 0; dim == 2 && f < mesh_->n_owned_fracture_faces; ++f)

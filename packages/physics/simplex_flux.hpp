@@ -102,24 +102,31 @@ class SimplexFlux {
     return sum;
   }
 
-  /// Components of root^-1 (q + K (grad s - w)) at points of a rule that is exact for their squares.
-  Components error(const Flows& q, const AtPlaces& s, const Weight& w) const {
+  /// Components of root^-1 (q - K w) at points of a rule that is exact for products of two such.
+  Components flux(const Flows& q, const Weight& w) const {
     return components([&](const Barycentric& l, Real(&e)[d]) {
       flux(q, l, e);
       for (int i = 0; i < d; ++i) e[i] -= w[i];
-      for (int k = 0; k < n_places; ++k) {
-        Real g[d] = {};
-        gradient(k, l, g);
-        for (int i = 0; i < d; ++i) e[i] += g[i] * s[k];
-      }
     });
   }
-  /// Their derivatives in s.
-  std::array<Components, n_places> derivatives() const {
+  /// Those of root^-1 K grad N for the functions of places.
+  std::array<Components, n_places> gradients() const {
     std::array<Components, n_places> result;
-    for (int k = 0; k < n_places; ++k)
-      result[k] = components([&](const Barycentric& l, Real(&e)[d]) { gradient(k, l, e); });
+    for (int a = 0; a < n; ++a)
+      for (int b = a; b < n; ++b)
+        result[place(a, b)] = components([&](const Barycentric& l, Real(&e)[d]) {
+          for (int i = 0; i < d; ++i)
+            e[i] = a == b ? (4 * l[a] - 1) * gradient_[a][i] : 4 * (l[b] * gradient_[a][i] + l[a] * gradient_[b][i]);
+        });
     return result;
+  }
+  /// Those of root^-1 (q + K (grad s - w)).
+  static Components error(const Components& flux, const std::array<Components, n_places>& gradients,
+                          const AtPlaces& s) {
+    Components e = flux;
+    for (int k = 0; k < n_places; ++k)
+      for (int i = 0; i < n_components; ++i) e[i] += s[k] * gradients[k][i];
+    return e;
   }
   /// What values(x, l) at places x with barycentric coordinates l are above their mean, so that sums of products are
   /// integrals, as far as both are linear.
@@ -140,19 +147,8 @@ class SimplexFlux {
     for (Real& value : result) value = std::sqrt(volume_ / n) * (value - mean);
     return result;
   }
-  /// The same of q alone.
-  Components whole(const Flows& q) const {
-    return components([&](const Barycentric& l, Real(&e)[d]) { flux(q, l, e); });
-  }
 
  private:
-  /// Of the function of a place.
-  void gradient(int number, const Barycentric& l, Real (&g)[d]) const {
-    for (int a = 0; a < n; ++a)
-      for (int b = a; b < n; ++b)
-        for (int i = 0; i < d && place(a, b) == number; ++i)
-          g[i] = a == b ? (4 * l[a] - 1) * gradient_[a][i] : 4 * (l[b] * gradient_[a][i] + l[a] * gradient_[b][i]);
-  }
   /// q = a + b x: sum of q_k (x - X_k)/(d V).
   std::pair<std::array<Real, d>, Real> affine(const Flows& q) const {
     std::array<Real, d> a{};
