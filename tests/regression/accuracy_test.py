@@ -127,6 +127,13 @@ class Accuracy(ProgramTest):
         self.refuse(['goal > "boundary": no pressure is given on "north", so that its flow is'], NETWORK, *goal("flow", boundary="north", relative=0.01))
         self.refuse(['goal > "well": is "one", which is no section of Flow > Wells'], NETWORK, *goal("pressure", well="one", relative=0.01))
         self.refuse(['Accuracy: is of the scheme rt0; not available with "Flow > scheme" tpfa'], NETWORK, *goal("pressure", relative=0.01), "Flow.scheme=tpfa")
+        through_rock = ["Flow.Wells.well.points={61, 71, 11, 61, 71, 21}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.rate=1e-6"]
+        self.refuse(["goal: is not available with wells through rock"], "flow/network_3d.xml", *goal("flow", boundary="west", relative=0.01), *through_rock)
+        in_rock = ["Flow.Wells.well.points={61, 72}", *through_rock[1:]]
+        self.refuse(["goal: is not available with wells, whose power"], NETWORK, *goal("flux", relative=0.01), *in_rock)
+        _, said = self.call("run", self.scene(NETWORK), "--output", "out",
+                            *(word for entry in (*goal("pressure", well="well", relative=0.01), *in_rock) for word in ("--set", entry)), expect=1)
+        self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
         self.assertIn('--restart: does not go with the section "Accuracy"', said)

@@ -167,8 +167,12 @@ std::string Flow::refuses(const Scene& scene, const Functional& J) {
   if (J.what == "pressure" && !J.boundary.empty()) return absent("boundary", "is of a well or of fractures");
   if (J.what == "pressure" && of_well && !J.fractures.empty()) return absent("fractures", "is of the well");
   if (J.what == "flow" && of_well == !J.boundary.empty()) return "needs \"boundary\" or \"well\"";
+  const auto& wells = scene.flow->wells;
+  if (std::any_of(wells.begin(), wells.end(), [](const auto& well) { return well.second.points.size() > 2; }))
+    return "is not available with wells through rock; in 2D wells may be on fractures";
+  if (J.what == "flux" && !wells.empty())
+    return "is not available with wells, whose power is not told from their radius";
   if (of_well) {
-    const auto& wells = scene.flow->wells;
     const auto found = wells.find(J.well);
     if (found == wells.end()) return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
     if (J.what == "flow" && !found->second.pressure)

@@ -1,5 +1,6 @@
 #include "physics/flow/flow_error.hpp"
 
+#include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "physics/flow/well_connections.hpp"
 
@@ -43,6 +44,12 @@ class FlowError final : public MeshError {
   bool knows(const std::string& what) const override { return what == "pressure" || what == "flow"; }
 
   Real value(const Functional& J, const fields::BlockVector& x) override {
+    for (const auto& well : wells_.wells)
+      SPREKK_CHECK(
+          !in_rock_.count(well.name),
+          "Sprekk > Flow > Wells > {} > \"points\": in rock, must be on a fracture with \"Accuracy\": finer cells "
+          "do not make its pressure more accurate, and are soon smaller than its radius",
+          well.name);
     if (!J.well.empty()) return total({"wells", J.well, J.what == "flow" ? "rate" : "pressure"}, x);
     return J.what == "flow" ? through(J.boundary, x) : mean(J, x);
   }
@@ -78,6 +85,12 @@ class FlowError final : public MeshError {
     for (const auto& c : connections_)
       for (int k = 0; k < n && c.face < 0; ++k) nodes.push_back(mesh.node_id[mesh.cells[c.row * n + k]]);
     nodes = base::gather_over_ranks(*mesh.comm, nodes);
+    std::vector<int> in_rock(wells_.wells.size(), 0);
+    for (const auto& c : connections_)
+      if (c.face < 0) in_rock[c.well] = 1;
+    in_rock = base::max_over_ranks(*mesh.comm, in_rock);
+    for (std::size_t w = 0; w < in_rock.size(); ++w)
+      if (in_rock[w]) in_rock_.insert(wells_.wells[w].name);
     const std::set<GlobalIndex> at_wells(nodes.begin(), nodes.end());
     is_at_well_.resize(mesh.n_owned_cells, 0);
     for (LocalIndex k = 0; k < mesh.n_owned_cells * n; ++k)
@@ -159,6 +172,7 @@ class FlowError final : public MeshError {
   std::vector<WellConnection> connections_;
   std::vector<Real> index_of_wells_;       // sum of W over all ranks
   std::vector<char> is_at_well_;           // [owned cell]
+  std::set<std::string> in_rock_;          // wells
   std::map<std::string, int> conditions_;  // boundaries of those that hold pressures
   std::unique_ptr<HybridError> error_;
 };
