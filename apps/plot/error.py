@@ -1,4 +1,4 @@
-"""Where the estimated error sits: of the stress in the rock, of the jump on the fractures."""
+"""Where the estimated error sits: of the stress or the flow in the rock, of the jump on the fractures."""
 import numpy as np
 import read
 from bulk import rim
@@ -7,6 +7,12 @@ from matplotlib.colors import LogNorm
 from style import FAINT, INK, Quantity, colour_bar, draw_polygons_3d, limits, plt
 
 DECADES = 4  # that colours of the density tell apart
+
+
+def density_of(surface):
+    """Of the stress' error, or of the flow's."""
+    data = surface.cell_data
+    return (data["error density"], "error density (J/m³)") if "error density" in data else (data["flux error density"], "error density (W/m³)")
 
 
 def density_colours(density):
@@ -24,7 +30,7 @@ def jump_colours(faces):
 
 def headline(title, estimate):
     """The title with the estimates of the step."""
-    parts = [f"{name} {estimate[name]['relative']:.2g}" for name in ("stress", "jump")
+    parts = [f"{name} {estimate[name]['relative']:.2g}" for name in ("stress", "jump", "flux")
              if "relative" in estimate.get(name, {})]
     return f"{title}, relative error estimated: {', '.join(parts)}"
 
@@ -35,10 +41,11 @@ def of_plane(grid, joints, fractures):
     edges = rim(surface, fractures)
     figure, axes = plt.subplots(1, 2 if joints else 1, squeeze=False, sharex=True, sharey=True,
                                 figsize=(10 if joints else 5.5, 4.3 * np.clip(np.ptp(points[:, 1]) / np.ptp(points[:, 0]), 0.4, 2) + 0.9))
-    density, norm, colours = density_colours(surface.cell_data["error density"])
+    density, density_label = density_of(surface)
+    density, norm, colours = density_colours(density)
     axes[0, 0].add_collection(PolyCollection(surface.corners(points), array=density, cmap=colours, norm=norm,
                                              edgecolors="face", linewidths=0.2))
-    bar = colour_bar(figure, axes[0, 0], norm, colours, "error density (J/m³)")
+    bar = colour_bar(figure, axes[0, 0], norm, colours, density_label)
     bar.locator = plt.LogLocator() if isinstance(norm, LogNorm) else bar.locator
     if joints:
         faces = read.segments(joints)
@@ -61,8 +68,9 @@ def of_body(grid, joints, whole):
     surface = read.surface(grid if whole else read.behind(grid))
     figure, axes = plt.subplots(1, 2 if joints else 1, squeeze=False, figsize=(8.5 if joints else 4.5, 4.4),
                                 subplot_kw={"projection": "3d"})
-    density, norm, colours = density_colours(surface.cell_data["error density"])
-    pictures = [(surface, density, norm, colours, "error density (J/m³)")]
+    density, density_label = density_of(surface)
+    density, norm, colours = density_colours(density)
+    pictures = [(surface, density, norm, colours, density_label)]
     if joints:
         faces = read.surface(joints)
         pictures.append((faces, *jump_colours(faces)))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/types.hpp"
+#include "physics/mesh_error.hpp"
 
 #include <map>
 #include <optional>
@@ -15,14 +16,16 @@ class Section;
 namespace sprekk::model {
 
 /// A number of the last state.
-struct Quantity {
-  std::string what = "slip";               ///< one of names()
-  std::string boundary, component = "x";   ///< of a reaction
-  std::vector<std::string> fractures;      ///< over which it is taken; none: all
+struct Quantity : physics::Functional {    ///< `what`: one of names()
+  std::string component = "x";             ///< of a reaction
   std::optional<Real> relative, absolute;  ///< the error that is asked for, the larger of both
 
-  static const std::vector<std::string>& names();
+  static std::vector<std::string> names();
   const char* unit(int dim) const;
+  /// A state's outputs or reactions tell its value, without an estimate.
+  bool is_of_outputs() const;
+  /// It is an energy's root.
+  bool of_all() const { return what == "stress" || what == "flux"; }
   /// `slip of "fault 3"`.
   std::string title() const;
   /// The error that is asked for at a value; 0 where that is 0 and nothing else is said.

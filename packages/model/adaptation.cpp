@@ -57,12 +57,13 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
   Steps steps(model);
   while (steps.any())
     if (!steps.take().report.converged) return {};
+  ErrorEstimator estimator(model);
   Goals goals(model);
   const auto outputs = model.system().outputs(model.state());
   const auto& quantities = scene.accuracy->quantities;
-  const bool of_stress =
-      std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.what == "stress"; });
-  goals.add(outputs, of_stress ? ErrorEstimator(model)(outputs) : ErrorEstimate());
+  const bool plain =
+      std::all_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.is_of_outputs(); });
+  goals.add(outputs, plain ? ErrorEstimate() : estimator(outputs), estimator, !plain);
   std::map<std::string, Real> values;
   for (const auto& [name, estimate] : goals.estimates()) values[name] = estimate.value;
   return values;

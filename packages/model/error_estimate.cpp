@@ -1,5 +1,6 @@
 #include "model/error_estimate.hpp"
 
+#include "assembly/geometry.hpp"
 #include "assembly/prescribed_error.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::model {
 
@@ -15,6 +17,7 @@ using assembly::OutputField;
 
 namespace {
 
+constexpr Real cancelled_fluxes = 0.1;  ///< so much of terms of both signs counts in any case
 constexpr Real solve_tolerance = 1e-6;  ///< of an iterative solver; an estimate needs no more
 
 const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, const std::string& name) {
@@ -23,6 +26,7 @@ const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, cons
 
 std::unique_ptr<physics::StressRecovery> make_recovery(const Model& model,
                                                        const physics::ByField<const fields::Layout*>& layouts) {
+  if (!layouts[physics::nodal]) return nullptr;
   return physics::make_stress_recovery(Teuchos::rcpFromRef(model.mesh()), layouts,
                                        physics::elasticity(model.scene(), model.mesh()));
 }
@@ -33,7 +37,11 @@ Real share(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / st
 }  // namespace
 
 nlohmann::json ErrorEstimate::summary() const {
-  nlohmann::json result = {{"stress", {{"relative", relative_stress}, {"energy_norm", stress}}}};
+  nlohmann::json result = nlohmann::json::object();
+  for (const auto& flux : fluxes)
+    result["flux"] = {{"relative", flux.whole > 0 ? flux.error / flux.whole : 0}, {"energy_norm", flux.error}};
+  if (energy.empty()) return result;
+  result["stress"] = {{"relative", relative_stress}, {"energy_norm", stress}};
   if (!failure.empty())
     result["jump"] = {{"failure", failure}};
   else if (fields.size() > 1)
@@ -46,6 +54,9 @@ ErrorEstimator::ErrorEstimator(Model& model)
       blocks_{block("displacement"), block("side bubble"), block("tip displacement")},
       recovery_(make_recovery(model, layouts())) {
   section_ = std::pow(mesh::largest_extent(model.mesh()), model.mesh().dim() - 1);
+  physics::for_each_physics([&](auto physics) {
+    if (auto error = physics.mesh_error(model.setting(), model.system())) flux_errors_.push_back(std::move(error));
+  });
 }
 
 int ErrorEstimator::block(const std::string& name) const {
@@ -63,13 +74,28 @@ physics::ByField<const fields::Layout*> ErrorEstimator::layouts() const {
 
 ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs) {
   const auto scope = model_.timers().scope("error estimate");
+  ErrorEstimate estimate;
+  for (const auto& error : flux_errors_) {
+    estimate.fluxes.push_back(flux_error(*error));
+    auto density = estimate.fluxes.back().energy;
+    mesh::for_shape(model_.mesh().shape, [&](auto shape) {
+      for (std::size_t c = 0; c < density.size(); ++c)
+        density[c] /=
+            assembly::cell_mean<shape()>(model_.mesh(), static_cast<LocalIndex>(c), [](const auto&) { return 1; })[0];
+    });
+    estimate.fields.push_back({.name = "flux error density",
+                               .unit = "W/m^3",
+                               .entity = fields::Entity::cell,
+                               .n_components = 1,
+                               .values = std::move(density)});
+  }
+  if (!recovery_) return estimate;
   physics::ByField<RCP<const fields::Vector>> displacement;
   for (std::size_t k = 0; k < displacement.size(); ++k)
     if (blocks_[k] >= 0) displacement[k] = model_.state()[blocks_[k]];
   auto error = (*recovery_)(displacement);
   const auto& scales = model_.system().scales();
   const Real energy = scales.at("stress") * scales.at("displacement");
-  ErrorEstimate estimate;
   estimate.stress = error.error;
   estimate.stress_norm = error.stress;
   estimate.energy = error.energy;
@@ -83,6 +109,86 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   return estimate;
 }
 
+std::vector<Real> ErrorEstimator::by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const {
+  std::vector<Real> result(model_.mesh().n_owned_cells, 0);
+  for (std::size_t k = 0; k < squares.size(); ++k) result[error.cells()[k]] += squares[k];
+  return result;
+}
+
+ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const {
+  ErrorEstimate::Flux flux;
+  auto parts = error.of_state(model_.state(), model_.time());
+  std::vector<Real> squares;
+  std::array<Real, 2> sums{};
+  for (std::size_t k = 0; k < error.n_of_energy(); ++k) {
+    squares.push_back(parts.error[k] * parts.error[k]);
+    sums[0] += squares[k];
+    sums[1] += parts.whole[k] * parts.whole[k];
+  }
+  sums = base::sum_over_ranks(*model_.mesh().comm, sums);
+  flux.parts = std::move(parts.error);
+  flux.energy = by_cell(error, squares);
+  flux.error = std::sqrt(sums[0]);
+  flux.whole = std::sqrt(sums[1]);
+  return flux;
+}
+
+/// Rates of what is stored, in the last step, of each module that stores something.
+std::vector<fields::BlockMatrix> ErrorEstimator::storage() const {
+  auto& system = model_.system();
+  std::vector<fields::BlockMatrix> all;
+  for (std::size_t k = 0; k < system.modules().size(); ++k)
+    if (system.modules()[k]->declare(model_.mesh()).stores)
+      system.module_jacobian(static_cast<int>(k), model_.state(), all.emplace_back(system.create_matrix()));
+  return all;
+}
+
+std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
+    const physics::Functional& J, const std::vector<std::vector<ErrorEstimate::Flux>>& steps) {
+  const auto scope = model_.timers().scope("error estimate");
+  const auto knowing =
+      std::find_if(flux_errors_.begin(), flux_errors_.end(), [&](const auto& e) { return e->knows(J.what); });
+  if (knowing == flux_errors_.end()) return std::nullopt;
+  auto& error = **knowing;
+  const auto number = knowing - flux_errors_.begin();
+  OfFunctional result{error.value(J, model_.state()), std::numeric_limits<Real>::infinity(), {}};
+  auto right_side = fields::create_like(model_.state()), z = fields::create_like(model_.state());
+  error.add_derivative(J, model_.state(), right_side);
+  const auto rates = storage();
+  auto product = fields::create_like(model_.state());
+  result.indicators.assign(model_.mesh().n_owned_cells, 0);
+  std::vector<Real> products(error.cells().size(), 0);
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    if (!model_.newton().answer(model_.state(), right_side, z, solve_tolerance).converged) return result;
+    const auto parts = error.of_answer(model_.state(), z).error;
+    const auto& of_step = (*step)[number];
+    std::vector<Real> squares;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      products[k] += of_step.parts[k] * parts[k];
+      if (k < error.n_of_energy())
+        squares.push_back(parts[k] * parts[k]);
+      else
+        result.indicators[error.cells()[k]] += std::abs(of_step.parts[k] * parts[k]);
+    }
+    const auto weight = by_cell(error, squares);
+    for (std::size_t c = 0; c < weight.size(); ++c) result.indicators[c] += std::sqrt(weight[c] * of_step.energy[c]);
+    for (auto& block : right_side) block->putScalar(0);
+    for (const auto& of_module : rates) {
+      of_module.apply(z, product);
+      for (std::size_t b = 0; b < product.size(); ++b) right_side[b]->update(1, *product[b], 1);
+    }
+    hold(right_side);
+  }
+  std::array<Real, 2> sums{};  // with signs and without
+  for (const Real share : by_cell(error, products)) {
+    sums[0] += share;
+    sums[1] += std::abs(share);
+  }
+  sums = base::sum_over_ranks(*model_.mesh().comm, sums);
+  result.error = std::max(std::abs(sums[0]), cancelled_fluxes * sums[1]);
+  return result;
+}
+
 std::vector<Real> ErrorEstimator::missed() const {
   const auto& mesh = model_.mesh();
   const auto conditions =
@@ -91,6 +197,16 @@ std::vector<Real> ErrorEstimator::missed() const {
       assembly::prescribed_error(mesh, model_.system().layouts()[blocks_[physics::nodal]], conditions, model_.time());
   const auto view = error.getLocalViewHost(Tpetra::Access::ReadOnly);
   return {view.data(), view.data() + view.extent(0)};
+}
+
+void ErrorEstimator::hold(fields::BlockVector& right_side) const {
+  for (std::size_t b = 0; b < right_side.size(); ++b) {
+    const auto constrained =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model_.system().constrained(static_cast<int>(b)));
+    const auto view = right_side[b]->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < constrained.extent(0); ++i)
+      if (constrained(i)) view(i, 0) = 0;
+  }
 }
 
 void ErrorEstimator::prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,14 @@ struct ErrorEstimate {
   Real jump = 0, relative_jump = 0;      ///< of the jumps of all faces in L2, m sqrt(m^2) (2D: m sqrt(m)); by the jumps
   Real stress_norm = 0;                  ///< that of the stress, sqrt(J)
   std::vector<Real> energy;              ///< [owned cell] of the stress' error, J
-  std::string failure;                   ///< why there is no estimate of the jumps
+  /// Of balances that have an error of their own, see physics::MeshError.
+  struct Flux {
+    std::vector<Real> parts;    ///< [component]
+    std::vector<Real> energy;   ///< [owned cell] of its error, W
+    Real error = 0, whole = 0;  ///< of all in the norm of the energy, sqrt(W)
+  };
+  std::vector<Flux> fluxes;
+  std::string failure;  ///< why there is no estimate of the jumps
   /// The outputs of the state with what it lacks by estimate; empty where there is no estimate of the jumps.
   std::vector<assembly::OutputField> improved;
   /// By how much the reactions are too small, as System::reactions(); empty where there is no such estimate.
@@ -43,6 +51,16 @@ class ErrorEstimator {
   /// From now on that of the reactions is wanted, without fractures, too.
   void want_reactions() { wants_reactions_ = true; }
 
+  /// The error of a functional that a balance knows.
+  struct OfFunctional {
+    Real value, error;             ///< error: infinite where there is no answer
+    std::vector<Real> indicators;  ///< [owned cell] the product of the norms of both errors
+  };
+  /// None of all balances knows it: no value. At the end of steps whose estimates these are, the last that of the
+  /// present state: what each of them has left out is carried on to the end. Collective.
+  std::optional<OfFunctional> of_functional(const physics::Functional& J,
+                                            const std::vector<std::vector<ErrorEstimate::Flux>>& steps);
+
   /// Where on the mesh the integral of d . [[u]] over fracture faces errs: the energy of the error of the stress, J
   /// [owned cell], of the linearised problem's answer to the forces d on the sides plus and -d on the sides minus. `d`
   /// [owned fracture face * dim] is in the faces' frames. Empty: there is no answer. Collective.
@@ -60,9 +78,16 @@ class ErrorEstimator {
   /// Sets the rows of prescribed unknowns to these values of nodes, and others to zero; without values all.
   void prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const;
 
+  ErrorEstimate::Flux flux_error(physics::MeshError& error) const;
+  std::vector<Real> by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const;
+  std::vector<fields::BlockMatrix> storage() const;
+  /// Sets all rows of prescribed unknowns to zero.
+  void hold(fields::BlockVector& right_side) const;
+
   Model& model_;
-  physics::ByField<int> blocks_;  // of displacements, -1: there is none
-  std::unique_ptr<physics::StressRecovery> recovery_;
+  std::vector<std::unique_ptr<physics::MeshError>> flux_errors_;
+  physics::ByField<int> blocks_;                       // of displacements, -1: there is none
+  std::unique_ptr<physics::StressRecovery> recovery_;  // null: nothing deforms
   bool wants_reactions_ = false;
   Real section_;  // of a body of the domain's largest extent, m^2 (2D: m)
 };

@@ -155,16 +155,39 @@ bool Goals::others_slip() const {
 
 bool Goals::need(bool last) const {
   const auto& quantities = model_.scene().accuracy->quantities;
-  return last ||
+  return last || model_.system().has_rates() ||
          std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.what == "slip"; });
 }
 
-void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate) {
+/// What is of a balance with an error of its own; false: it is of another.
+bool Goals::add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last) {
+  if (quantity.what == "flux") {
+    const auto& now = fluxes_.back().front();
+    estimates_[name] = {now.whole, now.error};
+    auto& bound = bounds_[name];
+    bound.resize(now.energy.size(), 0);
+    for (std::size_t c = 0; c < bound.size(); ++c) bound[c] = std::max(bound[c], now.energy[c]);
+    return true;
+  }
+  if (!last || fluxes_.back().empty()) return !fluxes_.back().empty();
+  const auto of_functional = estimator.of_functional(quantity, fluxes_);
+  if (!of_functional) return false;
+  estimates_[name] = {of_functional->value, of_functional->error};
+  bounds_[name] = of_functional->indicators;
+  return true;
+}
+
+void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
+                bool last) {
   follow_slip(outputs, estimate);
-  for (const auto& [name, quantity] : model_.scene().accuracy->quantities)
+  if (!model_.system().has_rates()) fluxes_.clear();
+  fluxes_.push_back(estimate.fluxes);
+  for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
+    if (add_flux(name, quantity, estimator, last)) continue;
     estimates_[name] = quantity.what == "stress"     ? Estimate{estimate.stress_norm, estimate.stress}
                        : quantity.what == "reaction" ? of_boundary(quantity, estimate)
                                                      : of_fractures(quantity, outputs, estimate);
+  }
 }
 
 void Goals::weigh(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
@@ -172,6 +195,7 @@ void Goals::weigh(const std::vector<OutputField>& outputs, const ErrorEstimate& 
   const bool others = others_slip();
   if (others || last) weighted_ = slips_;
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
+    if (!quantity.is_of_outputs() && quantity.what != "stress") continue;  // add() has them
     if (!last && !(others && quantity.what == "slip")) continue;
     const auto energies = this->energies(quantity, outputs, estimate, estimator);
     auto& bound = bounds_[name];

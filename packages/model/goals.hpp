@@ -18,8 +18,9 @@ class Goals {
   /// Whether a state has to be added: the last one, and with slip, which adds up, each. Stored data.
   bool need(bool last) const;
   /// Takes the present state, with its outputs and their errors. A face that does not slip in a step keeps what its
-  /// slip lacked before.
-  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate);
+  /// slip lacked before. `last`: no other state follows.
+  void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
+           bool last);
   /// Weighs cells for the state added last: if it is the `last` one, and for slip where others slip than before.
   void weigh(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate,
              ErrorEstimator& estimator, bool last);
@@ -45,9 +46,12 @@ class Goals {
   std::vector<Real> energies(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                              const ErrorEstimate& estimate, ErrorEstimator& estimator) const;
 
+  bool add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last);
+
   Model& model_;
-  std::vector<Real> plastic_;           // jump of the last state, as in its output
-  std::vector<Lack> lacks_;             // [owned fracture face]
+  std::vector<std::vector<ErrorEstimate::Flux>> fluxes_;  // of all steps
+  std::vector<Real> plastic_;                             // jump of the last state, as in its output
+  std::vector<Lack> lacks_;                               // [owned fracture face]
   std::vector<char> slips_, weighted_;  // [owned fracture face] in the last step, and when cells were weighted last
   std::map<std::string, Estimate> estimates_;
   std::map<std::string, std::vector<Real>> bounds_;  // [quantity][owned cell]

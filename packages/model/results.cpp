@@ -288,7 +288,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
     const auto estimate = (*estimator_)(outputs);
     step["error_estimate"] = estimate.summary();
     if (goals_ && report.converged) {
-      goals_->add(outputs, estimate);
+      goals_->add(outputs, estimate, *estimator_, last);
       goals_->weigh(outputs, estimate, *estimator_, last);
     }
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());

@@ -74,7 +74,17 @@ void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
       comparison.check_name("Accuracy", place + " > \"boundary\"", quantity.boundary, comparison.names().boundaries);
     if (quantity.component == "z" && comparison.names().dim == 2)
       comparison.fail(place + " > \"component\"", "is z, must be x or y in 2D");
-    const bool of_fractures = quantity.what != "stress" && quantity.what != "reaction";
+    std::string why = fmt::format("\"quantity\": is \"{}\", of which the scene has nothing", quantity.what);
+    physics::for_each_physics([&](auto physics) {
+      if (physics.is_in(comparison.scene()) && physics::has(physics.quantities(), quantity.what))
+        why = physics.refuses(comparison.scene(), quantity);
+    });
+    const auto entry = why.find("\": ");  // that it is about
+    if (!why.empty() && entry != std::string::npos)
+      comparison.fail(place + " > " + why.substr(0, entry + 1), why.substr(entry + 3));
+    else if (!why.empty())
+      comparison.fail(place, why);
+    const bool of_fractures = quantity.boundary.empty() && quantity.well.empty() && !quantity.of_all();
     if (const auto& all = comparison.names().fractures; of_fractures && all && all->empty())
       comparison.fail(place, fmt::format("\"quantity\" is \"{}\", and the mesh has no fractures", quantity.what));
   }

@@ -6,6 +6,7 @@
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
 #include "physics/fluid_change.hpp"
+#include "physics/mesh_error.hpp"
 
 #include <functional>
 #include <map>
@@ -13,6 +14,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace sprekk::assembly {
+class System;
+}
 
 namespace sprekk::physics {
 
@@ -103,6 +108,12 @@ struct Physics {
   static std::string needs_implicit_euler(const Scene&) { return ""; }
   /// Why there is no error estimate with it; empty if there is.
   static std::string no_error_estimate(const Scene&) { return ""; }
+  /// What it can be asked for with an error, by Functional::what.
+  static std::vector<std::string> quantities() { return {}; }
+  /// Why it cannot be asked for one of these, after the place of the entry if it has one; empty: it can.
+  static std::string refuses(const Scene&, const Functional&) { return ""; }
+  /// The error of its unknowns; null: it has none. Refers to the system. Collective.
+  static std::unique_ptr<MeshError> mesh_error(const Setting&, assembly::System&) { return nullptr; }
   /// What the fluid carries for it.
   static std::vector<Carried> carried(const Scene&) { return {}; }
   /// The field on facets whose balance in fractures gets the power that their sliding dissipates; empty: none.

@@ -31,7 +31,7 @@ class Case:
     name: str
     scene: str
     quantity: str
-    fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component
+    fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component; of a flow "well" or "boundary" and its name
     coarse: object        # entries, or a function of a folder that makes a mesh: where adaptive runs begin
     uniform: list         # the same, from coarse to fine
     exact: float = None   # None: that of a run of order 2 that is asked for `reference`
@@ -83,6 +83,9 @@ def cases():
     junction = lambda h, ratio: lambda folder: meshes.t_junction(folder, h, ratio, 32000)  # noqa: E731
     strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
     wavy = exact.Wavy(0.4, 1, 0.25)
+    network = dict(scene="flow/network_2d.xml", quantity="flow", coarse=box(10)[0], uniform=box(10, 20, 40, 80, 160, 320), orders=(1,))
+    steady = ("Flow.compressibility=0", "Time.steps=1")
+    well = ("Flow.Wells.well.points={60, 70}", "Flow.Wells.well.radius=0.1", "Flow.Wells.well.pressure=0.5e6")
     return [
         Case("crack opening", **crack("sneddon", "opening", 1.5e-3 * mean)),
         Case("sliding", **crack("sneddon_shear", "slip", 1.5e-3 * mean)),
@@ -100,6 +103,8 @@ def cases():
         Case("X crossing", "verification/crossing_2d.xml", "slip", "flat", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
         Case("reaction", "verification/free_sides_2d.xml", "reaction", "north x", box(8)[0], box(8, 16, 32, 64, 128), free_sides_shear(), sets=simplices),
         Case("compliant joint", "verification/free_sides_2d.xml", "shear force", "", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
+        Case("well in a network", **network, fractures="well well", sets=(*steady, *well)),
+        Case("flow through a network", **network, fractures="boundary west", sets=steady),
     ]
 
 
@@ -133,6 +138,8 @@ def start(options, case, order, source, asked, label, others=()):
         sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={asked:g}", f"Accuracy.seconds={options.seconds:g}"]
         if case.quantity == "reaction":
             sets += [f"{goal}.{entry}={word}" for entry, word in zip(("boundary", "component"), case.fractures.split())]
+        elif case.quantity == "flow":
+            sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")
     command = [str(options.binary), "run", str(ROOT / "xml" / case.scene), "--output", str(directory)]
@@ -152,6 +159,9 @@ def value_of(case, results):
     if case.quantity == "reaction":
         boundary, component = case.fractures.split()
         return results["steps"][-1]["reactions"][boundary]["xyz".index(component)]
+    if case.quantity == "flow":
+        kind, name = case.fractures.split()
+        return results["steps"][-1]["wells"][name]["rate"] if kind == "well" else results["steps"][-1]["inflows"][name]
     fractures = results["steps"][-1]["fractures"]
     chosen = [fractures[name] for name in (case.fractures.split(",") if case.fractures else fractures)]
     area = sum(one["area"] for one in chosen)

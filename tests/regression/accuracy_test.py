@@ -5,6 +5,7 @@ import math
 from program import ProgramTest, main
 
 SHEAR, CRACK, CROSSING = "verification/sneddon_shear.xml", "verification/sneddon.xml", "verification/crossing_2d.xml"
+NETWORK = "flow/network_2d.xml"
 EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
 QUIET = "Output.vtu=false"
 
@@ -73,6 +74,41 @@ class Accuracy(ProgramTest):
             self.assertEqual(len(accuracy["meshes"]), 1)
             self.assertIn(words, accuracy["ended"])
 
+    def test_flow_in_rock_and_fractures(self):
+        """Of xml/flow/network_2d.xml, that no time passes in: flow through the west and into a well on a fracture, and pressure."""
+        steady = ["Flow.compressibility=0", "Time.steps=1", "Mesh.cells={10, 10}", QUIET]
+        well = ["Flow.Wells.well.points={60, 70}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.pressure=0.5e6"]
+        sets = [*goal("flow", "through", boundary="west", relative=0.02), *goal("flow", "out", well="well", relative=0.02),
+                *goal("pressure", "in", fractures="{short, branch}", relative=0.005)]
+        runs = [self.run_scene(NETWORK, *steady, *well, *sets, ranks=ranks) for ranks in (1, 3)]
+        fine = self.run_scene(NETWORK, *steady, *well, *goal("flow", "through", boundary="west", relative=0.2), "Mesh.cells={160, 160}", "Accuracy.cells=60000")
+        for results in runs:
+            accuracy = results["accuracy"]
+            self.assertTrue(accuracy["reached"], accuracy["ended"])
+            self.assertEqual([accuracy["quantities"][name]["unit"] for name in ("through", "out", "in")], ["m^2/s", "m^2/s", "Pa"])
+            self.assertEqual(accuracy["quantities"]["out"]["title"], 'flow of "well"')
+            totals = results["steps"][-1]
+            self.assertAlmostEqual(totals["wells"]["well"]["rate"] / accuracy["quantities"]["out"]["value"], 1)
+            self.assertAlmostEqual(totals["inflows"]["west"] / accuracy["quantities"]["through"]["value"], 1)
+        for first, other in zip(*(run["accuracy"]["meshes"] for run in runs)):
+            self.assertEqual(first["cells"], other["cells"])
+            for name, quantity in first["quantities"].items():
+                for key in ("value", "error"):
+                    self.assertAlmostEqual(quantity[key] / other["quantities"][name][key], 1, delta=1e-4)
+        through = runs[0]["accuracy"]["quantities"]["through"]
+        self.assertLess(abs(through["value"] - fine["accuracy"]["quantities"]["through"]["value"]), 1.5 * through["asked"])
+
+    def test_errors_of_earlier_steps_last(self):
+        """Flow that hardly changes any more has the error of steady flow, which all steps before have made."""
+        goals = [*goal("flow", "through", boundary="west", relative=0.5), *goal("pressure", "in", fractures="{short, branch}", relative=0.5)]
+        single = ["Mesh.cells={20, 20}", "Accuracy.cells=10", QUIET]  # the first mesh is the last
+        errors = []
+        for sets in (["Flow.compressibility=0", "Time.steps=1"], ["Time.end=1e5", "Time.steps=40"]):
+            results = self.run_scene(NETWORK, *goals, *single, *sets)
+            errors.append({name: one["error"] for name, one in results["accuracy"]["meshes"][0]["quantities"].items()})
+        for name, steady in errors[0].items():
+            self.assertAlmostEqual(errors[1][name] / steady, 1, delta=0.03)
+
     def test_refuses_in_words(self):
         good = goal("slip", relative=0.01)
         self.refuse(['Sprekk > Mesh > "cell": is quadrilateral, must be triangle with "Accuracy"'], CROSSING, *good, "Mesh.cell=quadrilateral")
@@ -85,7 +121,19 @@ class Accuracy(ProgramTest):
         self.refuse(['"component": is z, must be x or y in 2D'], CROSSING, *goal("reaction", relative=0.01, boundary="north", component="z"))
         self.refuse(['"boundary": missing; it is required of a reaction'], CROSSING, *goal("reaction", relative=0.01))
         self.refuse(['"boundary": is "nort", must be one of', 'Did you mean "north"?'], CROSSING, *goal("reaction", relative=0.01, boundary="nort"))
-        self.refuse(['Accuracy: is of stress and jumps without a fluid; not available with "Flow"'], "poro/shut_in_2d.xml", *good)
+        self.refuse(['Accuracy: is of a fluid in rigid rock, or of rock without one; needs "Flow > rigid rock"'], "poro/shut_in_2d.xml", *good)
+        self.refuse(['goal > "quantity": is "slip", of which the scene has nothing'], NETWORK, *good)
+        self.refuse(['goal: needs "boundary" or "well"'], NETWORK, *goal("flow", relative=0.01))
+        self.refuse(['goal > "boundary": no pressure is given on "north", so that its flow is'], NETWORK, *goal("flow", boundary="north", relative=0.01))
+        self.refuse(['goal > "well": is "one", which is no section of Flow > Wells'], NETWORK, *goal("pressure", well="one", relative=0.01))
+        self.refuse(['Accuracy: is of the scheme rt0; not available with "Flow > scheme" tpfa'], NETWORK, *goal("pressure", relative=0.01), "Flow.scheme=tpfa")
+        through_rock = ["Flow.Wells.well.points={61, 71, 11, 61, 71, 21}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.rate=1e-6"]
+        self.refuse(["goal: is not available with wells through rock"], "flow/network_3d.xml", *goal("flow", boundary="west", relative=0.01), *through_rock)
+        in_rock = ["Flow.Wells.well.points={61, 72}", *through_rock[1:]]
+        self.refuse(["goal: is not available with wells, whose power"], NETWORK, *goal("flux", relative=0.01), *in_rock)
+        _, said = self.call("run", self.scene(NETWORK), "--output", "out",
+                            *(word for entry in (*goal("pressure", well="well", relative=0.01), *in_rock) for word in ("--set", entry)), expect=1)
+        self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
         self.assertIn('--restart: does not go with the section "Accuracy"', said)

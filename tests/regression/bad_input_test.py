@@ -459,7 +459,7 @@ class Scenes(BadInput):
         refuse(['Materials > granite: "Biot coefficient" = 1.2-0*x is 1.2 at (', "must be between 0 and 1"],
                "Materials.granite.Biot coefficient=1.2-0*x")
         refuse(['middle > "fluid pressure": is not given but found, with "Flow"'], "Fractures.middle.fluid pressure=1")
-        refuse(['Output > "error estimate": is of stress and jumps without a fluid'], "Output.error estimate=true")
+        refuse(['Output > "error estimate": is of a fluid in rigid rock, or of rock without one'], "Output.error estimate=true")
         refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
         refuse(['Materials > rough joint: give either "friction coefficient" or "friction angle"'], "Materials.rough joint.friction angle=30")
 

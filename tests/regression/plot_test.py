@@ -199,6 +199,10 @@ class Pictures(PlotTest):
         made = self.figures("out")["error"]
         self.expect_labels(made, "error density (J/m³)", "error of the jump (")
         self.assertIn("relative error estimated: stress 0.", made._suptitle.get_text())
+        self.run_scene("flow/network_2d.xml", "Output.error estimate=true")
+        made = self.figures("out")["error"]
+        self.expect_labels(made, "error density (W/m³)")
+        self.assertIn("relative error estimated: flux 0.", made._suptitle.get_text())
 
     def test_loops_are_the_means_of_the_results(self):
         content = self.run_scene("verification/cyclic_2d.xml")

@@ -138,7 +138,54 @@ void compare_rock(Comparison& c, const Material& rock) {
 }  // namespace
 
 std::string Flow::no_error_estimate(const Scene& scene) {
-  return scene.flow ? "is of stress and jumps without a fluid; not available with \"Flow\"" : "";
+  if (!scene.flow) return "";
+  const auto& flow = *scene.flow;
+  const auto any = [](const auto& all, const auto& has) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
+  };
+  if (Mechanics::is_in(scene))
+    return "is of a fluid in rigid rock, or of rock without one; needs \"Flow > rigid rock\"";
+  if (flow.scheme != "auto" && flow.scheme != "rt0")
+    return fmt::format("is of the scheme rt0; not available with \"Flow > scheme\" {}", flow.scheme);
+  if (any(scene.boundary_conditions, [](const auto& condition) { return condition.conductance.has_value(); }))
+    return "is of boundaries whose pressure or flux is given; not available with \"conductance\"";
+  if (any(scene.regions, [](const auto& region) { return region.pressure.has_value(); }))
+    return "is of pressures that are given on boundaries; not available with one of a region";
+  if (any(scene.fractures, [](const auto& fracture) { return !fracture.cuts.empty(); }))
+    return "is of fractures whose fillings are one; not available with \"cuts\"";
+  return "";
+}
+
+std::string Flow::refuses(const Scene& scene, const Functional& J) {
+  const bool of_well = !J.well.empty();
+  const auto absent = [&](const char* entry, const char* of) {
+    return fmt::format("\"{}\": must be absent: \"{}\" {}", entry, J.what, of);
+  };
+  if (J.what == "flux" && of_well) return absent("well", "is of all rock and fractures");
+  if (J.what == "flux" && !J.boundary.empty()) return absent("boundary", "is of all rock and fractures");
+  if (J.what != "pressure" && !J.fractures.empty()) return absent("fractures", "is not taken over them");
+  if (J.what == "pressure" && !J.boundary.empty()) return absent("boundary", "is of a well or of fractures");
+  if (J.what == "pressure" && of_well && !J.fractures.empty()) return absent("fractures", "is of the well");
+  if (J.what == "flow" && of_well == !J.boundary.empty()) return "needs \"boundary\" or \"well\"";
+  const auto& wells = scene.flow->wells;
+  if (std::any_of(wells.begin(), wells.end(), [](const auto& well) { return well.second.points.size() > 2; }))
+    return "is not available with wells through rock; in 2D wells may be on fractures";
+  if (J.what == "flux" && !wells.empty())
+    return "is not available with wells, whose power is not told from their radius";
+  if (of_well) {
+    const auto found = wells.find(J.well);
+    if (found == wells.end()) return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
+    if (J.what == "flow" && !found->second.pressure)
+      return fmt::format("\"well\": the rate of \"{}\" is given", J.well);
+    if (J.what == "pressure" && found->second.pressure)
+      return fmt::format("\"well\": the pressure of \"{}\" is given", J.well);
+  }
+  const auto& conditions = scene.boundary_conditions;
+  if (J.what == "flow" && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
+        return one.second.boundary == J.boundary && one.second.pressure;
+      }))
+    return fmt::format("\"boundary\": no pressure is given on \"{}\", so that its flow is", J.boundary);
+  return "";
 }
 
 void Flow::compare(Comparison& c) {

@@ -4,7 +4,9 @@
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/comparison.hpp"
 #include "physics/flow/advection.hpp"
+#include "physics/flow/flow_error.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/wells.hpp"
 #include "physics/hybrid_diffusion.hpp"
@@ -27,7 +29,7 @@ std::vector<FluxCondition> fluid_conditions(const Scene& scene, const mesh::Mesh
                          of_fractures);
 }
 
-std::vector<Well> wells(const Scene& scene, int dim) {
+std::vector<Well> wells_in(const Scene& scene, int dim) {
   std::vector<Well> wells;
   for (const auto& [name, one] : scene.flow->wells) {
     wells.push_back({.name = name,
@@ -160,6 +162,47 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
   return fractures;
 }
 
+/// Of the pores of local cells. Collective.
+Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
+  Properties<Capacity> result;
+  base::collectively(*setting.mesh.comm, [&] {
+    result = by_cell(
+        setting.scene, setting.mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
+        [&](const Material& rock, const auto& x) { return rock.capacity(of_fluid, x); });
+  });
+  return result;
+}
+
+/// What modules are made of, and the estimate of the error.
+struct Parts {
+  HybridDiffusionParameters darcy;
+  FractureFlowParameters fractures;
+  WellsParameters wells;
+};
+
+/// Collective.
+Parts parts_of(const Setting& setting, const std::vector<Carried>& all_carried) {
+  const auto& [scene, mesh, start] = setting;
+  std::optional<FluidChange> change;
+  for (const auto& carried : all_carried)
+    if (carried.change) change = carried.change;
+  Parts parts{darcy_flow(scene, mesh, change), {}, {}};
+  auto& [darcy, fractures, wells] = parts;
+  fractures = fracture_flow(scene, mesh, darcy);
+  fractures.faces = hydraulics(setting);
+  wells = {.wells = wells_in(scene, mesh.dim()),
+           .mobility = darcy.mobility,
+           .scheme = darcy.scheme,
+           .fluid = darcy.fluid,
+           .weight = darcy.weight,
+           .carried = all_carried};
+  for (const auto& face : fractures.faces) {
+    darcy.exchange.push_back(face.exchange);
+    wells.faces.push_back(face.along);
+  }
+  return parts;
+}
+
 }  // namespace
 
 bool Flow::is_in(const Scene& scene) { return scene.flow.has_value(); }
@@ -217,17 +260,10 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto& flow = *scene.flow;
   const bool deforms = Mechanics::is_in(scene);
   const auto all_carried = carried_in(scene);
-  std::optional<FluidChange> change;
-  for (const auto& carried : all_carried)
-    if (carried.change) change = carried.change;
-  auto darcy = darcy_flow(scene, mesh, change);
-  auto fractures = fracture_flow(scene, mesh, darcy);
-  fractures.faces = hydraulics(setting);
+  auto [darcy, fractures, wells] = parts_of(setting, all_carried);
+  const auto change = darcy.change;
   std::vector<Real> aperture;
-  for (const auto& face : fractures.faces) {
-    darcy.exchange.push_back(face.exchange);
-    aperture.push_back(face.along.mechanical_aperture());
-  }
+  for (const auto& face : fractures.faces) aperture.push_back(face.along.mechanical_aperture());
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
     const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
@@ -236,24 +272,11 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
       modules.push_back(
           make_fracture_advection(mesh.shape, fractures, carried, deforms, stored(carried.stored_in_fractures)));
   }
-  if (!flow.wells.empty()) {
-    WellsParameters all{.wells = wells(scene, mesh.dim()),
-                        .mobility = darcy.mobility,
-                        .scheme = darcy.scheme,
-                        .fluid = fluid,
-                        .weight = darcy.weight,
-                        .carried = all_carried};
-    for (const auto& face : fractures.faces) all.faces.push_back(face.along);
-    modules.push_back(make_wells(std::move(all)));
-  }
+  if (!flow.wells.empty()) modules.push_back(make_wells(std::move(wells)));
   modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(darcy)));
   StorageParameters storage{
       .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure, .change = change};
-  base::collectively(*mesh.comm, [&] {
-    storage.capacity = by_cell(
-        scene, mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
-        [&](const Material& rock, const auto& x) { return rock.capacity(fluid.compressibility, x); });
-  });
+  storage.capacity = capacities(setting, fluid.compressibility);
   const bool denser = fluid.compressibility > 0 || change;
   const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
                                   [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
@@ -264,6 +287,24 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (denser || deforms)
     modules.push_back(make_fracture_storage(
         {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change}));
+}
+
+std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
+  if (!is_in(setting.scene)) return nullptr;
+  auto parts = parts_of(setting, carried_in(setting.scene));
+  SPREKK_CHECK(parts.darcy.scheme == FluxScheme::rt0,
+               "{}: the estimate of the error of flow is of triangles and tetrahedra, with the scheme rt0",
+               setting.scene.origin);
+  const Real of_fluid = parts.darcy.fluid.compressibility;
+  HybridErrorParameters error{.rock = std::move(parts.darcy), .start = setting.start};
+  const auto capacity = capacities(setting, of_fluid);
+  for (LocalIndex c = 0; system.has_rates() && c < setting.mesh.n_owned_cells; ++c) {
+    const auto& of = capacity.of_cell(setting.mesh, c);
+    error.storage.push_back(of.growth + of_fluid * of.room);
+  }
+  for (const auto& face : parts.fractures.faces) error.transmissivity.push_back(face.along.transmissivity());
+  error.held = dirichlet_conditions(setting.scene.boundary_conditions, {}, names_of(setting.mesh), "face pressure");
+  return make_flow_error(system, std::move(error), std::move(parts.wells));
 }
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {

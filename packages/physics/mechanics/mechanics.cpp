@@ -310,13 +310,26 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
 }
 
 std::string Mechanics::no_error_estimate(const Scene& scene) {
-  if (!is_in(scene)) return "is of stress and jumps, and the rock does not deform";
+  if (!is_in(scene)) return has_fluid(scene) ? "" : "is of stress and jumps, and the rock does not deform";
   const auto& conditions = scene.boundary_conditions;
   if (std::any_of(conditions.begin(), conditions.end(),
                   [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))
     return "is of boundaries whose tractions or displacements are given; not available with \"foundation stiffness\"";
   if (scene.keeps_stress) return "is of the strain alone, and stress goes on from other constants or before a fill";
   return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
+}
+
+std::vector<std::string> Mechanics::quantities() {
+  return {"slip", "opening", "normal force", "shear force", "reaction", "stress"};
+}
+
+std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
+  if (!J.well.empty()) return "\"well\": is of pressure and flow alone";
+  const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
+  if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" is of none", J.what);
+  if (of_boundary && J.boundary.empty()) return "\"boundary\": missing; it is required of a reaction";
+  return of_boundary || J.boundary.empty() ? ""
+                                           : fmt::format("\"boundary\": must be absent: \"{}\" is of none", J.what);
 }
 
 std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {

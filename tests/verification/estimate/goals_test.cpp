@@ -41,7 +41,7 @@ TEST(Goals, ErrorsOfCracksAndTheirBounds) {
       const auto outputs = Outputs(model).all();
       const auto estimate = estimator(outputs);
       model::Goals goals(model);
-      goals.add(outputs, estimate);
+      goals.add(outputs, estimate, estimator, true);
       goals.weigh(outputs, estimate, estimator, true);
       const auto& goal = goals.estimates().at("goal");
       const Real ratio = goal.error / std::abs(goal.value - exact);
@@ -77,7 +77,7 @@ TEST(Goals, ErrorsOfTearing) {
     model::ErrorEstimator estimator(model);
     const auto outputs = Outputs(model).all();
     model::Goals goals(model);
-    goals.add(outputs, estimator(outputs));
+    goals.add(outputs, estimator(outputs), estimator, true);
     const auto& goal = goals.estimates().at("goal");
     const Real ratio = goal.error / std::abs(goal.value - 2e-3 * M_PI / 4);
     EXPECT_GE(ratio, 0.5);
@@ -101,7 +101,7 @@ TEST(Goals, ErrorsOfReactions) {
     estimator.want_reactions();
     const auto outputs = Outputs(model).all();
     model::Goals goals(model);
-    goals.add(outputs, estimator(outputs));
+    goals.add(outputs, estimator(outputs), estimator, true);
     const auto& goal = goals.estimates().at("goal");
     const Real ratio = goal.error / std::abs(goal.value - 0.4900271545);
     EXPECT_GE(ratio, 0.5);
