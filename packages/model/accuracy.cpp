@@ -54,7 +54,7 @@ void Quantity::describe(base::Section& s) {
   s.entry(well, "well", "-", "of a pressure: with a rate; of a flow: with a pressure");
   s.choice(component, "component", {"x", "y", "z"}, "of a reaction");
   s.entry(relative, "relative", "-", base::between(1e-8, 1), "error by the value at the end of the run");
-  const bool is_length = what == "slip" || what == "opening", is_pressure = what == "pressure";
+  const bool is_length = what.empty() || what == "slip" || what == "opening", is_pressure = what == "pressure";
   s.entry(absolute, "absolute",
           is_length     ? "m"
           : is_pressure ? "Pa"
