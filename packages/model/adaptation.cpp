@@ -29,8 +29,10 @@ std::string percent(Real part, Real whole) {
 
 std::string Adaptation::Verdict::line() const {
   const auto size = [](Real x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown"); };
-  return fmt::format("{}: {:.4g} {} +- {} ({}, asked {}), space {}, time {}", title, value, unit, size(error),
-                     percent(error, value), percent(asked, value), size(space), size(time));
+  const bool known = std::isfinite(error) && error > 0 && value != 0;  // two digits of the error, as of the value
+  const int digits = known ? static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 2 : 4;
+  return fmt::format("{}: {:.{}g} {} +- {} ({}, asked {}), space {}, time {}", title, value, std::clamp(digits, 4, 12),
+                     unit, size(error), percent(error, value), percent(asked, value), size(space), size(time));
 }
 
 namespace {
@@ -151,12 +153,18 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
                          runs_.size() > 1 && space + time <= asked});
   }
   const bool too_long = std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.asked; });
-  why_ = reached()  ? "reached"
-         : too_long ? "steps that are halved once more fail, or change it by more than is asked for"
-                    : limit(accuracy, *mesh.comm);
+  why_ = reached() ? "reached"
+         : too_long
+             ? "steps that are halved once more fail, or change it by more than is asked for (of a number that is "
+               "all but zero give the \"absolute\" error)"
+             : limit(accuracy, *mesh.comm);
+  if (!why_.empty()) return;
+  cells_ = cells_to_halve(model, goals);
+  dim_ = mesh.dim();
+  if (cells_.empty()) why_ = "no cell is to blame by the estimate";
 }
 
-void Adaptation::refine(const Model& model, const Goals& goals) {
+std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const Goals& goals) const {
   std::map<std::string, Real> weights;
   for (const auto& verdict : verdicts_) {
     const Real left = verdict.asked - verdict.time;
@@ -167,9 +175,12 @@ void Adaptation::refine(const Model& model, const Goals& goals) {
   std::vector<GlobalIndex> cells;
   for (const LocalIndex cell : marked(*mesh.comm, goals.indicators(weights), share))
     cells.push_back(mesh.origin.is_null() ? mesh.cell_id[cell] : mesh.origin->cells[cell]);
-  cells = base::gather_over_ranks(*mesh.comm, cells);
-  base::collectively(*mesh.comm, [&] {
-    if (bisection_->has_value()) (*bisection_)->refine(cells, mesh.dim());
+  return base::gather_over_ranks(*mesh.comm, cells);
+}
+
+void Adaptation::refine(const Comm& comm) {
+  base::collectively(comm, [&] {
+    if (auto& bisection = *bisection_) bisection->refine(cells_, dim_);
   });
 }
 

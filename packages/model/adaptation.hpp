@@ -39,8 +39,8 @@ class Adaptation {
   /// What results.json has of it. Stored data.
   nlohmann::json summary() const;
 
-  /// Halves the cells that matter most, once the model is not needed any more but for its mesh.
-  void refine(const Model& model, const Goals& goals);
+  /// Halves the cells that matter most, as judge() has found them, once the model is not needed any more.
+  void refine(const Comm& comm);
 
  private:
   /// What a run gave.
@@ -52,6 +52,7 @@ class Adaptation {
 
   void choose_steps(Scene scene, RCP<const Comm> comm);
   Real space_error(const std::string& name) const;
+  std::vector<GlobalIndex> cells_to_halve(const Model& model, const Goals& goals) const;
   std::string limit(const Accuracy& accuracy, const Comm& comm) const;
 
   std::shared_ptr<std::optional<mesh::Bisection>> bisection_;
@@ -60,6 +61,8 @@ class Adaptation {
   std::map<std::string, Real> time_errors_;  // by quantity; empty: a step failed
   std::vector<Run> runs_;
   std::vector<Verdict> verdicts_;
+  std::vector<GlobalIndex> cells_;  // to be halved, of all ranks
+  int dim_ = 0;
   std::string why_;
 };
 

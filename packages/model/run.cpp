@@ -268,7 +268,7 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   Results results(*model, as_read, directory, earlier);
   const auto ending = take_steps(*model, steps, results, checkpoints, adaptation, log, options.should_stop);
   if (ending == Ending::inaccurate && adaptation.goes_on()) {
-    adaptation.refine(*model, results.goals());
+    adaptation.refine(*comm);
     return ending;
   }
   tell_costs(*model, log);

@@ -1,9 +1,12 @@
 #include "model/scene_check.hpp"
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "mesh/msh_file.hpp"
 
 #include <fmt/ranges.h>
+
+#include <cmath>
 
 namespace sprekk::model {
 
@@ -64,25 +67,43 @@ void compare_error_estimate(Comparison& comparison, const std::string& place) {
   });
 }
 
-void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
+bool has_equal_steps(const Time& time) {
+  constexpr Real rounding = 1e-6;
+  const auto times = time.times();
+  const Real first = times.front() - time.start;
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (std::abs(times[k] - times[k - 1] - first) > rounding * first) return false;
+  return true;
+}
+
+void compare_accuracy(Comparison& comparison, const Accuracy& accuracy, const Time& time) {
   compare_error_estimate(comparison, "Accuracy");
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto place = fmt::format("Accuracy > quantities > {}", name);
     for (const auto& fracture : quantity.fractures)
       comparison.check_name("Accuracy", place + " > \"fractures\"", fracture, comparison.names().fractures);
-    if (!quantity.boundary.empty())
-      comparison.check_name("Accuracy", place + " > \"boundary\"", quantity.boundary, comparison.names().boundaries);
+    const bool is_there =
+        quantity.boundary.empty() ||
+        comparison.check_name("Accuracy", place + " > \"boundary\"", quantity.boundary, comparison.names().boundaries);
     if (quantity.component == "z" && comparison.names().dim == 2)
       comparison.fail(place + " > \"component\"", "is z, must be x or y in 2D");
-    std::string why = fmt::format("\"quantity\": is \"{}\", of which the scene has nothing", quantity.what);
+    if (!quantity.is_of_outputs() && !quantity.of_all() && !has_equal_steps(time))
+      comparison.fail("Time > \"schedule\"",
+                      fmt::format("must have steps of one length for the error of a {}", quantity.what));
+    std::vector<std::string> known;
+    std::optional<std::string> refused;
     physics::for_each_physics([&](auto physics) {
-      if (physics.is_in(comparison.scene()) && physics::has(physics.quantities(), quantity.what))
-        why = physics.refuses(comparison.scene(), quantity);
+      if (!physics.is_in(comparison.scene())) return;
+      const auto names = physics.quantities();
+      known.insert(known.end(), names.begin(), names.end());
+      if (physics::has(names, quantity.what)) refused = physics.refuses(comparison.scene(), quantity);
     });
+    const auto why = refused.value_or(fmt::format("\"quantity\": is \"{}\", of which the scene has nothing; it has {}",
+                                                  quantity.what, base::quoted_list(known)));
     const auto entry = why.find("\": ");  // that it is about
-    if (!why.empty() && entry != std::string::npos)
+    if (is_there && !why.empty() && entry != std::string::npos)
       comparison.fail(place + " > " + why.substr(0, entry + 1), why.substr(entry + 3));
-    else if (!why.empty())
+    else if (is_there && !why.empty())
       comparison.fail(place, why);
     const bool of_fractures = quantity.boundary.empty() && quantity.well.empty() && !quantity.of_all();
     if (const auto& all = comparison.names().fractures; of_fractures && all && all->empty())
@@ -128,7 +149,8 @@ Comparison compared(const Draft& draft, MeshNames names) {
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);
   if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"");
-  if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, *draft.value.accuracy);
+  if (draft.value.accuracy && is_sound(draft, "Accuracy"))
+    compare_accuracy(comparison, *draft.value.accuracy, draft.value.time);
   return comparison;
 }
 

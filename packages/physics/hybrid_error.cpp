@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -58,6 +59,12 @@ class Places {
   RCP<const fields::Import> import_;
 };
 
+/// (e - 1)/c.
+Real potential_of(const laws::Fluid& fluid, Real p) {
+  const Real c = fluid.compressibility;
+  return c == 0 ? p : std::expm1(c * (p - fluid.reference_pressure)) / c;
+}
+
 /// Potentials of a state, or what they change by in an answer to small forces. Those of a compressible fluid are
 /// (e - 1)/c, of which the flux of mass is the gradient.
 class Potentials {
@@ -79,10 +86,7 @@ class Potentials {
   Real operator()(Of of, LocalIndex i) const {
     return is_answer_ ? fluid_.density(p_[of][i]) * dp_[of][i] : of_pressure(p_[of][i]);
   }
-  Real of_pressure(Real p) const {
-    const Real c = fluid_.compressibility;
-    return c == 0 ? p : std::expm1(c * (p - fluid_.reference_pressure)) / c;
-  }
+  Real of_pressure(Real p) const { return potential_of(fluid_, p); }
   /// What drives a flow from an entity to one of its ends, see laws::Fluid.
   Real drop(Of of, LocalIndex entity, LocalIndex end, Real lift) const {
     const Real a = p_[of][entity], b = p_[facet][end];
@@ -373,18 +377,26 @@ class Error final : public HybridError {
         }
       add_held_face({true, face.cell, opposite(face.local_face), begin, held_.size()});
     }
+    std::map<std::pair<LocalIndex, int>, int> conditions;  // of ends, of which several boundaries may have one
     for (const auto& rim : mesh_->facets->rims) {
       const LocalIndex facet = mesh_->facets->ridge[rim.face * dim + rim.ridge];
       if (rim.face >= mesh_->n_owned_fracture_faces || held[facet] == 0) continue;
-      const auto& face = mesh_->fracture_faces[rim.face];
-      const int condition = condition_of(rim.boundary, -1, face.fracture),
-                last = dim == 2 ? rim.ridge : (rim.ridge + 1) % 3;
+      const int condition = condition_of(rim.boundary, -1, mesh_->fracture_faces[rim.face].fracture);
+      if (condition == static_cast<int>(parameters_.held.size())) continue;  // something else holds it
+      const auto [known, is_new] = conditions.emplace(std::pair(rim.face, rim.ridge), condition);
+      if (!is_new) known->second = std::min(known->second, condition);
+    }
+    for (const auto& [end, condition] : conditions) {
+      const auto [f, ridge] = end;
+      const auto& face = mesh_->fracture_faces[f];
+      const LocalIndex facet = mesh_->facets->ridge[f * dim + ridge];
+      const int last = dim == 2 ? ridge : (ridge + 1) % 3;
       const auto begin = held_.size();
-      for (const auto& [a, b] : {std::pair(rim.ridge, rim.ridge), std::pair(rim.ridge, last), std::pair(last, last)})
-        held_.push_back({faces_[rim.face].place[InFace::place(a, b)], condition,
+      for (const auto& [a, b] : {std::pair(ridge, ridge), std::pair(ridge, last), std::pair(last, last)})
+        held_.push_back({faces_[f].place[InFace::place(a, b)], condition,
                          x_of(face.nodes[mesh::minus][a], face.nodes[mesh::minus][b]), facet,
                          a == b ? 1.0 / 6 : 2.0 / 3});
-      if (dim == 3) add_held_face({false, rim.face, opposite_ridge(rim.ridge), begin, held_.size()});
+      if (dim == 3) add_held_face({false, f, opposite_ridge(ridge), begin, held_.size()});
     }
   }
   void add_held_face(const HeldFace& face) {
@@ -524,7 +536,7 @@ class Error final : public HybridError {
   void find_before() {
     for (LocalIndex c = 0; !parameters_.storage.empty() && c < mesh_->n_owned_cells; ++c)
       before_.push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
-        return parameters_.rock.initial ? (*parameters_.rock.initial)(x, 0) : 0;
+        return parameters_.rock.initial ? potential_of(parameters_.rock.fluid, (*parameters_.rock.initial)(x, 0)) : 0;
       }));
     time_before_ = parameters_.start;
   }

@@ -166,7 +166,8 @@ std::string Flow::refuses(const Scene& scene, const Functional& J) {
   if (J.what != "pressure" && !J.fractures.empty()) return absent("fractures", "is not taken over them");
   if (J.what == "pressure" && !J.boundary.empty()) return absent("boundary", "is of a well or of fractures");
   if (J.what == "pressure" && of_well && !J.fractures.empty()) return absent("fractures", "is of the well");
-  if (J.what == "flow" && of_well == !J.boundary.empty()) return "needs \"boundary\" or \"well\"";
+  if (J.what == "flow" && of_well == !J.boundary.empty())
+    return of_well ? "is of a \"boundary\" or a \"well\", not of both" : "needs \"boundary\" or \"well\"";
   const auto& wells = scene.flow->wells;
   if (std::any_of(wells.begin(), wells.end(), [](const auto& well) { return well.second.points.size() > 2; }))
     return "is not available with wells through rock; in 2D wells may be on fractures";
@@ -176,15 +177,16 @@ std::string Flow::refuses(const Scene& scene, const Functional& J) {
     const auto found = wells.find(J.well);
     if (found == wells.end()) return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
     if (J.what == "flow" && !found->second.pressure)
-      return fmt::format("\"well\": the rate of \"{}\" is given", J.well);
+      return fmt::format("\"well\": the rate of \"{}\" is given; ask for its pressure", J.well);
     if (J.what == "pressure" && found->second.pressure)
-      return fmt::format("\"well\": the pressure of \"{}\" is given", J.well);
+      return fmt::format("\"well\": the pressure of \"{}\" is given; ask for its flow", J.well);
   }
   const auto& conditions = scene.boundary_conditions;
   if (J.what == "flow" && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
         return one.second.boundary == J.boundary && one.second.pressure;
       }))
-    return fmt::format("\"boundary\": no pressure is given on \"{}\", so that its flow is", J.boundary);
+    return fmt::format("\"boundary\": is \"{}\", where no pressure is prescribed, so that its flow is known",
+                       J.boundary);
   return "";
 }
 

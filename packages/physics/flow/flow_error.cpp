@@ -5,6 +5,7 @@
 #include "physics/flow/well_connections.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -22,7 +23,10 @@ class FlowError final : public MeshError {
     for (auto& c : connections_) {
       if (c.face >= 0) c.index *= wells_.faces[c.face].transmissivity();
       index_of_wells_[c.well] += c.index;
-      if (c.face >= 0 && mesh.dim() == 2) parameters.fed[c.face] = distance_along(c);
+      if (c.face < 0 || mesh.dim() == 3) continue;
+      const Real distance = distance_along(c);
+      Real& most = parameters.fed[c.face];  // of several wells in a face
+      if (std::abs(distance) > std::abs(most)) most = distance;
     }
     index_of_wells_ = base::sum_over_ranks(*mesh.comm, index_of_wells_);
     for (const auto& one : parameters.held) conditions_[one.name] = one.boundary;

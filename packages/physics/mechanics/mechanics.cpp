@@ -328,6 +328,12 @@ std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
   const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
   if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" is of none", J.what);
   if (of_boundary && J.boundary.empty()) return "\"boundary\": missing; it is required of a reaction";
+  const auto& conditions = scene.boundary_conditions;
+  if (of_boundary && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
+        return one.second.boundary == J.boundary && !one.second.displacement.empty();
+      }))
+    return fmt::format("\"boundary\": is \"{}\", where no displacement is prescribed, so that nothing reacts",
+                       J.boundary);
   return of_boundary || J.boundary.empty() ? ""
                                            : fmt::format("\"boundary\": must be absent: \"{}\" is of none", J.what);
 }
