@@ -1,7 +1,6 @@
 #include "multigrid/aggregates.hpp"
 
 #include "base/check.hpp"
-#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +12,6 @@ namespace {
 constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
 constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
 constexpr Real strong = 0.02;        // a coupling, relative to the geometric mean of the diagonals
-constexpr Real across = 0.1;         // the same, for aggregates to cross a fracture
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
 
@@ -76,33 +74,22 @@ Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
 
 }  // namespace
 
-std::vector<bool> couplings_between(const NodeMatrix& A, Real least, Real most) {
+std::vector<bool> weak_couplings(const NodeMatrix& A) {
   const auto& graph = A.graph;
   const auto diagonal = diagonal_sizes(A);
-  std::vector<bool> between(graph.n_entries(), false);
+  std::vector<bool> weak(graph.n_entries(), false);
   for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
     for (std::size_t k = 0; k < n; ++k) {
       const LocalIndex j = graph.column(begin + k);
       const Real size = std::sqrt(diagonal(i) * diagonal(j));
-      Real number = 0;
+      Real most = 0;
       for (int r = 0; r < A.height; ++r)
-        number = std::fmax(number, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
-      between[begin + k] = j != i && number > least * size && number < most * size;
+        most = std::fmax(most, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
+      weak[begin + k] = j != i && most > rounding * size && most < strong * size;
     }
   }
-  return between;
-}
-
-std::vector<bool> weak_couplings(const NodeMatrix& A) { return couplings_between(A, rounding, strong); }
-
-std::vector<bool> strong_couplings(const NodeMatrix& A) {
-  constexpr GlobalIndex share = 20;
-  const auto couples = couplings_between(A, rounding, infinite);
-  const auto n = static_cast<GlobalIndex>(couples.size());
-  const std::array<GlobalIndex, 2> here = {n - A.graph.n_rows() - std::count(couples.begin(), couples.end(), true), n};
-  const auto [open, all] = base::sum_over_ranks(*A.graph.columns->owned()->getComm(), here);
-  return share * open > all ? std::vector<bool>(n, false) : couplings_between(A, across, infinite);
+  return weak;
 }
 
 Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places) {

@@ -35,15 +35,9 @@ struct Nodes {
   void add_smoothed(std::size_t n);
 };
 
-/// The entries of the graph of a square matrix between different nodes whose largest number, over the geometric mean of
-/// their diagonals, is between these. Collective.
-std::vector<bool> couplings_between(const NodeMatrix& A, Real least, Real most);
-/// Those that are small beside the diagonals of both nodes, yet not zero but for rounding. Collective.
+/// The entries of the graph of a square matrix that are small beside the diagonals of both nodes, yet not zero but for
+/// rounding. Collective.
 std::vector<bool> weak_couplings(const NodeMatrix& A);
-/// Those of a coarse level that are as large as the couplings of rock are, such as contact that sticks; none where more
-/// than a twentieth of the graph is without numbers, as contact that is open: what still sticks is then a hinge, and a
-/// node of both sides could not turn about it. Collective.
-std::vector<bool> strong_couplings(const NodeMatrix& A);
 
 /// Nodes of a square matrix: neighbours are those whose blocks are not zero but for rounding. `modes` [unknown, mode],
 /// null for the constant ones; `places` [node, dim], null if they are not known. Without modes, couplings are weak that

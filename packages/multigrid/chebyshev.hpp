@@ -20,8 +20,6 @@ class Chebyshev {
   /// Takes the values of A, and looks for its largest eigenvalue.
   void update(const NodeMatrix& A, int degree = usual_degree);
 
-  void set_degree(int degree) { degree_ = degree; }
-
   /// Doubles the interval until the next update: eigenvalues off the real axis are then nearer to it.
   void widen() { widening_ *= 2; }
 

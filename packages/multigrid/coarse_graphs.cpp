@@ -104,34 +104,6 @@ void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<Local
   }
 }
 
-void add_neighbours(const NodeGraph& graph, const std::vector<bool>& entries, Nodes& nodes) {
-  const auto ghosts = ghosts_beyond(graph, nodes);
-  const auto [near, beyond] = std::pair(std::move(nodes.neighbours), std::move(nodes.beyond));
-  nodes.neighbours = {{0}, {}};
-  nodes.beyond = {{0}, {}};
-  std::vector<LocalIndex> neighbour_of(graph.columns->n_all(), -1);
-  for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
-    for (std::size_t k = near.start[i]; k < near.start[i + 1]; ++k) {
-      neighbour_of[near.node[k]] = i;
-      nodes.neighbours.node.push_back(near.node[k]);
-    }
-    for (std::size_t k = beyond.start[i]; k < beyond.start[i + 1]; ++k) {
-      if (ghosts[k] >= 0) neighbour_of[ghosts[k]] = i;
-      nodes.beyond.node.push_back(beyond.node[k]);
-    }
-    for (std::size_t e = graph.start(i); e < graph.start(i + 1); ++e) {
-      const LocalIndex j = graph.column(e);
-      if (!entries[e] || neighbour_of[j] == i) continue;
-      if (j < graph.n_rows())
-        nodes.neighbours.node.push_back(j);
-      else
-        nodes.beyond.node.push_back(graph.columns->all()->getGlobalElement(j));
-    }
-    nodes.neighbours.start.push_back(nodes.neighbours.node.size());
-    nodes.beyond.start.push_back(nodes.beyond.node.size());
-  }
-}
-
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes) {
   auto far = out_of_reach(graph, nodes, reach(nodes));
   for (std::size_t e = 0; e < nodes.weak.size(); ++e) far[e] = far[e] || nodes.weak[e];

@@ -53,9 +53,6 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<LocalIndex*>& aggregate, const Map& numbers,
                     Nodes& coarse);
 
-/// Adds the nodes of these entries of the graph to the neighbours. Collective.
-void add_neighbours(const NodeGraph& graph, const std::vector<bool>& entries, Nodes& nodes);
-
 /// Makes contact weak at nodes from which some of it is out of reach, as in faces with a long edge: jumps that
 /// alternate along that edge do no work on contact, so that a prolongator which took all of a face to jump alike would
 /// resist them. Contact is what couples free nodes that are no neighbours. Puts the shortest edge of such

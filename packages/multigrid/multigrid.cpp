@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -75,89 +74,71 @@ bool Multigrid::can_solve(int n_components, int n_modes) {
 
 Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components,
                      const RCP<const MultiVector>& modes, const Options& options)
-    : map_(matrix->row_map()), finest_(matrix), size_(n_components), by_motions_(!modes.is_null()), options_(options) {
-  add_level(node_matrix(*matrix, size_), nullptr, std::move(nodes));
+    : map_(matrix->row_map()), finest_(matrix), size_(n_components), options_(options) {
+  add_level(node_matrix(*matrix, size_), nullptr);
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
-}
-
-/// Whether nodes are not grouped yet, or a coupling that was strong then is no more, or many have become so.
-/// Collective.
-bool Multigrid::is_to_be_grouped(std::size_t k) const {
-  constexpr GlobalIndex share = 20;
-  const auto& level = levels_[k];
-  if (!level.grouped) return true;
-  if (k == 0 || !by_motions_ || is_small(level.A)) return false;
-  const auto strong = strong_couplings(level.A);
-  std::array<GlobalIndex, 3> here{};
-  for (std::size_t e = 0; e < strong.size(); ++e) {
-    here[0] += level.strong[e] && !strong[e];
-    here[1] += strong[e] && !level.strong[e];
-    here[2] += strong[e];
+  levels_.front().degree = std::max(options.degree, options_.finest_degree);
+  while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
+    const auto& A = levels_.back().A;
+    if (!modes.is_null())
+      levels_.back().degree = degree_for(leave_out_far_contact(A.graph, nodes), levels_.back().degree);
+    const auto aggregates = aggregate(nodes, levels_.size() == 1 ? enough_for(nodes, *map_->getComm()) : 0);
+    Nodes coarse;
+    const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
+    auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
+    if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
+    coarsen_beyond(A.graph, nodes, galerkin->aggregate(), *galerkin->coarse().graph.columns->all(), coarse);
+    auto moved = on_fewer_ranks(*galerkin, coarse);
+    levels_.back().smoother = std::make_unique<Chebyshev>(A);
+    if (modes.is_null()) {  // what is weak on the next level its matrix tells
+      levels_.back().smoother->update(A);
+      galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
+      if (moved) moved->update(galerkin->coarse());
+      nodes = nodes_of(moved ? moved->matrix() : galerkin->coarse(), modes);
+      nodes.motion = std::move(coarse.motion);
+      nodes.place = std::move(coarse.place);
+      nodes.nearest = std::move(coarse.nearest);
+    } else {
+      nodes = std::move(coarse);
+    }
+    const auto next = moved ? moved->matrix() : galerkin->coarse();
+    levels_.back().to_coarse = std::move(galerkin);
+    add_level(next, std::move(moved));
   }
-  const auto [lost, gained, all] = base::sum_over_ranks(*map_->getComm(), here);
-  return lost > 0 || share * gained > all;
-}
-
-bool Multigrid::is_small(const NodeMatrix& A) const { return n_nodes(A) * A.height <= options_.coarse_size; }
-
-/// Makes the next level, unless this is to be the last one, in place of those that there are. On coarse levels, by the
-/// present values: where couplings across fractures are strong, nodes on both sides go together; and of scalars what is
-/// weak stays apart.
-void Multigrid::group(std::size_t k) {
-  levels_.erase(levels_.begin() + k + 1, levels_.end());
-  n_ranks_.resize(k + 1);
-  last_ = Teuchos::null;
-  auto& level = levels_[k];
-  const auto& A = level.A;
-  level.to_coarse.reset();
-  level.grouped = true;
-  if (is_small(A)) return;
-  Nodes nodes = k == 0 ? std::move(level.nodes) : level.nodes;
-  if (!by_motions_ && k > 0) {
-    nodes = nodes_of(A, Teuchos::null);
-    nodes.motion = level.nodes.motion;
-    nodes.place = level.nodes.place;
-    nodes.nearest = level.nodes.nearest;
-  }
-  if (by_motions_ && k > 0) {
-    level.strong = strong_couplings(A);
-    add_neighbours(A.graph, level.strong, nodes);
-  }
-  if (by_motions_)
-    level.degree = degree_for(leave_out_far_contact(A.graph, nodes), k == 0 ? level.degree : options_.degree);
-  const auto aggregates = aggregate(nodes, k == 0 ? enough_for(nodes, *map_->getComm()) : 0);
-  Nodes coarse;
-  const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
-  auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
-  if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) return;
-  coarsen_beyond(A.graph, nodes, galerkin->aggregate(), *galerkin->coarse().graph.columns->all(), coarse);
-  auto moved = on_fewer_ranks(*galerkin, coarse);
-  const auto next = moved ? moved->matrix() : galerkin->coarse();
-  level.smoother = std::make_unique<Chebyshev>(A);
-  level.to_coarse = std::move(galerkin);
-  add_level(next, std::move(moved), std::move(coarse));
+  for (const auto& level : levels_)
+    levels_.front().degree = std::max(levels_.front().degree, std::min(level.degree, most_finest_degree));
+  std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
+  for (const auto& level : levels_) here[1] += level.A.value.extent(0);
+  const auto all = base::sum_over_ranks(*map_->getComm(), here);
+  operator_complexity_ = all[1] / all[0];
 }
 
 /// The coarse level, where ranks have little of its matrix, or so few nodes that aggregates end at ranks; else null.
 std::unique_ptr<FewerRanks> Multigrid::on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const {
   const auto& coarse = galerkin.coarse();
   const auto numbers = base::sum_over_ranks(*map_->getComm(), static_cast<double>(coarse.value.extent(0)));
+  const bool is_last = n_nodes(coarse) * coarse.height <= options_.coarse_size;
   const double n_ranks = n_ranks_of(coarse.graph),
                most = std::min(numbers / options_.least_of_a_rank, static_cast<double>(n_nodes(coarse)) / least_nodes);
-  const double wanted = is_small(coarse) ? 1 : most / 2;
+  const double wanted = is_last ? 1 : most / 2;
   if (n_ranks <= 1 || 2 * wanted > n_ranks) return nullptr;
   return std::make_unique<FewerRanks>(coarse, galerkin.prolongation(), nodes,
                                       std::max(1, static_cast<int>(std::lround(wanted))));
 }
 
-void Multigrid::add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved, Nodes nodes) {
+void Multigrid::add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved) {
   const auto vector = [&](LocalIndex n) { return View<Real*>("level", static_cast<std::size_t>(n) * A.height); };
   const LocalIndex n = A.graph.columns->n_all(), n_above = moved ? moved->prolongation().graph.columns->n_all() : n,
                    n_given = moved ? moved->gathered().columns->n_all() : A.graph.n_rows();
   n_ranks_.push_back(n_ranks_of(A.graph));
-  const int degree = levels_.empty() ? std::max(options_.degree, options_.finest_degree) : options_.degree;
-  const auto b = vector(levels_.empty() ? 0 : n_given), x = vector(std::max(n, n_above)), r = vector(n);
-  levels_.push_back({A, {}, std::move(moved), {}, b, x, r, degree, std::move(nodes), {}, false});
+  levels_.push_back({A,
+                     {},
+                     std::move(moved),
+                     {},
+                     vector(levels_.empty() ? 0 : n_given),
+                     vector(std::max(n, n_above)),
+                     vector(n),
+                     options_.degree});
 }
 
 /// From the next level.
@@ -176,43 +157,20 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
     levels_.front().A.value = values;
   }
   finest_ = matrix;
-  bool has_new = false;
-  for (std::size_t k = 0; k < levels_.size(); ++k) {
-    if (levels_[k].moved) levels_[k].moved->update(levels_[k - 1].to_coarse->coarse());
-    if (is_to_be_grouped(k)) {
-      group(k);
-      has_new = true;
-    }
-    auto& level = levels_[k];
+  const NodeMatrix* above = nullptr;
+  for (auto& level : levels_) {
+    if (level.moved) level.moved->update(*above);
     if (!level.to_coarse) continue;
-    level.smoother->update(level.A);
+    const int least = &level == &levels_.front() ? options_.finest_degree : 0;
+    level.smoother->update(level.A, symmetric ? level.degree : std::max(options_.degree, least));
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
+    above = &level.to_coarse->coarse();
   }
-  if (has_new) compare_sizes();
-  choose_degrees(symmetric);
   base::collectively(*map_->getComm(), [&] { factor_last(symmetric); });
   for (int widenings = 0; careful && !symmetric && !(growth() <= most_growth) && widenings < most_widenings;
        ++widenings)
     for (auto& level : levels_)
       if (level.smoother) level.smoother->widen();
-}
-
-void Multigrid::choose_degrees(bool symmetric) {
-  int finest = levels_.front().degree;
-  for (const auto& level : levels_) finest = std::max(finest, std::min(level.degree, most_finest_degree));
-  for (auto& level : levels_) {
-    const bool is_finest = &level == &levels_.front();
-    const int least = is_finest ? options_.finest_degree : 0;
-    if (level.smoother)
-      level.smoother->set_degree(!symmetric ? std::max(options_.degree, least) : is_finest ? finest : level.degree);
-  }
-}
-
-void Multigrid::compare_sizes() {
-  std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
-  for (const auto& level : levels_) here[1] += level.A.value.extent(0);
-  const auto all = base::sum_over_ranks(*map_->getComm(), here);
-  operator_complexity_ = all[1] / all[0];
 }
 
 void Multigrid::factor_last(bool symmetric) {
@@ -257,9 +215,7 @@ void Multigrid::apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Re
 }
 
 void Multigrid::cycle(std::size_t level, const ConstView<Real*>& b) const {
-  const auto& [A, x, r] = std::tie(levels_[level].A, levels_[level].x, levels_[level].r);
-  const auto& [smoother, moved, to_coarse] =
-      std::tie(levels_[level].smoother, levels_[level].moved, levels_[level].to_coarse);
+  const auto& [A, smoother, moved, to_coarse, _, x, r, degree] = levels_[level];
   if (moved) moved->gathered().columns->exchange(levels_[level].b, A.height);
   if (!to_coarse) return solve_last(b);
   smoother->apply(b, x, false);

@@ -9,18 +9,17 @@
 
 namespace sprekk::multigrid {
 
-/// About the inverse of a matrix: one V-cycle of smoothed aggregation. Graphs of levels are made at the first set-up,
-/// and again, but for those of the first two, when couplings across interfaces have changed. Levels of whose matrices
-/// ranks would have little move to fewer ranks, the last ones to one. It throws where the last level is singular. All
-/// members are collective unless they return stored data.
+/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Levels
+/// of whose matrices ranks would have little move to fewer ranks, the last ones to one. Each piece of rock keeps at
+/// least one node on every level. It throws where the last level is singular. All members are collective unless they
+/// return stored data.
 class Multigrid : public fields::Operator {
  public:
   /// Whether there is code for that many unknowns of a node and motions.
   static bool can_solve(int n_components, int n_modes);
 
   /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
-  /// interface; on coarse levels they cross it where the matrix of a set-up couples strongly. `modes` [unknown, mode],
-  /// null for the constant ones.
+  /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
   Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes,
             const Options& options = {});
   /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
@@ -57,17 +56,9 @@ class Multigrid : public fields::Operator {
     std::unique_ptr<Galerkin> to_coarse;  // null: the last level
     View<Real*> b, x, r;                  // [owned, and those handed over], none on the finest level; [all], [all]
     int degree;                           // of the smoother, of a symmetric matrix
-    Nodes nodes;                          // of the finest level only until they are grouped
-    std::vector<bool> strong;             // [entry of the graph] when they were grouped
-    bool grouped;
   };
 
-  void add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved, Nodes nodes);
-  bool is_to_be_grouped(std::size_t level) const;
-  bool is_small(const NodeMatrix& A) const;
-  void group(std::size_t level);
-  void choose_degrees(bool symmetric);
-  void compare_sizes();
+  void add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved);
   std::unique_ptr<FewerRanks> on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const;
   const ShortNodeMatrix& prolongation(std::size_t level) const;
   void factor_last(bool symmetric);
@@ -78,7 +69,6 @@ class Multigrid : public fields::Operator {
   RCP<const Map> map_;
   RCP<const Matrix> finest_;
   int size_;
-  bool by_motions_;  // that were given
   Options options_;
   double operator_complexity_ = 1;
   bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
