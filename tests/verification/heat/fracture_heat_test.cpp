@@ -188,27 +188,28 @@ TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
   }
 }
 
-/// It breathes a hundred times in a thousand steps, on several ranks ten times in a hundred: nothing adds up. What is
-/// in it at the end is what was there and has come in, to 1e-12 of all that has come in or gone out.
+/// It breathes a hundred times in a thousand steps: nothing adds up. What is in it at the end is what was there and
+/// has come in, to 1e-12 of all that has come in or gone out. On several ranks the last of the cases.
 TEST(HeatInFractures, IsInBalanceOverAThousandSteps) {
   constexpr Real c = 4.2e6, rc = 2.2e4, dt = 0.01;
-  const int n_steps = Tpetra::getDefaultComm()->getSize() == 1 ? 1000 : 100;
-  for (const auto& [cell, advection] :
-       {std::pair("quadrilateral", "upwind"), {"quadrilateral", "second order"}, {"tetrahedron", "second order"}}) {
+  std::vector<std::pair<const char*, const char*>> cases = {
+      {"quadrilateral", "upwind"}, {"quadrilateral", "second order"}, {"tetrahedron", "second order"}};
+  if (Tpetra::getDefaultComm()->getSize() > 1) cases = {cases.back()};
+  for (const auto& [cell, advection] : cases) {
     auto scene = pulled_joint(cell, 2, rc, c, "4e-3*sin(10*pi*t)^2");
     scene.heat->advection = advection;
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(dt).converged) << cell;
     const Real start = heat_content(model, rc, c);
     Real gained = 0, passed = 0;
-    for (int step = 2; step <= n_steps + 1; ++step) {
+    for (int step = 2; step <= 1001; ++step) {
       ASSERT_TRUE(model.step_to(dt * step).converged) << cell << " " << step;
       const Real inflow = heat_that_enters(model, dt * step, dt, c);
       gained += inflow;
       passed += std::abs(inflow);
     }
     EXPECT_NEAR(heat_content(model, rc, c) - start, gained, 1e-12 * passed) << cell << " " << advection;
-    EXPECT_GT(passed, 0.02 * n_steps * start) << cell << " " << advection;
+    EXPECT_GT(passed, 20 * start) << cell << " " << advection;
   }
 }
 
