@@ -235,6 +235,9 @@ class Module {
   /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
   /// Schur complement, for preconditioners and for sizes of rows.
   virtual void add_schur(const State& state, const Rows& diagonals) const {}
+  /// Adds to the rows that store what of that belongs to no equation but keeps a scheme from oscillating, and vanishes
+  /// as cells become smaller: State::rate times it is in the residual, less what it was. Local.
+  virtual void artificial(const State& state, const Rows& rows) const {}
   /// Sets, of faces where a flux has a coefficient that depends on unknowns, what it is a power of, not below zero
   /// [local fracture face]: those of the state, or `widest`, the largest that it may well have under the present loads.
   /// Where State::coefficients is given, residual() and jacobian() take that. Local.

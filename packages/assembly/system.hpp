@@ -117,6 +117,13 @@ class System : public fields::BlockProblem, private contact::Equations {
   void module_residual(int module, const fields::BlockVector& x, fields::BlockVector& r);
   void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
 
+  const Rates& rates() const { return rates_; }
+  /// By how much more is stored at x + dx than at x, for small dx, without the factor of the rates, less what modules
+  /// store at x that belongs to no equation (Module::artificial). Collective.
+  fields::BlockVector stored(const fields::BlockVector& x, const fields::BlockVector& dx);
+  /// The latter alone. Collective.
+  fields::BlockVector artificially_stored(const fields::BlockVector& x);
+
  private:
   Context context() const { return {mesh_, geometry_, layouts_, stencils_}; }
   void declare_fields();

@@ -447,7 +447,7 @@ std::vector<Total> System::totals(const BlockVector& x) {
 std::vector<Reaction> System::reactions(const BlockVector& x) {
   auto r = fields::create_like(x);
   const Rates rates = rates_;
-  rates_.before = 0;  // histories have moved on: nothing is stored
+  rates_ = {};  // histories have moved on: nothing is stored
   raw_residual(x, r);
   rates_ = rates;
   return sums_of_held(r);
@@ -493,6 +493,33 @@ void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
     for (int j = 0; j < J.n_blocks(); ++j)
       if (!J(i, j).is_null()) Kokkos::deep_copy(J(i, j)->getLocalMatrixDevice().values, 0.0);
   modules_[module]->jacobian(state(module), J);
+}
+
+BlockVector System::artificially_stored(const BlockVector& x) {
+  auto sum = fields::create_like(x);
+  refresh_ghosts(x, true);
+  const auto views = rows(sum);
+  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->artificial(state(static_cast<int>(m)), views);
+  return sum;
+}
+
+/// The derivative of what rates are the factor of.
+BlockVector System::stored(const BlockVector& x, const BlockVector& dx) {
+  auto sum = artificially_stored(x), product = fields::create_like(x);
+  for (const auto& block : sum) block->scale(-1);
+  auto J = create_matrix();
+  const Rates rates = rates_;
+  for (std::size_t m = 0; m < modules_.size(); ++m) {
+    if (!declarations_[m].stores) continue;
+    for (const Real rate : {rates.now, Real(0)}) {
+      rates_.now = rate;
+      module_jacobian(static_cast<int>(m), x, J);
+      J.apply(dx, product);
+      for (std::size_t b = 0; b < sum.size(); ++b) sum[b]->update((rate > 0 ? 1 : -1) / rates.now, *product[b], 1);
+    }
+    rates_ = rates;
+  }
+  return sum;
 }
 
 }  // namespace sprekk::assembly

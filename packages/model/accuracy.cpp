@@ -8,26 +8,27 @@
 
 namespace sprekk::model {
 
-std::vector<std::string> Quantity::names() {
-  std::vector<std::string> all;
+namespace {
+
+std::vector<physics::QuantityKind> kinds() {
+  std::vector<physics::QuantityKind> all;
   physics::for_each_physics([&](auto physics) {
-    for (auto& name : physics.quantities()) all.push_back(std::move(name));
+    for (auto& kind : physics.quantities()) all.push_back(std::move(kind));
   });
   return all;
 }
+
+}  // namespace
 
 bool Quantity::is_of_outputs() const {
   const auto known = {"slip", "opening", "normal force", "shear force", "reaction"};
   return std::any_of(known.begin(), known.end(), [&](const char* name) { return what == name; });
 }
 
-const char* Quantity::unit(int dim) const {
-  if (what == "slip" || what == "opening") return "m";
-  if (what == "stress") return dim == 2 ? "sqrt(J/m)" : "sqrt(J)";
-  if (what == "flux") return dim == 2 ? "sqrt(W/m)" : "sqrt(W)";
-  if (what == "pressure") return "Pa";
-  if (what == "flow") return dim == 2 ? "m^2/s" : "m^3/s";
-  return dim == 2 ? "N/m" : "N";
+std::string Quantity::unit(int dim) const {
+  for (const auto& kind : kinds())
+    if (kind.name == what) return dim == 2 ? kind.unit_in_2d : kind.unit;
+  return "";
 }
 
 std::string Quantity::title() const {
@@ -43,25 +44,27 @@ Real Quantity::asked(Real value) const {
 }
 
 void Quantity::describe(base::Section& s) {
-  s.required_choice(what, "quantity", names(),
-                    "slip, opening: the mean over the area of fractures; normal force, shear force: the integral of "
-                    "compression, of the size of shear traction; reaction: the force that holds a boundary; stress: "
-                    "root of the integral of s : C^-1 s, twice the elastic energy; pressure: of a well, or the mean "
-                    "over fractures; flow: of fluid into the domain from a well or through a boundary; flux: root of "
-                    "the power that the flow of fluid dissipates");
+  std::vector<std::string> names, texts, units;
+  for (const auto& kind : kinds()) {
+    names.push_back(kind.name);
+    texts.push_back(fmt::format("{}: {}", kind.name, kind.text));
+    units.push_back(fmt::format("of {} in {}", kind.name, kind.unit) +
+                    (kind.unit == kind.unit_in_2d ? "" : fmt::format(" (2D: {})", kind.unit_in_2d)));
+  }
+  s.required_choice(what, "quantity", names, fmt::format("{}", fmt::join(texts, "; ")));
   s.entry(fractures, "fractures", "-", "over which it is taken together; absent: all");
-  s.entry(boundary, "boundary", "-", "of a reaction: where displacements are prescribed; of a flow: where pressure is");
-  s.entry(well, "well", "-", "of a pressure: with a rate; of a flow: with a pressure");
+  s.entry(boundary, "boundary", "-",
+          "of a reaction: where displacements are prescribed; of a flow: where pressure is, or temperature");
+  s.entry(well, "well", "-",
+          "of a pressure: with a rate; of a flow: with a pressure; of temperature and heat flow: any");
   s.choice(component, "component", {"x", "y", "z"}, "of a reaction");
   s.entry(relative, "relative", "-", base::between(1e-8, 1), "error by the value at the end of the run");
-  const bool is_length = what.empty() || what == "slip" || what == "opening", is_pressure = what == "pressure";
+  const auto own = unit(3);
   s.entry(absolute, "absolute",
-          is_length     ? "m"
-          : is_pressure ? "Pa"
-                        : "-",
-          base::positive(),
-          "error; of forces in N (2D: N/m), of stress in sqrt(J) (2D: sqrt(J/m)), of flow in m^3/s (2D: m^2/s), of "
-          "flux in sqrt(W) (2D: sqrt(W/m)); with relative the larger one counts");
+          own == unit(2) && !own.empty() ? own
+          : what.empty()                 ? "m"
+                                         : "-",
+          base::positive(), fmt::format("error; {}", fmt::join(units, ", ")));
   if (s.complete() && !relative && !absolute) s.fail("needs \"relative\", \"absolute\", or both");
 }
 

@@ -16,12 +16,11 @@ class Section;
 namespace sprekk::model {
 
 /// A number of the last state.
-struct Quantity : physics::Functional {    ///< `what`: one of names()
+struct Quantity : physics::Functional {    ///< `what`: of a physics' quantities()
   std::string component = "x";             ///< of a reaction
   std::optional<Real> relative, absolute;  ///< the error that is asked for, the larger of both
 
-  static std::vector<std::string> names();
-  const char* unit(int dim) const;
+  std::string unit(int dim) const;
   /// A state's outputs or reactions tell its value, without an estimate.
   bool is_of_outputs() const;
   /// It is an energy's root.

@@ -63,9 +63,9 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
   Goals goals(model);
   const auto outputs = model.system().outputs(model.state());
   const auto& quantities = scene.accuracy->quantities;
-  const bool plain =
-      std::all_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.is_of_outputs(); });
-  goals.add(outputs, plain ? ErrorEstimate() : estimator(outputs), estimator, !plain);
+  const bool any_of_all =
+      std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.of_all(); });
+  goals.add(outputs, any_of_all ? estimator(outputs) : ErrorEstimate(), estimator, true);
   std::map<std::string, Real> values;
   for (const auto& [name, estimate] : goals.estimates()) values[name] = estimate.value;
   return values;

@@ -4,6 +4,7 @@
 #include "assembly/prescribed_error.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
+#include "model/json_keys.hpp"
 #include "physics/comparison.hpp"
 #include "physics/mechanics/traction_recovery.hpp"
 
@@ -17,7 +18,6 @@ using assembly::OutputField;
 
 namespace {
 
-constexpr Real cancelled_fluxes = 0.1;  ///< so much of terms of both signs counts in any case
 constexpr Real solve_tolerance = 1e-6;  ///< of an iterative solver; an estimate needs no more
 
 const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, const std::string& name) {
@@ -39,7 +39,8 @@ Real share(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / st
 nlohmann::json ErrorEstimate::summary() const {
   nlohmann::json result = nlohmann::json::object();
   for (const auto& flux : fluxes)
-    result["flux"] = {{"relative", flux.whole > 0 ? flux.error / flux.whole : 0}, {"energy_norm", flux.error}};
+    result[with_underscores(flux.name)] = {{"relative", flux.whole > 0 ? flux.error / flux.whole : 0},
+                                           {"energy_norm", flux.error}};
   if (energy.empty()) return result;
   result["stress"] = {{"relative", relative_stress}, {"energy_norm", stress}};
   if (!failure.empty())
@@ -83,13 +84,17 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
         density[c] /=
             assembly::cell_mean<shape()>(model_.mesh(), static_cast<LocalIndex>(c), [](const auto&) { return 1; })[0];
     });
-    estimate.fields.push_back({.name = "flux error density",
-                               .unit = "W/m^3",
+    estimate.fields.push_back({.name = error->name() + " error density",
+                               .unit = error->unit() + "/m^3",
                                .entity = fields::Entity::cell,
                                .n_components = 1,
                                .values = std::move(density)});
   }
-  if (!recovery_) return estimate;
+  auto right_side = fields::create_like(model_.state());
+  if (!recovery_) {
+    estimate_answer(std::move(right_side), outputs, estimate);
+    return estimate;
+  }
   physics::ByField<RCP<const fields::Vector>> displacement;
   for (std::size_t k = 0; k < displacement.size(); ++k)
     if (blocks_[k] >= 0) displacement[k] = model_.state()[blocks_[k]];
@@ -105,7 +110,9 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
                              .entity = fields::Entity::cell,
                              .n_components = 1,
                              .values = std::move(error.density)});
-  if (wants_reactions_ || !model_.mesh().fracture_names.empty()) estimate_answer(error, outputs, estimate);
+  if (!wants_reactions_ && model_.mesh().fracture_names.empty() && flux_errors_.empty()) return estimate;
+  add_stress(error, right_side);
+  estimate_answer(std::move(right_side), outputs, estimate);
   return estimate;
 }
 
@@ -116,7 +123,7 @@ std::vector<Real> ErrorEstimator::by_cell(const physics::MeshError& error, const
 }
 
 ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const {
-  ErrorEstimate::Flux flux;
+  ErrorEstimate::Flux flux{.name = error.name()};
   auto parts = error.of_state(model_.state(), model_.time());
   std::vector<Real> squares;
   std::array<Real, 2> sums{};
@@ -133,6 +140,24 @@ ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const 
   return flux;
 }
 
+std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const physics::Functional& J,
+                                                                          const ErrorEstimate& estimate) {
+  for (const auto& error : flux_errors_) {
+    if (!error->knows(J.what)) continue;
+    auto reactions = model_.system().reactions(model_.state());
+    const Real now = error->value(J, model_.state(), reactions);
+    if (estimate.lacks.empty()) return OfFunctional{now, std::numeric_limits<Real>::infinity()};
+    for (std::size_t k = 0; k < reactions.size(); ++k)
+      for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
+        reactions[k].force[i] += estimate.reactions[k].force[i];
+    auto x = fields::create_like(model_.state());
+    fields::copy(model_.state(), x);
+    for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *estimate.lacks[b], 1);
+    return OfFunctional{now, std::abs(error->value(J, x, reactions) - now)};
+  }
+  return std::nullopt;
+}
+
 /// Rates of what is stored, in the last step, of each module that stores something.
 std::vector<fields::BlockMatrix> ErrorEstimator::storage() const {
   auto& system = model_.system();
@@ -143,35 +168,28 @@ std::vector<fields::BlockMatrix> ErrorEstimator::storage() const {
   return all;
 }
 
-std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
-    const physics::Functional& J, const std::vector<std::vector<ErrorEstimate::Flux>>& steps) {
+std::vector<Real> ErrorEstimator::shares(const physics::Functional& J,
+                                         const std::vector<std::vector<ErrorEstimate::Flux>>& steps) {
   const auto scope = model_.timers().scope("error estimate");
-  const auto knowing =
-      std::find_if(flux_errors_.begin(), flux_errors_.end(), [&](const auto& e) { return e->knows(J.what); });
-  if (knowing == flux_errors_.end()) return std::nullopt;
-  auto& error = **knowing;
-  const auto number = knowing - flux_errors_.begin();
-  OfFunctional result{error.value(J, model_.state()), std::numeric_limits<Real>::infinity(), {}};
+  if (!has_shares()) return {};
+  auto& error = *flux_errors_[0];
   auto right_side = fields::create_like(model_.state()), z = fields::create_like(model_.state());
   error.add_derivative(J, model_.state(), right_side);
   const auto rates = storage();
   auto product = fields::create_like(model_.state());
-  result.indicators.assign(model_.mesh().n_owned_cells, 0);
-  std::vector<Real> products(error.cells().size(), 0);
+  std::vector<Real> result(model_.mesh().n_owned_cells, 0);
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-    if (!model_.newton().answer(model_.state(), right_side, z, solve_tolerance).converged) return result;
+    if (!model_.newton().answer(model_.state(), right_side, z, solve_tolerance).converged) return {};
     const auto parts = error.of_answer(model_.state(), z).error;
-    const auto& of_step = (*step)[number];
+    const auto& of_step = step->front();
     std::vector<Real> squares;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      products[k] += of_step.parts[k] * parts[k];
+    for (std::size_t k = 0; k < parts.size(); ++k)
       if (k < error.n_of_energy())
         squares.push_back(parts[k] * parts[k]);
       else
-        result.indicators[error.cells()[k]] += std::abs(of_step.parts[k] * parts[k]);
-    }
+        result[error.cells()[k]] += std::abs(of_step.parts[k] * parts[k]);
     const auto weight = by_cell(error, squares);
-    for (std::size_t c = 0; c < weight.size(); ++c) result.indicators[c] += std::sqrt(weight[c] * of_step.energy[c]);
+    for (std::size_t c = 0; c < weight.size(); ++c) result[c] += std::sqrt(weight[c] * of_step.energy[c]);
     for (auto& block : right_side) block->putScalar(0);
     for (const auto& of_module : rates) {
       of_module.apply(z, product);
@@ -179,24 +197,7 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(
     }
     hold(right_side);
   }
-  std::array<Real, 2> sums{};  // with signs and without
-  for (const Real share : by_cell(error, products)) {
-    sums[0] += share;
-    sums[1] += std::abs(share);
-  }
-  sums = base::sum_over_ranks(*model_.mesh().comm, sums);
-  result.error = std::max(std::abs(sums[0]), cancelled_fluxes * sums[1]);
   return result;
-}
-
-std::vector<Real> ErrorEstimator::missed() const {
-  const auto& mesh = model_.mesh();
-  const auto conditions =
-      physics::dirichlet_conditions(model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
-  const auto error =
-      assembly::prescribed_error(mesh, model_.system().layouts()[blocks_[physics::nodal]], conditions, model_.time());
-  const auto view = error.getLocalViewHost(Tpetra::Access::ReadOnly);
-  return {view.data(), view.data() + view.extent(0)};
 }
 
 void ErrorEstimator::hold(fields::BlockVector& right_side) const {
@@ -209,16 +210,20 @@ void ErrorEstimator::hold(fields::BlockVector& right_side) const {
   }
 }
 
-void ErrorEstimator::prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const {
-  for (const int block : blocks_) {
-    if (block < 0) continue;
-    const auto constrained =
-        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model_.system().constrained(block));
-    const auto view = right_side[block]->getLocalViewHost(Tpetra::Access::ReadWrite);
-    const bool has_values = block == blocks_[physics::nodal] && !values.empty();
-    for (std::size_t i = 0; i < constrained.extent(0); ++i)
-      if (constrained(i)) view(i, 0) = has_values ? values[i] : 0;
-  }
+void ErrorEstimator::prescribe(fields::BlockVector& right_side) const {
+  hold(right_side);
+  for (const auto& error : flux_errors_) error->add_prescribed(model_.time(), right_side);
+  const int nodes = blocks_[physics::nodal];
+  if (nodes < 0) return;
+  const auto& mesh = model_.mesh();
+  const auto conditions =
+      physics::dirichlet_conditions(model_.scene().boundary_conditions, {}, physics::names_of(mesh), "displacement");
+  const auto missed = assembly::prescribed_error(mesh, model_.system().layouts()[nodes], conditions, model_.time());
+  const auto constrained = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model_.system().constrained(nodes));
+  const auto from = missed.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto to = right_side[nodes]->getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t i = 0; i < constrained.extent(0); ++i)
+    if (constrained(i)) to(i, 0) = from(i, 0);
 }
 
 std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
@@ -235,7 +240,7 @@ std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) forces[k] = right_side[blocks_[k]];
   physics::add_opposite_tractions(model_.mesh(), layouts(), traction, direction, forces);
-  prescribe({}, right_side);
+  hold(right_side);
   if (!model_.newton().answer(model_.state(), right_side, x, solve_tolerance).converged) return {};
   physics::ByField<RCP<const fields::Vector>> answer;
   for (std::size_t k = 0; k < blocks_.size(); ++k)
@@ -243,21 +248,42 @@ std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
   return (*recovery_)(answer).energy;
 }
 
-/// With a lifting v of the displacements that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
-/// a(delta, v) - rho(v), summed over v: the rows of delta less the forces in them.
-void ErrorEstimator::estimate_answer(const physics::StressError& stress, const std::vector<OutputField>& outputs,
-                                     ErrorEstimate& estimate) {
+/// What the stress leaves over.
+void ErrorEstimator::add_stress(const physics::StressError& stress, fields::BlockVector& right_side) {
   auto& system = model_.system();
-  auto right_side = fields::create_like(model_.state()), x = fields::create_like(model_.state());
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     if (blocks_[k] >= 0) right_side[blocks_[k]] = stress.forces[k];
   if (const int lambda = block("traction"); lambda >= 0)
     physics::add_unresolved_traction(model_.mesh(), layouts(), system.layouts()[lambda],
                                      physics::initial_stress(model_.scene(), model_.mesh()), *model_.state()[lambda],
                                      stress.forces);
+}
+
+/// With M what is stored, rows have now (M - M_old) - before (M_old - M_older), see assembly::Rates, and M_old errs,
+/// too. What is stored artificially is none of the exact solution's.
+void ErrorEstimator::add_before(fields::BlockVector& right_side) {
+  auto& system = model_.system();
+  if (!system.has_rates()) return;
+  const auto [now, before] = system.rates();
+  const auto artificial = system.artificially_stored(model_.state());
+  for (std::size_t b = 0; b < right_side.size(); ++b) {
+    right_side[b]->update(now, *artificial[b], 1);
+    if (!stored_[0].empty()) right_side[b]->update(now + before, *stored_[0][b], 1);
+    if (!stored_[1].empty()) right_side[b]->update(-before, *stored_[1][b], 1);
+  }
+}
+
+/// With a lifting v of the unknowns that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
+/// a(delta, v) - rho(v), summed over v: the rows of delta less the forces in them.
+void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::vector<OutputField>& outputs,
+                                     ErrorEstimate& estimate) {
+  auto& system = model_.system();
+  auto x = fields::create_like(model_.state());
+  for (const auto& error : flux_errors_) error->add_truncation(model_.state(), right_side);
   const auto forces = system.sums_of_held(right_side), reactions = system.reactions(model_.state());
+  add_before(right_side);
   try {
-    prescribe(missed(), right_side);
+    prescribe(right_side);
   } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none
     estimate.failure = error.what();
     return;
@@ -265,13 +291,23 @@ void ErrorEstimator::estimate_answer(const physics::StressError& stress, const s
   const auto report = model_.newton().answer(model_.state(), right_side, x, solve_tolerance);
   estimate.failure = report.reason;
   if (!report.converged) return;
+  if (system.has_rates()) {
+    stored_[1] = std::move(stored_[0]);
+    stored_[0] = system.stored(model_.state(), x);
+  }
+  estimate.lacks = fields::create_like(x);
+  fields::copy(x, estimate.lacks);
+  for (std::size_t k = 0; k < flux_errors_.size(); ++k) {
+    const auto carried = flux_errors_[k]->carried(x);
+    for (std::size_t c = 0; c < carried.size(); ++c) estimate.fluxes[k].energy[c] += carried[c];
+  }
   for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *model_.state()[b], 1);
   estimate.improved = system.outputs(x);
   estimate.reactions = system.reactions(x);
   for (std::size_t k = 0; k < reactions.size(); ++k)
     for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
       estimate.reactions[k].force[i] -= reactions[k].force[i] + forces[k].force[i];
-  if (!model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
+  if (recovery_ && !model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
 }
 
 void ErrorEstimator::estimate_jump(const std::vector<OutputField>& outputs, ErrorEstimate& estimate) const {

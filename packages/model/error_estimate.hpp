@@ -20,14 +20,17 @@ struct ErrorEstimate {
   std::vector<Real> energy;              ///< [owned cell] of the stress' error, J
   /// Of balances that have an error of their own, see physics::MeshError.
   struct Flux {
-    std::vector<Real> parts;    ///< [component]
-    std::vector<Real> energy;   ///< [owned cell] of its error, W
-    Real error = 0, whole = 0;  ///< of all in the norm of the energy, sqrt(W)
+    std::string name;               ///< "flux", "heat flux"
+    std::vector<Real> parts = {};   ///< [component]
+    std::vector<Real> energy = {};  ///< [owned cell] of its error, and of what it carries, W (heat: W K)
+    Real error = 0, whole = 0;      ///< of all in the norm of the energy, sqrt(W)
   };
   std::vector<Flux> fluxes;
   std::string failure;  ///< why there is no estimate of the jumps
   /// The outputs of the state with what it lacks by estimate; empty where there is no estimate of the jumps.
   std::vector<assembly::OutputField> improved;
+  /// By how much the unknowns are too small; empty where that is not known.
+  fields::BlockVector lacks;
   /// By how much the reactions are too small, as System::reactions(); empty where there is no such estimate.
   std::vector<assembly::Reaction> reactions;
   /// On cells "error density", J/m^3: energy of the stress' error per volume; on fracture faces "jump error", m: what
@@ -51,15 +54,18 @@ class ErrorEstimator {
   /// From now on that of the reactions is wanted, without fractures, too.
   void want_reactions() { wants_reactions_ = true; }
 
-  /// The error of a functional that a balance knows.
+  /// A functional that a balance knows, and by how much it is off; infinite: that is not known.
   struct OfFunctional {
-    Real value, error;             ///< error: infinite where there is no answer
-    std::vector<Real> indicators;  ///< [owned cell] the product of the norms of both errors
+    Real value, error;
   };
-  /// None of all balances knows it: no value. At the end of steps whose estimates these are, the last that of the
-  /// present state: what each of them has left out is carried on to the end. Collective.
-  std::optional<OfFunctional> of_functional(const physics::Functional& J,
-                                            const std::vector<std::vector<ErrorEstimate::Flux>>& steps);
+  /// Of the present state, whose estimate this is. None of all balances knows it: no value. Collective.
+  std::optional<OfFunctional> of_functional(const physics::Functional& J, const ErrorEstimate& estimate);
+  /// [owned cell] The product of the norms of the error of the fluxes and of that of the weight that each place has for
+  /// J at the end of steps whose estimates these are, the last that of the present state; empty unless all is one
+  /// symmetric balance. What each step has left out is carried on to the end, as if all were like the last one.
+  /// Collective.
+  bool has_shares() const { return !recovery_ && flux_errors_.size() == 1; }
+  std::vector<Real> shares(const physics::Functional& J, const std::vector<std::vector<ErrorEstimate::Flux>>& steps);
 
   /// Where on the mesh the integral of d . [[u]] over fracture faces errs: the energy of the error of the stress, J
   /// [owned cell], of the linearised problem's answer to the forces d on the sides plus and -d on the sides minus. `d`
@@ -69,14 +75,14 @@ class ErrorEstimator {
  private:
   int block(const std::string& name) const;  ///< -1: there is none
   physics::ByField<const fields::Layout*> layouts() const;
-  void estimate_answer(const physics::StressError& error, const std::vector<assembly::OutputField>& outputs,
+  void add_stress(const physics::StressError& error, fields::BlockVector& right_side);
+  void estimate_answer(fields::BlockVector right_side, const std::vector<assembly::OutputField>& outputs,
                        ErrorEstimate& estimate);
+  void add_before(fields::BlockVector& right_side);
   void estimate_jump(const std::vector<assembly::OutputField>& outputs, ErrorEstimate& estimate) const;
 
-  /// What prescribed displacements miss between nodes, [owned unknown].
-  std::vector<Real> missed() const;
-  /// Sets the rows of prescribed unknowns to these values of nodes, and others to zero; without values all.
-  void prescribe(const std::vector<Real>& values, fields::BlockVector& right_side) const;
+  /// Sets the rows of prescribed unknowns to what their values lack: of displacements what they miss between nodes.
+  void prescribe(fields::BlockVector& right_side) const;
 
   ErrorEstimate::Flux flux_error(physics::MeshError& error) const;
   std::vector<Real> by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const;
@@ -89,7 +95,8 @@ class ErrorEstimator {
   physics::ByField<int> blocks_;                       // of displacements, -1: there is none
   std::unique_ptr<physics::StressRecovery> recovery_;  // null: nothing deforms
   bool wants_reactions_ = false;
-  Real section_;  // of a body of the domain's largest extent, m^2 (2D: m)
+  std::array<fields::BlockVector, 2> stored_;  // what is stored too little, at the last state and the one before
+  Real section_;                               // of a body of the domain's largest extent, m^2 (2D: m)
 };
 
 }  // namespace sprekk::model

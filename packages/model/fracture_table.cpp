@@ -1,5 +1,6 @@
 #include "model/fracture_table.hpp"
 
+#include "model/json_keys.hpp"
 #include "base/over_ranks.hpp"
 
 #include <fmt/format.h>
@@ -18,11 +19,6 @@ using nlohmann::json;
 namespace {
 
 constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
-
-std::string with_underscores(std::string name) {
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
 
 /// Sums and maxima over the faces of groups.
 class Groups {

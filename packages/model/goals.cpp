@@ -22,6 +22,10 @@ const OutputField& named(const std::vector<OutputField>& outputs, const std::str
   return *std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; });
 }
 
+bool has(const std::vector<OutputField>& outputs, const std::string& name) {
+  return std::any_of(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; });
+}
+
 /// A vector of a face in its frame: n, t1, t2.
 std::array<Real, 3> of_face(const OutputField& field, LocalIndex f) {
   std::array<Real, 3> v{};
@@ -47,7 +51,7 @@ std::vector<LocalIndex> Goals::faces_of(const Quantity& quantity) const {
 }
 
 void Goals::follow_slip(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate) {
-  if (estimate.improved.empty() || model_.mesh().fracture_names.empty()) return;
+  if (estimate.improved.empty() || model_.mesh().fracture_names.empty() || !has(outputs, "plastic jump local")) return;
   const auto &plastic = named(outputs, "plastic jump local"), &jump = named(outputs, "jump local"),
              &better = named(estimate.improved, "jump local");
   const int dim = plastic.n_components;
@@ -160,21 +164,46 @@ bool Goals::need(bool last) const {
 }
 
 /// What is of a balance with an error of its own; false: it is of another.
-bool Goals::add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last) {
+bool Goals::add_flux(const std::string& name, const Quantity& quantity, const ErrorEstimate& estimate,
+                     ErrorEstimator& estimator, bool last) {
   if (quantity.what == "flux") {
     const auto& now = fluxes_.back().front();
     estimates_[name] = {now.whole, now.error};
-    auto& bound = bounds_[name];
-    bound.resize(now.energy.size(), 0);
-    for (std::size_t c = 0; c < bound.size(); ++c) bound[c] = std::max(bound[c], now.energy[c]);
+    add_to_bound(name, now.energy);
     return true;
   }
-  if (!last || fluxes_.back().empty()) return !fluxes_.back().empty();
-  const auto of_functional = estimator.of_functional(quantity, fluxes_);
-  if (!of_functional) return false;
+  if (quantity.is_of_outputs() || quantity.what == "stress") return false;
+  if (!last) return true;
+  const auto of_functional = estimator.of_functional(quantity, estimate);
   estimates_[name] = {of_functional->value, of_functional->error};
-  bounds_[name] = of_functional->indicators;
+  if (!estimate.lacks.empty())
+    bounds_[name] = estimator.has_shares() ? estimator.shares(quantity, fluxes_) : all_energies(estimate.energy);
   return true;
+}
+
+void Goals::add_to_bound(const std::string& name, const std::vector<Real>& shares) {
+  auto& bound = bounds_[name];
+  bound.resize(shares.size(), 0);
+  for (std::size_t c = 0; c < bound.size(); ++c) bound[c] = std::max(bound[c], shares[c]);
+}
+
+/// [owned cell] with those of the fluxes of all steps; of each kind the whole mesh has as much.
+std::vector<Real> Goals::all_energies(const std::vector<Real>& of_stress) const {
+  std::vector<Real> result(model_.mesh().n_owned_cells, 0);
+  const auto add = [&](const std::vector<Real>& energies) {
+    Real sum = 0;
+    for (const Real one : energies) sum += one;
+    sum = base::sum_over_ranks(*model_.mesh().comm, sum);
+    for (std::size_t c = 0; c < energies.size() && sum > 0; ++c) result[c] += energies[c] / sum;
+  };
+  add(of_stress);
+  for (std::size_t k = 0; k < fluxes_.back().size(); ++k) {
+    std::vector<Real> energies(result.size(), 0);
+    for (const auto& step : fluxes_)
+      for (std::size_t c = 0; c < energies.size(); ++c) energies[c] += step[k].energy[c];
+    add(energies);
+  }
+  return result;
 }
 
 void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
@@ -182,8 +211,10 @@ void Goals::add(const std::vector<OutputField>& outputs, const ErrorEstimate& es
   follow_slip(outputs, estimate);
   if (!model_.system().has_rates()) fluxes_.clear();
   fluxes_.push_back(estimate.fluxes);
+  for (auto& flux : fluxes_.back())
+    if (!estimator.has_shares()) flux.parts.clear();
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
-    if (add_flux(name, quantity, estimator, last)) continue;
+    if (add_flux(name, quantity, estimate, estimator, last)) continue;
     estimates_[name] = quantity.what == "stress"     ? Estimate{estimate.stress_norm, estimate.stress}
                        : quantity.what == "reaction" ? of_boundary(quantity, estimate)
                                                      : of_fractures(quantity, outputs, estimate);
@@ -197,10 +228,9 @@ void Goals::weigh(const std::vector<OutputField>& outputs, const ErrorEstimate& 
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
     if (!quantity.is_of_outputs() && quantity.what != "stress") continue;  // add() has them
     if (!last && !(others && quantity.what == "slip")) continue;
-    const auto energies = this->energies(quantity, outputs, estimate, estimator);
-    auto& bound = bounds_[name];
-    bound.resize(energies.size(), 0);
-    for (std::size_t c = 0; c < energies.size(); ++c) bound[c] = std::max(bound[c], energies[c]);
+    auto energies = this->energies(quantity, outputs, estimate, estimator);
+    if (!fluxes_.back().empty()) energies = all_energies(energies);
+    add_to_bound(name, energies);
   }
 }
 

@@ -46,7 +46,10 @@ class Goals {
   std::vector<Real> energies(const Quantity& quantity, const std::vector<assembly::OutputField>& outputs,
                              const ErrorEstimate& estimate, ErrorEstimator& estimator) const;
 
-  bool add_flux(const std::string& name, const Quantity& quantity, ErrorEstimator& estimator, bool last);
+  bool add_flux(const std::string& name, const Quantity& quantity, const ErrorEstimate& estimate,
+                ErrorEstimator& estimator, bool last);
+  void add_to_bound(const std::string& name, const std::vector<Real>& shares);
+  std::vector<Real> all_energies(const std::vector<Real>& of_stress) const;
 
   Model& model_;
   std::vector<std::vector<ErrorEstimate::Flux>> fluxes_;  // of all steps

@@ -5,6 +5,7 @@
 #include "base/xml.hpp"
 #include "io/json.hpp"
 #include "model/fracture_table.hpp"
+#include "model/json_keys.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 
@@ -41,11 +42,6 @@ void remove_tables(const std::string& directory, bool goes_on) {
   for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
     if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
   std::filesystem::remove(probes, ignored);  // if nothing else is in it
-}
-
-std::string with_underscores(std::string name) {
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
 }
 
 /// The owned fracture faces with what is known of them.

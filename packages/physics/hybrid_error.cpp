@@ -1,134 +1,32 @@
 #include "physics/hybrid_error.hpp"
 
-#include "assembly/geometry.hpp"
 #include "base/check.hpp"
-#include "base/over_ranks.hpp"
-#include "mesh/facets.hpp"
-#include "physics/flow/face_plane.hpp"
-#include "physics/simplex_flux.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <unordered_map>
-#include <utility>
+#include "physics/places.hpp"
 
 namespace sprekk::physics {
 
 namespace {
 
-using HostVector = fields::Vector::dual_view_type::t_host::const_type;
-
-/// Sums over all ranks at numbered places.
-class Places {
- public:
-  int add(GlobalIndex id) {
-    const auto [found, is_new] = number_.emplace(id, static_cast<int>(ids_.size()));
-    if (is_new) ids_.push_back(id);
-    return found->second;
-  }
-  /// Once all are added. Collective.
-  void close(const RCP<const Comm>& comm) {
-    const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-    map_ =
-        rcp(new const fields::Map(unknown, Teuchos::ArrayView<const GlobalIndex>(ids_.data(), ids_.size()), 0, comm));
-    import_ = rcp(new const fields::Import(Tpetra::createOneToOne(map_), map_));
-  }
-  std::size_t size() const { return ids_.size(); }
-  GlobalIndex id(int place) const { return ids_[place]; }
-
-  /// Collective.
-  template <std::size_t m>
-  void sum_over_ranks(std::vector<std::array<Real, m>>& values) const {
-    fields::MultiVector here(map_, m), unique(import_->getSourceMap(), m);
-    const auto copy = [&](const auto& one) {
-      const auto view = here.getLocalViewHost(Tpetra::Access::ReadWrite);
-      for (std::size_t p = 0; p < values.size(); ++p)
-        for (std::size_t k = 0; k < m; ++k) one(values[p][k], view(p, k));
-    };
-    copy([](Real& value, Real& entry) { entry = value; });
-    unique.doExport(here, *import_, Tpetra::ADD);
-    here.doImport(unique, *import_, Tpetra::REPLACE);
-    copy([](Real& value, Real& entry) { value = entry; });
-  }
-
- private:
-  std::unordered_map<GlobalIndex, int> number_;
-  std::vector<GlobalIndex> ids_;
-  RCP<const fields::Map> map_;
-  RCP<const fields::Import> import_;
-};
-
-/// (e - 1)/c.
-Real potential_of(const laws::Fluid& fluid, Real p) {
-  const Real c = fluid.compressibility;
-  return c == 0 ? p : std::expm1(c * (p - fluid.reference_pressure)) / c;
-}
-
-/// Potentials of a state, or what they change by in an answer to small forces. Those of a compressible fluid are
-/// (e - 1)/c, of which the flux of mass is the gradient.
-class Potentials {
- public:
-  using Layouts = std::array<const fields::Layout*, 2>;
-  enum Of { cell, facet };
-
-  /// Collective.
-  Potentials(const Layouts& layouts, const laws::Fluid& fluid, const std::array<const fields::Vector*, 2>& p,
-             const std::array<const fields::Vector*, 2>& dp = {})
-      : fluid_(fluid), is_answer_(dp[0]) {
-    for (int k = 0; k < 2; ++k) {
-      p_[k] = with_ghosts(*layouts[k], *p[k]);
-      if (is_answer_) dp_[k] = with_ghosts(*layouts[k], *dp[k]);
-    }
-  }
-
-  bool is_answer() const { return is_answer_; }
-  Real operator()(Of of, LocalIndex i) const {
-    return is_answer_ ? fluid_.density(p_[of][i]) * dp_[of][i] : of_pressure(p_[of][i]);
-  }
-  Real of_pressure(Real p) const { return potential_of(fluid_, p); }
-  /// What drives a flow from an entity to one of its ends, see laws::Fluid.
-  Real drop(Of of, LocalIndex entity, LocalIndex end, Real lift) const {
-    const Real a = p_[of][entity], b = p_[facet][end];
-    if (!is_answer_) return fluid_.drop(a, b, lift);
-    return fluid_.ddrop_da(a, b, lift) * dp_[of][entity] + fluid_.ddrop_db(a, b, lift) * dp_[facet][end];
-  }
-  /// The fluid's weight in the gradient, over rho_0 g: e^2.
-  Real heaviness(Of of, LocalIndex i) const {
-    const Real e = fluid_.density(p_[of][i]);
-    return e * e * (is_answer_ ? 2 * fluid_.compressibility * dp_[of][i] : 1);
-  }
-
- private:
-  static std::vector<Real> with_ghosts(const fields::Layout& layout, const fields::Vector& owned) {
-    fields::Vector all(layout.ghosted());
-    all.doImport(owned, *layout.import(), Tpetra::REPLACE);
-    const auto view = all.getLocalViewHost(Tpetra::Access::ReadOnly);
-    return {view.data(), view.data() + view.extent(0)};
-  }
-
-  laws::Fluid fluid_;
-  bool is_answer_;
-  std::array<std::vector<Real>, 2> p_, dp_;
-};
-
 template <Shape shape>
 class Error final : public HybridError {
  public:
-  static constexpr int dim = mesh::dimension(shape), n = dim + 1;
-  using InCell = SimplexFlux<dim>;
-  using InFace = SimplexFlux<dim - 1>;
+  using Flux = HybridFlux<shape>;
+  static constexpr int dim = Flux::dim, n = Flux::n;
+  using InCell = typename Flux::InCell;
+  using InFace = typename Flux::InFace;
 
   Error(RCP<const mesh::Mesh> mesh, const fields::Layout& cells, const fields::Layout& facets,
         ConstView<char*> held_facets, HybridErrorParameters parameters)
-      : mesh_(mesh), layouts_{&cells, &facets}, parameters_(std::move(parameters)) {
+      : mesh_(mesh),
+        flow_(mesh, {&cells, &facets}, std::move(parameters.flow)),
+        storage_(std::move(parameters.storage)) {
     find_cells();
     find_faces();
     find_sides();
     join_places();
     n_of_energy_ = cell_of_component_.size();
     for (LocalIndex f = 0; dim == 2 && f < mesh_->n_owned_fracture_faces; ++f)
-      cell_of_component_.insert(cell_of_component_.end(), parameters_.fed.count(f) ? 3 : 1,
+      cell_of_component_.insert(cell_of_component_.end(), flow_.parameters().fed.count(f) ? 3 : 1,
                                 mesh_->fracture_faces[f].cell[mesh::minus]);
     find_held(held_facets);
     places_.close(mesh_->comm);
@@ -141,37 +39,57 @@ class Error final : public HybridError {
   const std::vector<LocalIndex>& cells() const override { return cell_of_component_; }
   std::size_t n_of_energy() const override { return n_of_energy_; }
 
-  MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) override {
-    auto [result, s] = parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}), t);
-    if (varies()) add_rates(s, t, result);
+  MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
+                            const assembly::Rates& rates) override {
+    auto [result, s] = parts(Potentials(flow_.layouts(), rock().fluid, {&cells, &facets}), t, &sums_);
+    if (varies()) add_rates(s, t, rates, result);
+    of_state_ = result.error;
     return result;
   }
   MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
                              const fields::Vector& d_facets) const override {
-    auto [result, s] = parts(Potentials(layouts_, parameters_.rock.fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0);
+    auto [result, s] =
+        parts(Potentials(flow_.layouts(), rock().fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0, nullptr);
     for (LocalIndex c = 0; varies() && c < mesh_->n_owned_cells; ++c)
       for (const Real one : variation(c, s)) result.error.push_back(one);
     result.whole.resize(result.error.size(), 0);
     return result;
   }
 
+  Forces forces() const override {
+    Gradient of(*this);
+    auto next = of_state_.begin();
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) of.add_entity(cells_[c], of.in_cells[c], next);
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) of.add_entity(faces_[f], of.in_faces[f], next);
+    for (const auto& side : sides_)
+      if (side.resistance > 0) of.add_side(side, next);
+    for (LocalIndex f = 0; dim == 2 && f < mesh_->n_owned_fracture_faces; ++f) of.add_two_points(f, next);
+    for (const auto& face : held_faces_)
+      if (is_mean(face.of)) ++next;
+    for (LocalIndex c = 0; varies() && c < mesh_->n_owned_cells; ++c) of.add_variation(c, next);
+    return of.forces();
+  }
+  void set_transmissivity(std::vector<Real> of_local_faces) override {
+    flow_.set_transmissivity(std::move(of_local_faces));
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+      faces_[f].flux = flow_.face(f).flux;
+      faces_[f].weight = weight_of_face(f);
+    }
+    find_stiffness();
+  }
+
  private:
   using Of = Potentials::Of;
   using Numbers = std::vector<std::array<Real, 1>>;
   static constexpr int n_sweeps = 5;
+  static constexpr Real relaxation = 1.5;  // stable below 2
 
-  struct Cell {
-    InCell flux;
-    CellFaces<shape> faces;
-    std::array<int, InCell::n_places> place;
+  /// Of a cell or a fracture face.
+  template <class In>
+  struct Entity {
+    In flux;
+    std::array<int, In::n_places> place;
     Real weight;  // in means: mobility times size^(dim - 2)
-  };
-  /// An owned fracture face.
-  struct Face {
-    InFace flux;
-    FacePlane<shape> plane;
-    std::array<int, InFace::n_places> place;
-    Real weight;
   };
   /// A side of a fracture face in an owned cell.
   struct Side {
@@ -184,27 +102,18 @@ class Error final : public HybridError {
   };
   /// A place where a potential is prescribed.
   struct HeldPlace {
-    int place, condition;
+    int place;
     mesh::Vector x;
     LocalIndex facet;
     Real share;  // in the mean over its face
   };
-  /// A face of a cell, or the end of a fracture face, with places held_[begin] to held_[end - 1].
+  /// With its places held_[begin] to held_[end - 1].
   struct HeldFace {
-    bool in_rock;
-    LocalIndex entity;  // cell or fracture face
-    int opposite;
+    typename Flux::Held of;
     std::size_t begin, end;
   };
 
-  /// The corner opposite to a face of a cell, or to a ridge of a face.
-  static constexpr int opposite(int face) { return dim == 2 ? (face + 2) % 3 : face; }
-  static constexpr int opposite_ridge(int ridge) { return dim == 2 ? 1 - ridge : (ridge + 2) % 3; }
-
-  Real exchange(LocalIndex f) const {
-    return parameters_.rock.exchange.empty() ? INFINITY : parameters_.rock.exchange[f];
-  }
-  LocalIndex node(LocalIndex cell, int k) const { return mesh_->cells[cell * mesh_->nodes_per_cell() + k]; }
+  const HybridDiffusionParameters& rock() const { return flow_.parameters().rock; }
 
   /// Numbers of places: nodes of the rock; middles of its edges, by their nodes; points of fractures; middles of their
   /// edges; in 2D, where nodes do not tell the two sides of a fracture apart, middles of sides.
@@ -217,12 +126,9 @@ class Error final : public HybridError {
 
   void find_cells() {
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
-      Real X[mesh::n_nodes(shape)][dim], corners[n][dim];
-      assembly::gather_host<shape>(*mesh_, c, X);
-      for (int k = 0; k < n; ++k) std::copy_n(X[k], dim, corners[k]);
-      const auto& mobility = parameters_.rock.mobility.of_cell(*mesh_, c);
-      Cell cell{InCell(corners, mobility), CellFaces<shape>(X), {}, 0};
-      cell.weight = mobility.template trace<dim>() / dim * std::pow(cell.flux.volume(), 1 - 2.0 / dim);
+      const auto& flux = flow_.cell(c).flux;
+      const auto& mobility = rock().mobility.of_cell(*mesh_, c);
+      Entity<InCell> cell{flux, {}, mobility.template trace<dim>() / dim * std::pow(flux.volume(), 1 - 2.0 / dim)};
       for (int a = 0; a < n; ++a)
         for (int b = a; b < n; ++b) cell.place[InCell::place(a, b)] = place_between(c, a, b);
       cells_.push_back(cell);
@@ -231,7 +137,7 @@ class Error final : public HybridError {
   }
   /// The place between two corners of a cell.
   int place_between(LocalIndex c, int a, int b) {
-    const auto id = [&](int k) { return mesh_->node_id[mesh_->free_node(node(c, k))]; };
+    const auto id = [&](int k) { return mesh_->node_id[mesh_->free_node(flow_.node(c, k))]; };
     return places_.add(rock_place(id(a), id(b)));
   }
 
@@ -245,20 +151,13 @@ class Error final : public HybridError {
 
   void find_faces() {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const auto& face = mesh_->fracture_faces[f];
-      const Real T = parameters_.transmissivity[f];
-      Real X[dim][dim - 1];
-      for (int k = 0; k < dim; ++k)
-        for (int t = 0; t < dim - 1; ++t) {
-          X[k][t] = 0;
-          for (int i = 0; i < dim; ++i)
-            X[k][t] += face.frame[1 + t][i] * mesh_->coordinates[face.nodes[mesh::minus][k] * dim + i];
-        }
-      faces_.push_back({InFace(X, laws::Mobility::isotropic(T)),
-                        FacePlane<shape>(*mesh_, f, T, parameters_.rock.scheme), places_of_face(f),
-                        T * std::pow(face.area, 1 - 2.0 / (dim - 1))});
-      cell_of_component_.insert(cell_of_component_.end(), InFace::n_components, face.cell[mesh::minus]);
+      faces_.push_back({flow_.face(f).flux, places_of_face(f), weight_of_face(f)});
+      cell_of_component_.insert(cell_of_component_.end(), InFace::n_components,
+                                mesh_->fracture_faces[f].cell[mesh::minus]);
     }
+  }
+  Real weight_of_face(LocalIndex f) const {
+    return flow_.parameters().transmissivity[f] * std::pow(mesh_->fracture_faces[f].area, 1 - 2.0 / (dim - 1));
   }
 
   void find_sides() {
@@ -266,15 +165,15 @@ class Error final : public HybridError {
       const auto& face = mesh_->fracture_faces[f];
       const LocalIndex c = face.cell[s];
       if (c >= mesh_->n_owned_cells) continue;
-      Side side{f, c, face.local_face[s], {}, {}, places_of_face(f), 1 / exchange(f), face.area * exchange(f)};
+      Side side{
+          f, c, face.local_face[s], {}, {}, places_of_face(f), 1 / flow_.exchange(f), face.area * flow_.exchange(f)};
       for (int k = 0; k < dim; ++k)
         for (int a = 0; a < n; ++a)
-          if (node(c, a) == face.nodes[s][k]) side.corner[k] = a;
+          if (flow_.node(c, a) == face.nodes[s][k]) side.corner[k] = a;
       if (dim == 2)
         cells_[c].place[InCell::place(side.corner[0], side.corner[1])] = places_.add(side_place(face.id, s));
       sides_.push_back(side);
       if (side.resistance == 0) continue;
-      resistance_[c * n + side.local_face] = side.resistance / face.area;
       cell_of_component_.insert(cell_of_component_.end(), n_face_points, c);
     }
   }
@@ -346,100 +245,161 @@ class Error final : public HybridError {
   }
 
   void find_held(ConstView<char*> held_facets) {
-    std::vector<Real> held;
-    {
-      fields::Vector owned(layouts_[1]->owned()), all(layouts_[1]->ghosted());
-      {
-        const auto mask = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), held_facets);
-        const auto to = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
-        for (std::size_t k = 0; k < mask.extent(0); ++k) to(k, 0) = mask(k);
+    for (const auto& held : flow_.held(held_facets)) {
+      const auto begin = held_.size();
+      for (const auto& point : flow_.points(held)) {
+        const int place = held.in_rock ? cells_[held.entity].place[InCell::place(point.a, point.b)]
+                                       : faces_[held.entity].place[InFace::place(point.a, point.b)];
+        held_.push_back({place, point.x, held.facet, point.share});
       }
-      all.doImport(owned, *layouts_[1]->import(), Tpetra::REPLACE);
-      const auto from = all.getLocalViewHost(Tpetra::Access::ReadOnly);
-      held.assign(from.data(), from.data() + from.extent(0));
-    }
-    const auto x_of = [&](LocalIndex a, LocalIndex b) {
-      mesh::Vector x{};
-      for (int i = 0; i < dim; ++i) x[i] = (mesh_->coordinates[a * dim + i] + mesh_->coordinates[b * dim + i]) / 2;
-      return x;
-    };
-    const auto& nodes_of = mesh::face_nodes(shape);
-    for (const auto& face : mesh_->boundary_faces) {
-      const LocalIndex facet = mesh_->facets->of_cell[face.cell * n + face.local_face];
-      if (!face.owned || held[facet] == 0) continue;
-      const int condition = condition_of(face.boundary, mesh_->cell_region[face.cell], -1);
-      const auto begin = held_.size();
-      for (int a = 0; a < dim; ++a)
-        for (int b = a; b < dim; ++b) {
-          const int k = nodes_of[face.local_face][a], l = nodes_of[face.local_face][b];
-          held_.push_back({cells_[face.cell].place[InCell::place(k, l)], condition,
-                           x_of(node(face.cell, k), node(face.cell, l)), facet, a == b ? at_corner : at_middle});
-        }
-      add_held_face({true, face.cell, opposite(face.local_face), begin, held_.size()});
-    }
-    std::map<std::pair<LocalIndex, int>, int> conditions;  // of ends, of which several boundaries may have one
-    for (const auto& rim : mesh_->facets->rims) {
-      const LocalIndex facet = mesh_->facets->ridge[rim.face * dim + rim.ridge];
-      if (rim.face >= mesh_->n_owned_fracture_faces || held[facet] == 0) continue;
-      const int condition = condition_of(rim.boundary, -1, mesh_->fracture_faces[rim.face].fracture);
-      if (condition == static_cast<int>(parameters_.held.size())) continue;  // something else holds it
-      const auto [known, is_new] = conditions.emplace(std::pair(rim.face, rim.ridge), condition);
-      if (!is_new) known->second = std::min(known->second, condition);
-    }
-    for (const auto& [end, condition] : conditions) {
-      const auto [f, ridge] = end;
-      const auto& face = mesh_->fracture_faces[f];
-      const LocalIndex facet = mesh_->facets->ridge[f * dim + ridge];
-      const int last = dim == 2 ? ridge : (ridge + 1) % 3;
-      const auto begin = held_.size();
-      for (const auto& [a, b] : {std::pair(ridge, ridge), std::pair(ridge, last), std::pair(last, last)})
-        held_.push_back({faces_[f].place[InFace::place(a, b)], condition,
-                         x_of(face.nodes[mesh::minus][a], face.nodes[mesh::minus][b]), facet,
-                         a == b ? 1.0 / 6 : 2.0 / 3});
-      if (dim == 3) add_held_face({false, f, opposite_ridge(ridge), begin, held_.size()});
+      held_faces_.push_back({held, begin, held_.size()});
+      if (is_mean(held))
+        cell_of_component_.push_back(held.in_rock ? held.entity : mesh_->fracture_faces[held.entity].cell[mesh::minus]);
     }
   }
-  void add_held_face(const HeldFace& face) {
-    held_faces_.push_back(face);
-    cell_of_component_.push_back(face.in_rock ? face.entity : mesh_->fracture_faces[face.entity].cell[mesh::minus]);
-  }
-  /// The first that holds a face of the rock (fracture < 0), or the end of a fracture.
-  int condition_of(int boundary, int region, int fracture) const {
-    const auto& all = parameters_.held;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) {
-      if (one.boundary != boundary) return false;
-      return fracture < 0 ? one.fracture < 0 && (one.region < 0 || one.region == region)
-                          : one.region < 0 && (one.fracture < 0 || one.fracture == fracture);
-    });
-    return static_cast<int>(found - all.begin());
-  }
+  /// Its unknown is the mean over an end that is no point.
+  static bool is_mean(const typename Flux::Held& held) { return held.in_rock || dim == 3; }
 
-  typename InCell::Flows flows_of_cell(LocalIndex c, const Potentials& u) const {
-    const auto& cell = cells_[c];
-    FlowMatrix<shape> matrix(cell.faces, parameters_.rock.mobility.of_cell(*mesh_, c), parameters_.rock.scheme);
-    for (int k = 0; k < n; ++k)
-      if (const auto found = resistance_.find(c * n + k); found != resistance_.end())
-        add_resistance(matrix.T, k, found->second);
-    typename InCell::Flows q{};
-    for (int k = 0; k < n; ++k) {
-      Real lift = 0;
-      for (int i = 0; i < dim; ++i) lift += parameters_.rock.weight[i] * cell.faces.centre[k][i];
-      const Real drop = u.drop(Of::cell, c, mesh_->facets->of_cell[c * n + k], lift);
-      for (int l = 0; l < n; ++l) q[opposite(l)] += matrix.T[l][k] * drop;
+  /// -e . e_v as a linear form of v: what components say of flows and of values at places, of which those of v follow
+  /// as the means of the potentials around, or from facets where a potential is prescribed.
+  struct Gradient {
+    const Error& error;
+    std::vector<typename InCell::Flows> in_cells;
+    std::vector<typename InFace::Flows> in_faces;
+    std::vector<std::array<Real, 2>> at_places;  // on the values there; on all that flows into a face, at its last
+    using Next = std::vector<Real>::const_iterator;
+
+    explicit Gradient(const Error& of)
+        : error(of), in_cells(of.cells_.size()), in_faces(of.faces_.size()), at_places(of.places_.size()) {}
+
+    template <class Entity, class Flows>
+    void add_entity(const Entity& entity, Flows& on_flows, Next& next) {
+      using In = std::decay_t<decltype(entity.flux)>;
+      typename In::Components e;
+      std::copy_n(next, In::n_components, e.begin());
+      next += In::n_components;
+      for (int k = 0; k < In::n; ++k) {
+        typename In::Flows one{};
+        one[k] = 1;
+        on_flows[k] += product(e, entity.flux.flux(one, {}));
+      }
+      const auto gradients = entity.flux.gradients();
+      for (std::size_t k = 0; k < gradients.size(); ++k) at_places[entity.place[k]][0] += product(e, gradients[k]);
     }
-    return q;
-  }
-  typename InFace::Flows flows_of_face(LocalIndex f, const Potentials& u) const {
-    const auto& plane = faces_[f].plane;
-    typename InFace::Flows q{};
-    for (int k = 0; k < dim; ++k) {
-      Real lift = 0;
-      for (int i = 0; i < dim; ++i) lift += parameters_.rock.weight[i] * plane.d[k][i];
-      const Real drop = u.drop(Of::facet, mesh_->facets->fracture_face[f], mesh_->facets->ridge[f * dim + k], lift);
-      for (int l = 0; l < dim; ++l) q[opposite_ridge(l)] += plane.T[l][k] * drop;
+    void add_side(const Side& side, Next& next) {
+      for (int p = 0; p < n_face_points; ++p, ++next) {
+        std::array<Real, dim> l{};
+        const Real share = face_point(p, l), e = *next * std::sqrt(share * error.area(side) * side.resistance);
+        const auto N = InFace::shapes(l);
+        in_cells[side.cell][Flux::opposite(side.local_face)] += e / error.area(side);
+        for (std::size_t k = 0; k < N.size(); ++k) {
+          at_places[side.of_cell[k]][0] -= e / side.resistance * N[k];
+          at_places[side.of_face[k]][0] += e / side.resistance * N[k];
+        }
+      }
     }
-    return q;
-  }
+    /// See Error::add_two_points().
+    void add_two_points(LocalIndex f, Next& next) {
+      const auto well = error.flow_.parameters().fed.find(f);
+      const bool fed = well != error.flow_.parameters().fed.end();
+      const Real e = *next++ * std::sqrt(error.two_point_resistance(f));
+      if (fed) at_places[error.faces_[f].place.back()][1] += e;
+      for (int k = 0; k < 2; ++k) {
+        if (!fed) {
+          in_faces[f][k] += e;
+          continue;
+        }
+        const Real nearer = error.nearer(f, k, well->second);
+        in_faces[f][Flux::opposite_ridge(k)] +=
+            *next++ * (nearer < 0 ? -1 : 1) * std::sqrt(std::abs(nearer) / error.flow_.parameters().transmissivity[f]);
+      }
+    }
+    void add_variation(LocalIndex c, Next& next) {
+      const auto& cell = error.cells_[c];
+      for (std::size_t j = 0; j < cell.place.size(); ++j) {
+        typename InCell::AtPlaces one{};
+        one[j] = 1;
+        const auto of = cell.flux.variation([&](const auto&, const auto& l) { return InCell::quadratic(one, l); });
+        for (int k = 0; k < n; ++k) at_places[cell.place[j]][0] += next[k] * of[k];
+      }
+      next += n;
+    }
+
+    /// Values at places were improved once more: s - relaxation/stiffness times the slopes of the energy. Collective.
+    void undo_improvement() {
+      std::vector<std::array<Real, 2>> more(at_places.size());
+      std::vector<Real> y(at_places.size(), 0);
+      for (std::size_t p = 0; p < y.size(); ++p)
+        if (error.sums_[p][held] == 0 && error.stiffness_[p][0] > 0)
+          y[p] = -relaxation * at_places[p][0] / error.stiffness_[p][0];
+      const auto add = [&](const auto& entity, auto& on_flows) {
+        using In = std::decay_t<decltype(entity.flux)>;
+        const auto gradients = entity.flux.gradients();
+        const auto g = entity.flux.error({}, gradients, at(y, entity.place));
+        for (int k = 0; k < In::n; ++k) {
+          typename In::Flows one{};
+          one[k] = 1;
+          on_flows[k] += product(g, entity.flux.flux(one, {}));
+        }
+        for (std::size_t k = 0; k < gradients.size(); ++k) more[entity.place[k]][0] += product(g, gradients[k]);
+      };
+      for (std::size_t c = 0; c < in_cells.size(); ++c) add(error.cells_[c], in_cells[c]);
+      for (std::size_t f = 0; f < in_faces.size(); ++f) add(error.faces_[f], in_faces[f]);
+      error.for_each_point_of_sides([&](const Side& side, Real spring, const auto& N) {
+        const Real jump = product(at(y, side.of_cell), N) - product(at(y, side.of_face), N);
+        in_cells[side.cell][Flux::opposite(side.local_face)] -= spring * side.resistance / error.area(side) * jump;
+        for (std::size_t k = 0; k < N.size(); ++k) {
+          more[side.of_cell[k]][0] += spring * jump * N[k];
+          more[side.of_face[k]][0] -= spring * jump * N[k];
+        }
+      });
+      error.places_.sum_over_ranks(more);
+      for (std::size_t p = 0; p < more.size(); ++p) at_places[p][0] += more[p][0];
+    }
+    /// Values at places follow from means over entities and flows.
+    template <class Entity, class Flows>
+    Real add_means(const Entity& entity, Flows& on_flows) const {
+      using In = std::decay_t<decltype(entity.flux)>;
+      typename In::AtPlaces shares{};
+      Real on_mean = 0;
+      for (std::size_t j = 0; j < shares.size(); ++j) {
+        const auto& sum = error.sums_[entity.place[j]];
+        if (sum[held] == 0) shares[j] = entity.weight / sum[weight] * at_places[entity.place[j]][0];
+        on_mean += shares[j];
+      }
+      for (int k = 0; k < In::n; ++k) {
+        typename In::Flows one{};
+        one[k] = 1;
+        on_flows[k] += product(shares, entity.flux.potential(one, 0, {}));
+      }
+      return on_mean;
+    }
+    Forces forces() {
+      const auto& mesh = *error.mesh_;
+      error.places_.sum_over_ranks(at_places);
+      for (int k = 0; k < n_sweeps; ++k) undo_improvement();
+      Forces all{{}, std::vector<Real>(mesh.facets->id.size(), 0), {}};
+      for (const auto& side : error.sides_)
+        in_cells[side.cell][Flux::opposite(side.local_face)] += at_places[side.of_face.back()][1];
+      for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
+        all.on_cells.push_back(-add_means(error.cells_[c], in_cells[c]));
+        for (int k = 0; k < n; ++k) all.on_flows.in_cells.push_back(-in_cells[c][Flux::opposite(k)]);
+      }
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+        const Real on_mean = add_means(error.faces_[f], in_faces[f]);
+        if (dim == 3) all.on_facets[mesh.facets->fracture_face[f]] -= on_mean;
+        for (int k = 0; k < 2 && dim == 2; ++k) {  // see mean_in_face()
+          all.on_facets[error.flow_.facet_of_face(f, k)] -= on_mean / 2;
+          in_faces[f][k] += on_mean * error.two_point_resistance(f) / 2;
+        }
+        for (int k = 0; k < dim; ++k) all.on_flows.in_faces.push_back(-in_faces[f][Flux::opposite_ridge(k)]);
+      }
+      for (const auto& one : error.held_)
+        all.on_facets[one.facet] -= at_places[one.place][0] / error.sums_[one.place][held];
+      return all;
+    }
+  };
+  friend struct Gradient;
 
   /// Of SimplexFlux::flux().
   struct Components {
@@ -461,21 +421,21 @@ class Error final : public HybridError {
   }
 
   /// And s at all places.
-  std::pair<MeshError::Parts, std::vector<Real>> parts(const Potentials& u, Real t) const {
+  std::pair<MeshError::Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* kept) const {
     Sums sums(places_.size());
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
-      in_cells.push_back(flows_of_cell(c, u));
+      in_cells.push_back(flow_.in_cell(c, u));
       add(cells_[c], cells_[c].flux.potential(in_cells.back(), u(Of::cell, c), weight_in_cell(c, u)), sums);
     }
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      in_faces.push_back(flows_of_face(f, u));
+      in_faces.push_back(flow_.in_face(f, u));
       add(faces_[f],
           faces_[f].flux.potential(in_faces.back(), mean_in_face(f, in_faces.back(), u), weight_in_face(f, u)), sums);
     }
     for (const auto& side : sides_) {
-      const Real q = in_cells[side.cell][opposite(side.local_face)], drop = side.resistance * q / area(side);
+      const Real q = in_cells[side.cell][Flux::opposite(side.local_face)], drop = side.resistance * q / area(side);
       for (std::size_t k = 0; side.resistance > 0 && k < side.of_cell.size(); ++k) {
         auto& sum = sums[side.of_cell[k]];
         ++sum[sides];
@@ -485,13 +445,15 @@ class Error final : public HybridError {
       sums[side.of_face.back()][inflow] += q;
     }
     std::vector<Real> given;
-    for (const auto& one : held_) {
-      given.push_back(u.is_answer() ? u(Of::facet, one.facet)
-                                    : u.of_pressure((*parameters_.held[one.condition].values[0])(one.x, t)));
-      ++sums[one.place][held];
-      sums[one.place][held_values] += given.back();
-    }
+    for (const auto& face : held_faces_)
+      for (std::size_t k = face.begin; k < face.end; ++k) {
+        const auto& one = held_[k];
+        given.push_back(u.is_answer() ? u(Of::facet, one.facet) : u.of_pressure(flow_.prescribed(face.of, one.x, t)));
+        ++sums[one.place][held];
+        sums[one.place][held_values] += given.back();
+      }
     places_.sum_over_ranks(sums);
+    if (kept) *kept = sums;
     auto s = common_potential(sums);
     Components fluxes;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
@@ -501,7 +463,9 @@ class Error final : public HybridError {
     for (int k = 0; k < n_sweeps; ++k) improve(fluxes, in_cells, sums, s);
     auto result = errors(u, fluxes, in_cells, in_faces, sums, s);
     for (const auto& face : held_faces_) {
-      const Real q = face.in_rock ? in_cells[face.entity][face.opposite] : in_faces[face.entity][face.opposite];
+      if (!is_mean(face.of)) continue;
+      const Real q = face.of.in_rock ? in_cells[face.of.entity][Flux::opposite(face.of.end)]
+                                     : in_faces[face.of.entity][Flux::opposite_ridge(face.of.end)];
       Real missed = -u(Of::facet, held_[face.begin].facet);
       for (std::size_t k = face.begin; k < face.end; ++k) missed += held_[k].share * given[k];
       result.error.push_back(u.is_answer() ? -q : missed);
@@ -511,34 +475,36 @@ class Error final : public HybridError {
   }
 
   /// Something adds to or takes from the flow in cells that need not be constant in them.
-  bool varies() const { return !parameters_.storage.empty() || !parameters_.rock.source.empty(); }
+  bool varies() const { return !storage_.empty() || !rock().source.empty(); }
   typename InCell::Flows variation(LocalIndex c, const std::vector<Real>& s) const {
     const auto of_cell = at(s, cells_[c].place);
     return cells_[c].flux.variation([&](const auto&, const auto& l) { return InCell::quadratic(of_cell, l); });
   }
   /// What is stored per time, less the source.
-  void add_rates(const std::vector<Real>& s, Real t, MeshError::Parts& parts) {
-    const Real dt = t - time_before_;
+  void add_rates(const std::vector<Real>& s, Real t, const assembly::Rates& rates, MeshError::Parts& parts) {
+    const auto stored = std::move(before_);
+    const auto& older = stored[1].empty() ? stored[0] : stored[1];
+    before_[0].clear();
+    before_[1] = stored[0];
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
       typename InCell::Flows rate{};
-      if (!parameters_.rock.source.empty())
-        rate = cells_[c].flux.variation([&](const auto& x, const auto&) { return -parameters_.rock.source[0](x, t); });
+      if (!rock().source.empty())
+        rate = cells_[c].flux.variation([&](const auto& x, const auto&) { return -rock().source[0](x, t); });
       const auto now = variation(c, s);
-      for (int k = 0; !before_.empty() && dt > 0 && k < n; ++k)
-        rate[k] += parameters_.storage[c] * (now[k] - before_[c][k]) / dt;
-      if (!before_.empty()) before_[c] = now;
+      for (int k = 0; !stored[0].empty() && k < n; ++k)
+        rate[k] +=
+            storage_[c] * (rates.now * (now[k] - stored[0][c][k]) - rates.before * (stored[0][c][k] - older[c][k]));
+      if (!stored[0].empty()) before_[0].push_back(now);
       parts.error.insert(parts.error.end(), rate.begin(), rate.end());
     }
     parts.whole.resize(parts.error.size(), 0);
-    time_before_ = t;
   }
   /// At the start.
   void find_before() {
-    for (LocalIndex c = 0; !parameters_.storage.empty() && c < mesh_->n_owned_cells; ++c)
-      before_.push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
-        return parameters_.rock.initial ? potential_of(parameters_.rock.fluid, (*parameters_.rock.initial)(x, 0)) : 0;
+    for (LocalIndex c = 0; !storage_.empty() && c < mesh_->n_owned_cells; ++c)
+      before_[0].push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
+        return rock().initial ? potential_of(rock().fluid, (*rock().initial)(x, 0)) : 0;
       }));
-    time_before_ = parameters_.start;
   }
 
   /// s at all places, see HybridErrorParameters.
@@ -591,7 +557,6 @@ class Error final : public HybridError {
   /// A step of Jacobi's method towards the s with the least energy.
   void improve(const Components& fluxes, const std::vector<typename InCell::Flows>& in_cells, const Sums& sums,
                std::vector<Real>& s) const {
-    constexpr Real relaxation = 1.5;  // stable below 2
     Numbers slopes(s.size());
     const auto add = [&](const auto& entity, const auto& flux) {
       const auto of = entity.flux.gradients();
@@ -601,7 +566,7 @@ class Error final : public HybridError {
     for (std::size_t c = 0; c < cells_.size(); ++c) add(cells_[c], fluxes.in_cells[c]);
     for (std::size_t f = 0; f < faces_.size(); ++f) add(faces_[f], fluxes.in_faces[f]);
     for_each_point_of_sides([&](const Side& side, Real spring, const auto& N) {
-      const Real q = in_cells[side.cell][opposite(side.local_face)] / area(side);
+      const Real q = in_cells[side.cell][Flux::opposite(side.local_face)] / area(side);
       const Real error = product(at(s, side.of_cell), N) - product(at(s, side.of_face), N) - side.resistance * q;
       for (std::size_t k = 0; k < N.size(); ++k) {
         slopes[side.of_cell[k]][0] += spring * error * N[k];
@@ -626,7 +591,8 @@ class Error final : public HybridError {
     for (std::size_t c = 0; c < cells_.size(); ++c) add(cells_[c], fluxes.in_cells[c], in_cells[c]);
     for (std::size_t f = 0; f < faces_.size(); ++f) add(faces_[f], fluxes.in_faces[f], in_faces[f]);
     for (const auto& side : sides_)
-      if (side.resistance > 0) add_side(side, in_cells[side.cell][opposite(side.local_face)] / area(side), s, result);
+      if (side.resistance > 0)
+        add_side(side, in_cells[side.cell][Flux::opposite(side.local_face)] / area(side), s, result);
     for (LocalIndex f = 0; dim == 2 && f < mesh_->n_owned_fracture_faces; ++f)
       add_two_points(f, in_faces[f], sums[faces_[f].place.back()][inflow], u.is_answer(), result.error);
     result.whole.resize(result.error.size(), 0);
@@ -637,18 +603,22 @@ class Error final : public HybridError {
   /// middle of the face makes of the ways to both ends.
   void add_two_points(LocalIndex f, const typename InFace::Flows& q, Real inflow, bool is_answer,
                       std::vector<Real>& error) const {
-    const auto well = parameters_.fed.find(f);
-    const bool fed = well != parameters_.fed.end();
+    const auto well = flow_.parameters().fed.find(f);
+    const bool fed = well != flow_.parameters().fed.end();
     error.push_back(std::sqrt(two_point_resistance(f)) * (fed ? inflow : q[0] + q[1]));
     if (!fed) return;
-    const auto& plane = faces_[f].plane;
     for (int end = 0; end < 2; ++end) {  // the flow through end k is opposite to corner 1 - k
-      Real towards = 0;
-      for (int i = 0; i < dim; ++i) towards += plane.d[end][i] * mesh_->fracture_faces[f].frame[1][i];
-      const Real nearer = towards > 0 ? well->second : -well->second;
-      const Real factor = std::sqrt(std::abs(well->second) / parameters_.transmissivity[f]);
-      error.push_back((is_answer && nearer < 0 ? -1 : 1) * factor * q[opposite_ridge(end)]);
+      const Real nearer = this->nearer(f, end, well->second);
+      const Real factor = std::sqrt(std::abs(well->second) / flow_.parameters().transmissivity[f]);
+      error.push_back((is_answer && nearer < 0 ? -1 : 1) * factor * q[Flux::opposite_ridge(end)]);
     }
+  }
+
+  /// By how much a well is nearer to an end of a face than its middle.
+  Real nearer(LocalIndex f, int end, Real distance) const {
+    Real towards = 0;
+    for (int i = 0; i < dim; ++i) towards += flow_.face(f).plane.d[end][i] * mesh_->fracture_faces[f].frame[1][i];
+    return towards > 0 ? distance : -distance;
   }
 
   void add_side(const Side& side, Real q, const std::vector<Real>& s, MeshError::Parts& parts) const {
@@ -663,8 +633,6 @@ class Error final : public HybridError {
     }
   }
 
-  /// Shares of places in the mean of a quadratic function over a face.
-  static constexpr Real at_corner = dim == 2 ? 1.0 / 6 : 0, at_middle = dim == 2 ? 2.0 / 3 : 1.0 / 3;
   /// Barycentric coordinates and share of the area, of a rule of degree 5 on edges, of degree 4 on triangles.
   static constexpr int n_face_points = dim == 2 ? 3 : 6;
   static Real face_point(int p, std::array<Real, dim>& l) {
@@ -688,7 +656,7 @@ class Error final : public HybridError {
   Real area(const Side& side) const { return mesh_->fracture_faces[side.face].area; }
   typename InCell::Weight weight_in_cell(LocalIndex c, const Potentials& u) const {
     typename InCell::Weight w{};
-    for (int i = 0; i < dim; ++i) w[i] = parameters_.rock.weight[i] * u.heaviness(Of::cell, c);
+    for (int i = 0; i < dim; ++i) w[i] = rock().weight[i] * u.heaviness(Of::cell, c);
     return w;
   }
   typename InFace::Weight weight_in_face(LocalIndex f, const Potentials& u) const {
@@ -696,13 +664,12 @@ class Error final : public HybridError {
     const auto& face = mesh_->fracture_faces[f];
     for (int t = 0; t < dim - 1; ++t)
       for (int i = 0; i < dim; ++i)
-        w[t] +=
-            parameters_.rock.weight[i] * face.frame[1 + t][i] * u.heaviness(Of::facet, mesh_->facets->fracture_face[f]);
+        w[t] += rock().weight[i] * face.frame[1 + t][i] * u.heaviness(Of::facet, mesh_->facets->fracture_face[f]);
     return w;
   }
   /// 2D: L/(6 T), with the length L.
   Real two_point_resistance(LocalIndex f) const {
-    return mesh_->fracture_faces[f].area / (6 * parameters_.transmissivity[f]);
+    return mesh_->fracture_faces[f].area / (6 * flow_.parameters().transmissivity[f]);
   }
   /// The mean of the quadratic potential along a face; 2D: that which has the potentials of both ends.
   Real mean_in_face(LocalIndex f, const typename InFace::Flows& q, const Potentials& u) const {
@@ -712,20 +679,21 @@ class Error final : public HybridError {
   }
 
   RCP<const mesh::Mesh> mesh_;
-  Potentials::Layouts layouts_;
-  HybridErrorParameters parameters_;
+  Flux flow_;
+  std::vector<Real> storage_;  // HybridErrorParameters
   Places places_;
-  std::vector<Cell> cells_;
-  std::vector<Face> faces_;
+  std::vector<Entity<InCell>> cells_;
+  std::vector<Entity<InFace>> faces_;
   std::vector<Side> sides_;
   Numbers stiffness_;  // [place]
   std::vector<HeldPlace> held_;
   std::vector<HeldFace> held_faces_;
-  std::unordered_map<LocalIndex, Real> resistance_;  // [cell * n + face] Pa s/m^3
   std::vector<LocalIndex> cell_of_component_;
   std::size_t n_of_energy_ = 0;
-  std::vector<typename InCell::Flows> before_;  // [owned cell] variation of the potential in the state before
-  Real time_before_ = 0;
+  /// [owned cell] variation of the potential in the last state and the one before; before the first step there is one
+  std::array<std::vector<typename InCell::Flows>, 2> before_;
+  std::vector<Real> of_state_;  // components of the last state
+  Sums sums_;                   // of that
 };
 
 }  // namespace

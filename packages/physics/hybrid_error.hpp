@@ -1,23 +1,17 @@
 // How far the fluxes of the hybrid form are off, told by a potential that is continuous.
 #pragma once
 
-#include "assembly/constraints.hpp"
-#include "fields/layout.hpp"
-#include "physics/hybrid_diffusion.hpp"
+#include "assembly/rates.hpp"
+#include "physics/hybrid_flux.hpp"
 #include "physics/mesh_error.hpp"
 
 #include <memory>
-#include <map>
 
 namespace sprekk::physics {
 
 struct HybridErrorParameters {
-  HybridDiffusionParameters rock = {};                  ///< as in the module
-  std::vector<Real> transmissivity = {};                ///< [local fracture face] m^3/(Pa s)
-  std::vector<Real> storage = {};                       ///< [owned cell] 1/Pa; empty: nothing is stored
-  Real start = 0;                                       ///< time of the initial state
-  std::vector<assembly::DirichletCondition> held = {};  ///< what is prescribed on facets
-  std::map<LocalIndex, Real> fed = {};  ///< 2D: fracture faces that a well feeds, and how far it is from their middle
+  HybridFluxParameters flow = {};
+  std::vector<Real> storage = {};  ///< [owned cell] 1/Pa; empty: nothing is stored
 };
 
 /// For fluxes q_h that are in balance and any continuous potential s with the values that are prescribed (Prager and
@@ -42,10 +36,21 @@ class HybridError {
   virtual const std::vector<LocalIndex>& cells() const = 0;
   virtual std::size_t n_of_energy() const = 0;
   /// Of potentials on cells and on facets, [owned unknown]; `answer`: small changes of these. Collective.
-  /// What is stored is since the state of which this was asked before, or the initial one.
-  virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t) = 0;
+  /// What is stored is since the two states of which this was asked before, or the initial one.
+  virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
+                                    const assembly::Rates& rates) = 0;
   virtual MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
                                      const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
+
+  /// A linear form of potentials v and their flows q_v, with what is added up over an entity's ends.
+  struct Forces {
+    std::vector<Real> on_cells, on_facets;  ///< times v, [owned cell], [local facet]
+    HybridFlows on_flows;                   ///< times q_v
+  };
+  /// -e . e_v of the last state e that was asked for and of an answer v, but for what v needs where a potential is
+  /// prescribed; v's potential begins as the means of v alone, whatever resists. Collective.
+  virtual Forces forces() const = 0;
+  virtual void set_transmissivity(std::vector<Real> of_local_faces) = 0;
 };
 
 /// Refers to the layouts, of cells and of facets; `held_facets`: the owned ones that are prescribed. Collective.

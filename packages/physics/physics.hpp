@@ -109,7 +109,7 @@ struct Physics {
   /// Why there is no error estimate with it; empty if there is.
   static std::string no_error_estimate(const Scene&) { return ""; }
   /// What it can be asked for with an error, by Functional::what.
-  static std::vector<std::string> quantities() { return {}; }
+  static std::vector<QuantityKind> quantities() { return {}; }
   /// Why it cannot be asked for one of these, after the place of the entry if it has one; empty: it can.
   static std::string refuses(const Scene&, const Functional&) { return ""; }
   /// The error of its unknowns; null: it has none. Refers to the system. Collective.

@@ -86,6 +86,7 @@ def cases():
     network = dict(scene="flow/network_2d.xml", quantity="flow", coarse=box(10)[0], uniform=box(10, 20, 40, 80, 160, 320), orders=(1,))
     steady = ("Flow.compressibility=0", "Time.steps=1")
     well = ("Flow.Wells.well.points={60, 70}", "Flow.Wells.well.radius=0.1", "Flow.Wells.well.pressure=0.5e6")
+    plate = lambda *rows: [(f"Mesh.cells={{{10 * n}, {n}}}",) for n in rows]  # noqa: E731
     return [
         Case("crack opening", **crack("sneddon", "opening", 1.5e-3 * mean)),
         Case("sliding", **crack("sneddon_shear", "slip", 1.5e-3 * mean)),
@@ -105,6 +106,10 @@ def cases():
         Case("compliant joint", "verification/free_sides_2d.xml", "shear force", "", box(8)[0], box(8, 16, 32, 64, 128), sets=simplices),
         Case("well in a network", **network, fractures="well well", sets=(*steady, *well)),
         Case("flow through a network", **network, fractures="boundary west", sets=steady),
+        Case("plate, outflow", "accuracy/plate_2d.xml", "flow", "boundary east", plate(2)[0], plate(2, 4, 8, 16, 32), sets=alone("outflow", "force")),
+        Case("cooling", "thm/cooling_2d.xml", "slip", "fault", box(16)[0], box(16, 32, 64, 128), requests=REQUESTS[:2], reference=1e-3, sets=("Time.steps=5",)),
+        Case("doublet", "accuracy/doublet_2d.xml", "temperature", "well producer", box(10)[0], box(10, 20, 40, 80), requests=(0.01, 0.001), orders=(1,),
+             reference=1e-4, sets=alone("produced temperature", "produced heat")),
     ]
 
 
@@ -138,7 +143,7 @@ def start(options, case, order, source, asked, label, others=()):
         sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={asked:g}", f"Accuracy.seconds={options.seconds:g}"]
         if case.quantity == "reaction":
             sets += [f"{goal}.{entry}={word}" for entry, word in zip(("boundary", "component"), case.fractures.split())]
-        elif case.quantity == "flow":
+        elif case.quantity in ("flow", "heat flow", "temperature"):
             sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")

@@ -143,8 +143,6 @@ std::string Flow::no_error_estimate(const Scene& scene) {
   const auto any = [](const auto& all, const auto& has) {
     return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
   };
-  if (Mechanics::is_in(scene))
-    return "is of a fluid in rigid rock, or of rock without one; needs \"Flow > rigid rock\"";
   if (flow.scheme != "auto" && flow.scheme != "rt0")
     return fmt::format("is of the scheme rt0; not available with \"Flow > scheme\" {}", flow.scheme);
   if (any(scene.boundary_conditions, [](const auto& condition) { return condition.conductance.has_value(); }))
@@ -154,6 +152,12 @@ std::string Flow::no_error_estimate(const Scene& scene) {
   if (any(scene.fractures, [](const auto& fracture) { return !fracture.cuts.empty(); }))
     return "is of fractures whose fillings are one; not available with \"cuts\"";
   return "";
+}
+
+std::vector<QuantityKind> Flow::quantities() {
+  return {{"pressure", "Pa", "Pa", "of a well, or the mean over fractures"},
+          {"flow", "m^3/s", "m^2/s", "of fluid into the domain from a well or through a boundary"},
+          {"flux", "sqrt(W)", "sqrt(W/m)", "root of the power that the flow of fluid dissipates"}};
 }
 
 std::string Flow::refuses(const Scene& scene, const Functional& J) {

@@ -4,9 +4,10 @@
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/balance_error.hpp"
 #include "physics/comparison.hpp"
 #include "physics/flow/advection.hpp"
-#include "physics/flow/flow_error.hpp"
+#include "physics/flow/fluid_flux.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/wells.hpp"
 #include "physics/hybrid_diffusion.hpp"
@@ -289,22 +290,40 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
         {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change}));
 }
 
-std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
-  if (!is_in(setting.scene)) return nullptr;
-  auto parts = parts_of(setting, carried_in(setting.scene));
+FluidFlux fluid_flux(const Setting& setting) {
+  auto parts = parts_of(setting, {});
   SPREKK_CHECK(parts.darcy.scheme == FluxScheme::rt0,
                "{}: the estimate of the error of flow is of triangles and tetrahedra, with the scheme rt0",
                setting.scene.origin);
-  const Real of_fluid = parts.darcy.fluid.compressibility;
-  HybridErrorParameters error{.rock = std::move(parts.darcy), .start = setting.start};
+  FluidFlux all{.flux = {.rock = std::move(parts.darcy)}, .conduits = {}, .wells = std::move(parts.wells)};
+  for (const auto& face : parts.fractures.faces) {
+    all.conduits.push_back(face.along);
+    all.flux.transmissivity.push_back(face.along.transmissivity());
+  }
+  const auto names = names_of(setting.mesh);
+  all.flux.held = dirichlet_conditions(setting.scene.boundary_conditions, {}, names, "face pressure");
+  return all;
+}
+
+std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
+  if (!is_in(setting.scene)) return nullptr;
+  auto [flux, conduits, wells] = fluid_flux(setting);
+  const Real of_fluid = flux.rock.fluid.compressibility;
+  BalanceErrorParameters parameters{.field = "pressure",
+                                    .flux = "flux",
+                                    .power = "W",
+                                    .inflows = "inflows",
+                                    .potential = {"pressure", "pressure"},
+                                    .flow = {"flow", "rate"},
+                                    .error = {.flow = std::move(flux)},
+                                    .conduits = std::move(conduits),
+                                    .wells = std::move(wells)};
   const auto capacity = capacities(setting, of_fluid);
   for (LocalIndex c = 0; system.has_rates() && c < setting.mesh.n_owned_cells; ++c) {
     const auto& of = capacity.of_cell(setting.mesh, c);
-    error.storage.push_back(of.growth + of_fluid * of.room);
+    parameters.error.storage.push_back(of.growth + of_fluid * of.room);
   }
-  for (const auto& face : parts.fractures.faces) error.transmissivity.push_back(face.along.transmissivity());
-  error.held = dirichlet_conditions(setting.scene.boundary_conditions, {}, names_of(setting.mesh), "face pressure");
-  return make_flow_error(system, std::move(error), std::move(parts.wells));
+  return make_balance_error(system, std::move(parameters));
 }
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {

@@ -113,7 +113,7 @@ struct Flow : Physics<Flow> {
   static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Flow"}; }
   static std::string no_error_estimate(const Scene& scene);
-  static std::vector<std::string> quantities() { return {"pressure", "flow", "flux"}; }
+  static std::vector<QuantityKind> quantities();
   static std::string refuses(const Scene& scene, const Functional& J);
   static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static void compare(Comparison& comparison);

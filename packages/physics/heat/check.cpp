@@ -138,6 +138,51 @@ void compare_conditions(Comparison& c) {
 
 }  // namespace
 
+std::string Heat::no_error_estimate(const Scene& scene) {
+  if (!scene.heat) return "";
+  const auto& heat = *scene.heat;
+  if (heat.scheme != "auto" && heat.scheme != "rt0")
+    return fmt::format("is of the scheme rt0; not available with \"Heat > scheme\" {}", heat.scheme);
+  if (heat.advection != "upwind") return "is of upwind flow; not available with \"Heat > advection\" second order";
+  if (heat.fluid_change())
+    return fmt::format("is of a fluid that heat does not change; not available with \"Heat > fluid\" {}", heat.fluid);
+  if (heat.of_friction) return "is of joints that give off no heat; not available with \"Heat > heat of friction\"";
+  const auto& conditions = scene.boundary_conditions;
+  if (std::any_of(conditions.begin(), conditions.end(),
+                  [](const auto& named) { return named.second.heat_transfer_coefficient.has_value(); }))
+    return "is of boundaries whose temperature or heat flux is given; not available with \"heat transfer coefficient\"";
+  const auto& regions = scene.regions;
+  if (std::any_of(regions.begin(), regions.end(), [](const auto& named) { return named.second.temperature; }))
+    return "is of temperatures that are given on boundaries; not available with one of a region";
+  return "";
+}
+
+std::vector<QuantityKind> Heat::quantities() {
+  return {{"temperature", "K", "K", "of what a well puts in or takes out, or the mean over fractures"},
+          {"heat flow", "W", "W/m", "into the domain from a well or through a boundary"}};
+}
+
+std::string Heat::refuses(const Scene& scene, const Functional& J) {
+  const bool of_well = !J.well.empty(), is_flow = J.what == "heat flow";
+  const auto absent = [&](const char* entry, const char* of) {
+    return fmt::format("\"{}\": must be absent: \"{}\" {}", entry, J.what, of);
+  };
+  if (is_flow && !J.fractures.empty()) return absent("fractures", "is not taken over them");
+  if (!is_flow && !J.boundary.empty()) return absent("boundary", "is of a well or of fractures");
+  if (!is_flow && of_well && !J.fractures.empty()) return absent("fractures", "is of the well");
+  if (is_flow && of_well == !J.boundary.empty())
+    return of_well ? "is of a \"boundary\" or a \"well\", not of both" : "needs \"boundary\" or \"well\"";
+  if (of_well && (!scene.flow || !scene.flow->wells.count(J.well)))
+    return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
+  const auto& conditions = scene.boundary_conditions;
+  if (is_flow && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
+        return one.second.boundary == J.boundary && one.second.temperature;
+      }))
+    return fmt::format("\"boundary\": is \"{}\", where no temperature is given, so that its heat flow is known",
+                       J.boundary);
+  return "";
+}
+
 void Heat::compare(Comparison& c) {
   compare_without_heat(c);
   if (!c.scene().heat) return;

@@ -2,7 +2,10 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
+#include "physics/balance_error.hpp"
+#include "physics/comparison.hpp"
 #include "physics/entry_of_place.hpp"
+#include "physics/flow/fluid_flux.hpp"
 #include "physics/heat/fracture_heat.hpp"
 #include "physics/heat/temperatures.hpp"
 #include "physics/heat/thermal_expansion.hpp"
@@ -263,8 +266,42 @@ bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 
 bool Heat::has_initial_state(const Scene& scene) { return !is_in(scene) || scene.heat->initial_temperature; }
 
-std::string Heat::no_error_estimate(const Scene& scene) {
-  return scene.heat ? "is of stress and jumps without heat; not available with \"Heat\"" : "";
+std::unique_ptr<MeshError> Heat::mesh_error(const Setting& setting, assembly::System& system) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene)) return nullptr;
+  HybridDiffusionParameters rock;
+  rock.initial = scene.heat->initial_temperature;
+  Properties<Real> capacity;
+  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
+    rock.mobility = conductivity_of(scene, mesh);
+    capacity = capacity_of_rock(scene, mesh);
+  });
+  rock.scheme = flux_scheme(scheme_entry(*scene.heat), mesh, rock.mobility).scheme;
+  SPREKK_CHECK(rock.scheme == FluxScheme::rt0,
+               "{}: the estimate of the error of heat is of triangles and tetrahedra, with the scheme rt0",
+               scene.origin);
+  if (!is_zero(scene.heat->source)) rock.source = {scene.heat->source};
+  BalanceErrorParameters parameters{.field = "temperature",
+                                    .flux = "heat flux",
+                                    .power = "W*K",
+                                    .inflows = "heat_inflows",
+                                    .potential = {"temperature", "temperature"},
+                                    .flow = {"heat flow", "heat"},
+                                    .error = {.flow = {.rock = std::move(rock)}}};
+  auto& error = parameters.error;
+  if (!mesh.fracture_names.empty())
+    for (const auto& face : fillings(setting)) {
+      error.flow.rock.exchange.push_back(2 * face.conductivity / face.aperture);
+      error.flow.transmissivity.push_back(face.aperture * face.conductivity);
+    }
+  error.flow.held = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face temperature");
+  for (LocalIndex c = 0; system.has_rates() && c < mesh.n_owned_cells; ++c)
+    error.storage.push_back(capacity.of_cell(mesh, c));
+  if (scene.flow && scene.heat->fluid_capacity.value_or(0) > 0) {
+    auto fluid = fluid_flux(setting);
+    parameters.carrier = {std::move(fluid.flux), std::move(fluid.conduits), *scene.heat->fluid_capacity};
+  }
+  return make_balance_error(system, std::move(parameters));
 }
 
 std::vector<Carried> Heat::carried(const Scene& scene) {

@@ -82,6 +82,9 @@ struct Heat : Physics<Heat> {
   static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static std::string no_error_estimate(const Scene& scene);
+  static std::vector<QuantityKind> quantities();
+  static std::string refuses(const Scene& scene, const Functional& J);
+  static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static std::vector<Carried> carried(const Scene& scene);
   static std::string takes_friction_power(const Scene& scene);
   /// What does not go with BDF2, empty: all does.

@@ -310,7 +310,8 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
 }
 
 std::string Mechanics::no_error_estimate(const Scene& scene) {
-  if (!is_in(scene)) return has_fluid(scene) ? "" : "is of stress and jumps, and the rock does not deform";
+  if (!is_in(scene))
+    return has_fluid(scene) || scene.heat ? "" : "is of stress and jumps, and the rock does not deform";
   const auto& conditions = scene.boundary_conditions;
   if (std::any_of(conditions.begin(), conditions.end(),
                   [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))
@@ -319,8 +320,13 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
   return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
 }
 
-std::vector<std::string> Mechanics::quantities() {
-  return {"slip", "opening", "normal force", "shear force", "reaction", "stress"};
+std::vector<QuantityKind> Mechanics::quantities() {
+  return {{"slip", "m", "m", "the mean of the plastic slip over the area of fractures"},
+          {"opening", "m", "m", "the mean of the normal jump"},
+          {"normal force", "N", "N/m", "the integral of compression"},
+          {"shear force", "N", "N/m", "the integral of the size of shear traction"},
+          {"reaction", "N", "N/m", "the force that holds a boundary"},
+          {"stress", "sqrt(J)", "sqrt(J/m)", "root of the integral of s : C^-1 s, twice the elastic energy"}};
 }
 
 std::string Mechanics::refuses(const Scene& scene, const Functional& J) {

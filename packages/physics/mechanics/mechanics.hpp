@@ -109,7 +109,7 @@ struct Mechanics : Physics<Mechanics> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene);
   static std::string no_error_estimate(const Scene& scene);
-  static std::vector<std::string> quantities();
+  static std::vector<QuantityKind> quantities();
   static std::string refuses(const Scene& scene, const Functional& J);
   static std::vector<std::string> fixed_entries();
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);

@@ -115,6 +115,9 @@ class PoroelasticCoupling final : public assembly::Module {
     }
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override;
+  void artificial(const assembly::State& state, const assembly::Rows& rows) const override {
+    stabilised_.assembler->add_residual(stabilised_.at(1), state, rows);
+  }
   void add_schur(const assembly::State& state, const assembly::Rows& diagonal) const override {
     const auto rows = diagonal[pressures_[0]];
     const auto schur = schur_;

@@ -1,0 +1,169 @@
+// Estimates of the errors of what flows and of what it moves, against solutions that are exact but for the mesh.
+#include "model/goals.hpp"
+#include "verification/heat/warm_boxes.hpp"
+
+namespace sprekk::tests {
+namespace {
+
+struct Measured {
+  Real value, error;
+};
+
+/// Of a quantity, after all steps.
+Measured measure(model::Scene scene, const model::Quantity& quantity) {
+  scene.accuracy.emplace().quantities["goal"] = quantity;
+  scene.accuracy->quantities["goal"].relative = 0.01;
+  model::Model model(scene, Tpetra::getDefaultComm());
+  model::ErrorEstimator estimator(model);
+  estimator.want_reactions();
+  model::Goals goals(model);
+  const auto times = model.scene().time.times();
+  for (const Real t : times) {
+    EXPECT_TRUE(model.step_to(t).converged);
+    const auto outputs = Outputs(model).all();
+    const auto estimate = estimator(outputs);
+    goals.add(outputs, estimate, estimator, t == times.back());
+    goals.weigh(outputs, estimate, estimator, t == times.back());
+  }
+  Real marked = 0;  // of all shares, which make up one
+  for (const Real share : goals.indicators({{"goal", 1}})) marked += share;
+  Real all = 0;
+  Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &marked, &all);
+  EXPECT_NEAR(all, 1, 1e-10);
+  const auto& goal = goals.estimates().at("goal");
+  return {goal.value, goal.error};
+}
+
+/// Estimate over error on two meshes; the error falls with this order.
+void compare(const std::string& name, const model::Quantity& quantity, Real exact, Real order,
+             const std::vector<model::Scene>& scenes) {
+  SCOPED_TRACE(name + ", " + quantity.title());
+  Real before = 0;
+  for (const auto& scene : scenes) {
+    const auto got = measure(scene, quantity);
+    const Real missed = std::abs(got.value - exact);
+    if (Tpetra::getDefaultComm()->getRank() == 0)
+      fmt::print("  {}, {}: {:.2e} of {:.3g}, estimate {:.2f}\n", name, quantity.title(), missed, exact,
+                 got.error / missed);
+    EXPECT_GE(got.error / missed, 0.5);
+    EXPECT_LE(got.error / missed, 2);
+    if (before > 0) EXPECT_NEAR(std::log2(before / missed), order, 0.5);
+    before = missed;
+  }
+}
+
+model::Quantity through(const std::string& what, const std::string& boundary, const std::string& component = "x") {
+  model::Quantity quantity;
+  quantity.what = what;
+  quantity.boundary = boundary;
+  quantity.component = component;
+  return quantity;
+}
+
+constexpr int n_steps = 4;
+constexpr Real dt = 0.05, lambda = 2, G = 1, alpha = 0.8, mobility = 0.3, storage = 0.5;
+constexpr Real modulus = lambda + 2 * G, rate = M_PI * M_PI / 4;  // of cos(pi y/2) under -d^2/dy^2
+
+/// A column as wide as 1/2 and as high as 1 between walls, on a floor, with a free top.
+model::Scene column(const std::string& cell, int order, int n) {
+  const bool flat = is_flat(cell);
+  std::vector<std::string> sets = {
+      "Mesh.cell=" + cell,
+      fmt::format("Mesh.order={}", order),
+      flat ? "Mesh.lower corner={0, 0}" : "Mesh.lower corner={0, 0, 0}",
+      flat ? "Mesh.upper corner={0.5, 1}" : "Mesh.upper corner={0.5, 0.5, 1}",
+      flat ? fmt::format("Mesh.cells={{{}, {}}}", n / 2, n) : fmt::format("Mesh.cells={{{0}, {0}, {1}}}", n / 2, n),
+      fmt::format("Materials.rock.Lame's first parameter={}", lambda),
+      fmt::format("Materials.rock.shear modulus={}", G),
+      fmt::format("Time.end={}", n_steps * dt),
+      fmt::format("Time.steps={}", n_steps)};
+  auto scene = read_scene(flat ? "verification/terzaghi_2d.xml" : "verification/terzaghi_3d.xml", sets);
+  for (auto& [name, condition] : scene.boundary_conditions) condition.traction.clear();
+  return scene;
+}
+
+/// The strain upwards is alpha (p - p_0)/M where nothing holds the top, so that p_0, a cosine of the height, decays as
+/// a whole, by a factor in each step, and the walls feel -alpha (1 - lambda/M) times how it changes.
+TEST(CoupledEstimate, ConsolidationOfAColumn) {
+  const Real left = std::pow(1 + mobility / (storage + alpha * alpha / modulus) * rate * dt, -n_steps);
+  for (const std::string cell : {"triangle", "tetrahedron"})
+    for (const int order : {1, 2}) {
+      const bool flat = is_flat(cell);
+      const Real width = flat ? 0.5 : 0.25, wall = flat ? 1 : 0.5;
+      std::vector<model::Scene> scenes;
+      for (const int n : flat ? std::vector{8, 16} : std::vector{4, 8}) {
+        auto scene = column(cell, order, n);
+        auto& rock = scene.materials.at("rock");
+        rock.biot = Expression(alpha);
+        rock.permeability = {Expression(mobility)};
+        rock.compressibility = storage;
+        scene.flow->viscosity = 1;
+        scene.flow->initial_pressure = Expression(flat ? "cos(pi*y/2)" : "cos(pi*z/2)");
+        scenes.push_back(scene);
+      }
+      const auto name = fmt::format("{} of order {}", cell, order);
+      compare(name, through("flow", flat ? "north" : "top"), -mobility * M_PI / 2 * left * width, 2, scenes);
+      compare(name, through("reaction", "east"), alpha * (1 - lambda / modulus) * (1 - left) * wall * 2 / M_PI, 2,
+              scenes);
+    }
+}
+
+/// The same of heat: rock that shrinks as it cools, at the walls by -3K alpha_T (1 - lambda/M) of the change.
+TEST(CoupledEstimate, CoolingOfAColumn) {
+  constexpr Real conductivity = 0.3, capacity = 0.7, expansion = 0.2, stiffness = (3 * lambda + 2 * G) * expansion;
+  const Real left = std::pow(1 + conductivity / capacity * rate * dt, -n_steps);
+  for (const std::string cell : {"triangle", "tetrahedron"}) {
+    const bool flat = is_flat(cell);
+    const Real width = flat ? 0.5 : 0.25, wall = flat ? 1 : 0.5;
+    std::vector<model::Scene> scenes;
+    for (const int n : flat ? std::vector{8, 16} : std::vector{4, 8}) {
+      auto scene = column(cell, 1, n);
+      scene.flow.reset();
+      scene.boundary_conditions.erase("top");
+      warm(scene, 0, conductivity, capacity, 0);
+      scene.materials.at("rock").permeability.clear();
+      scene.materials.at("rock").thermal_expansion = Expression(expansion);
+      scene.heat->initial_temperature = Expression(flat ? "cos(pi*y/2)" : "cos(pi*z/2)");
+      hold_temperature(scene, flat ? "north" : "top", "0");
+      scenes.push_back(scene);
+    }
+    compare(cell, through("heat flow", flat ? "north" : "top"), -conductivity * M_PI / 2 * left * width, 2, scenes);
+    compare(cell, through("reaction", "east"), stiffness * (1 - lambda / modulus) * (1 - left) * wall * 2 / M_PI, 2,
+            scenes);
+  }
+}
+
+/// Steady: what flows from the west to the east carries heat against conduction, T = (e^(P x) - 1)/(e^P - 1), upwind.
+TEST(CoupledEstimate, HeatThatAFluidCarries) {
+  constexpr Real P = 3, conductivity = 0.5;
+  for (const std::string cell : {"triangle", "tetrahedron"}) {
+    const bool flat = is_flat(cell);
+    std::vector<model::Scene> scenes;
+    for (const int n : flat ? std::vector{16, 32} : std::vector{8, 16}) {
+      auto scene = closed_box(cell, false, n);
+      scene.mesh.fractures["a"] = {flat ? std::vector<Real>{0.5, 0} : std::vector<Real>{0.5, 0, 0},
+                                   flat ? std::vector<Real>{0.5, 1} : std::vector<Real>{0.5, 1, 1}};
+      scene.flow->viscosity = 1;
+      hold(scene, "west", "1");
+      hold(scene, "east", "0");
+      warm(scene, 0, conductivity, 0, P * conductivity);
+      for (auto& [name, material] : scene.materials) {
+        if (material.type == "joint") {
+          material.filling_conductivity = Expression(10);
+          material.tangential_permeability = Expression(1e-9);
+        } else {
+          material.permeability = {Expression(1)};
+        }
+      }
+      hold_temperature(scene, "west", "0");
+      hold_temperature(scene, "east", "1");
+      scenes.push_back(scene);
+    }
+    model::Quantity temperature;
+    temperature.what = "temperature";
+    compare(cell, temperature, std::expm1(P / 2) / std::expm1(P), 1, scenes);
+  }
+}
+
+}  // namespace
+}  // namespace sprekk::tests
