@@ -105,6 +105,9 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// See RateErrors::forget.
   void forget_rates(bool jump);
 
+  /// [owned fracture face]. Collective.
+  std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
+
   const mesh::Mesh& mesh() const { return *mesh_; }
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
   const std::vector<fields::Layout>& layouts() const { return layouts_; }
@@ -158,7 +161,6 @@ class System : public fields::BlockProblem, private contact::Equations {
   void update_scales(Real t);
   void find_schur();
   std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;
-  std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
   std::vector<contact::Grip> present_grips();
   std::vector<char> states(const fields::BlockVector& x) override;
   contact::Sizes sizes() const override;

@@ -6,6 +6,7 @@
 #include "mesh/extents.hpp"
 #include "model/json_keys.hpp"
 #include "physics/comparison.hpp"
+#include "physics/mechanics/edge_of_contact.hpp"
 #include "physics/mechanics/traction_recovery.hpp"
 
 #include <algorithm>
@@ -95,10 +96,7 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
     estimate_answer(std::move(right_side), outputs, estimate);
     return estimate;
   }
-  physics::ByField<RCP<const fields::Vector>> displacement;
-  for (std::size_t k = 0; k < displacement.size(); ++k)
-    if (blocks_[k] >= 0) displacement[k] = model_.state()[blocks_[k]];
-  auto error = (*recovery_)(displacement);
+  auto error = (*recovery_)(displacement(model_.state()));
   const auto& scales = model_.system().scales();
   const Real energy = scales.at("stress") * scales.at("displacement");
   estimate.stress = error.error;
@@ -242,10 +240,14 @@ std::vector<Real> ErrorEstimator::answer_energy(const std::vector<Real>& d) {
   physics::add_opposite_tractions(model_.mesh(), layouts(), traction, direction, forces);
   hold(right_side);
   if (!model_.newton().answer(model_.state(), right_side, x, solve_tolerance).converged) return {};
-  physics::ByField<RCP<const fields::Vector>> answer;
+  return (*recovery_)(displacement(x)).energy;
+}
+
+physics::ByField<RCP<const fields::Vector>> ErrorEstimator::displacement(const fields::BlockVector& x) const {
+  physics::ByField<RCP<const fields::Vector>> fields;
   for (std::size_t k = 0; k < blocks_.size(); ++k)
-    if (blocks_[k] >= 0) answer[k] = x[blocks_[k]];
-  return (*recovery_)(answer).energy;
+    if (blocks_[k] >= 0) fields[k] = x[blocks_[k]];
+  return fields;
 }
 
 /// What the stress leaves over.
@@ -288,6 +290,7 @@ void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::
     estimate.failure = error.what();
     return;
   }
+  if (block("traction") >= 0) add_edges(right_side);
   const auto report = model_.newton().answer(model_.state(), right_side, x, solve_tolerance);
   estimate.failure = report.reason;
   if (!report.converged) return;
@@ -308,6 +311,28 @@ void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::
     for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
       estimate.reactions[k].force[i] -= reactions[k].force[i] + forces[k].force[i];
   if (recovery_ && !model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
+}
+
+/// Rows of tractions are those of the face law, linear in moves of jumps and tractions: what they make of a move asks
+/// for it.
+void ErrorEstimator::add_edges(fields::BlockVector& right_side) const {
+  auto& system = model_.system();
+  const auto& mesh = model_.mesh();
+  const auto& scene = model_.scene();
+  const int lambda = block("traction");
+  auto move = fields::create_like(model_.state()), rows = fields::create_like(model_.state());
+  if (!physics::add_edges_of_contact(mesh, layouts(), displacement(model_.state()),
+                                     {physics::elasticity(scene, mesh), physics::varying_gaps(scene, mesh)},
+                                     system.grips(model_.state()), *move[blocks_[physics::bubble]], *move[lambda]))
+    return;
+  system.globalisation().damp(0, {});
+  for (std::size_t k = 0; k < system.modules().size(); ++k) {
+    if (system.modules()[k]->name() != "elastic-plastic jump") continue;
+    auto law = system.create_matrix();
+    system.module_jacobian(static_cast<int>(k), model_.state(), law);
+    law.apply(move, rows);
+    right_side[lambda]->update(1, *rows[lambda], 1);
+  }
 }
 
 void ErrorEstimator::estimate_jump(const std::vector<OutputField>& outputs, ErrorEstimate& estimate) const {

@@ -48,8 +48,9 @@ class ErrorEstimator {
   explicit ErrorEstimator(Model& model);
 
   /// Of the present state. `outputs` are its. The stress against the recovered one (see physics::StressRecovery); for
-  /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over
-  /// and to what prescribed displacements miss between nodes, with states of contact as they are. Collective.
+  /// the jumps, the answer of the linearised problem to the forces that the recovered stress and traction leave over,
+  /// to what prescribed displacements miss between nodes, and to what faces miss in which contact begins or ends, with
+  /// states of contact as they are. Collective.
   ErrorEstimate operator()(const std::vector<assembly::OutputField>& outputs);
   /// From now on that of the reactions is wanted, without fractures, too.
   void want_reactions() { wants_reactions_ = true; }
@@ -79,6 +80,9 @@ class ErrorEstimator {
   void estimate_answer(fields::BlockVector right_side, const std::vector<assembly::OutputField>& outputs,
                        ErrorEstimate& estimate);
   void add_before(fields::BlockVector& right_side);
+  /// Adds to the rows of tractions what moves faces by what they miss in which contact begins or ends.
+  void add_edges(fields::BlockVector& right_side) const;
+  physics::ByField<RCP<const fields::Vector>> displacement(const fields::BlockVector& x) const;
   void estimate_jump(const std::vector<assembly::OutputField>& outputs, ErrorEstimate& estimate) const;
 
   /// Sets the rows of prescribed unknowns to what their values lack: of displacements what they miss between nodes.

@@ -353,4 +353,16 @@ std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillat
   return all;
 }
 
+std::vector<const base::Expression*> varying_gaps(const Scene& scene, const mesh::Mesh& mesh) {
+  std::vector<const base::Expression*> gaps;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    const auto& material = scene.own_joints.empty()
+                               ? scene.materials.at(scene.fractures.at(mesh.fracture_names[face.fracture]).material)
+                               : joint_of(scene, mesh, face.single);
+    gaps.push_back(material.initial_gap.is_constant() ? nullptr : &material.initial_gap);
+  }
+  return gaps;
+}
+
 }  // namespace sprekk::physics

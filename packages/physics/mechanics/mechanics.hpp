@@ -149,6 +149,9 @@ struct StartOfFace {
 /// Of all owned ones; empty without initial stress. Collective.
 std::vector<StartOfFace> starts_of_faces(const Setting& setting);
 
+/// g0 of (14), [owned fracture face]; null where it is the same all along the fracture.
+std::vector<const base::Expression*> varying_gaps(const Scene& scene, const mesh::Mesh& mesh);
+
 /// Along the normal, of owned fracture faces, m. Collective.
 std::vector<Real> initial_openings(const Setting& setting);
 

@@ -105,7 +105,8 @@ class Unresolved {
   }
 
   /// G_ij = dt_i/dx_j by least squares over the faces of the same fracture that share a node of this side; as small as
-  /// possible in directions in which there are none.
+  /// possible in directions in which there are none. Open ones tell nothing of it: where contact ends the traction does
+  /// not go on as a straight line.
   Matrix gradient(LocalIndex f, int side) const {
     const auto& face = mesh_.fracture_faces[f];
     std::vector<LocalIndex> neighbours;
@@ -115,9 +116,11 @@ class Unresolved {
           if (other != f && mesh_.fracture_faces[other].fracture == face.fracture) neighbours.push_back(other);
     std::sort(neighbours.begin(), neighbours.end());
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
-    Real largest = 0;
+    Real largest = size_[f];
     for (const LocalIndex other : neighbours) largest = std::max(largest, size_[other]);
-    if (size_[f] <= 1e-10 * largest || neighbours.empty()) return {};  // open, or alone
+    const auto is_open = [&](LocalIndex g) { return size_[g] <= 1e-10 * largest; };
+    neighbours.erase(std::remove_if(neighbours.begin(), neighbours.end(), is_open), neighbours.end());
+    if (is_open(f) || neighbours.empty()) return {};
     Matrix normal{}, G{};
     for (const LocalIndex other : neighbours)
       for (int j = 0; j < dim; ++j) {

@@ -171,6 +171,41 @@ TEST(ErrorEstimate, Cracks) {
     }
 }
 
+/// Contact that ends within a face, which is open or closed as a whole: half a wave of a fracture that is pressed
+/// together (Westergaard 1939), see perf/verification/exact.py. What a mean pressure less than p* and waves p_k of the
+/// pressure open: -2 sum p_k/(k G/(1 - nu)) in the mean.
+TEST(ErrorEstimate, ContactThatEndsWithinAFace) {
+  constexpr Real modulus = 1 / 0.75, load = 0.4, full = M_PI * modulus * 0.01;
+  constexpr int n = 2048;
+  Real exact = 0;
+  for (int k = 1; k < n / 2; ++k) {
+    Real wave = 0;
+    for (int i = 0; i < n; ++i) {
+      const Real x = (i + 0.5) / n, s = std::sin(M_PI * x), c = std::abs(std::cos(M_PI * x));
+      wave += 2.0 / n * 2 * full * c * std::sqrt(std::max(load - s * s, 0.0)) * std::cos(2 * M_PI * k * x);
+    }
+    exact -= 2 * wave / (2 * M_PI * k * modulus);
+  }
+  for (const int order : {1, 2}) {
+    SCOPED_TRACE(fmt::format("order {}", order));
+    model::Model model(read_scene("verification/wavy.xml", {fmt::format("Mesh file.order={}", order)}),
+                       Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged);
+    const auto& mesh = model.mesh();
+    const auto e = estimate(model);
+    const auto& lacks = e.fields.back();
+    ASSERT_EQ(lacks.name, "jump error");
+    const Outputs out(model);
+    Real mean = 0, estimated = 0;
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      mean += 2 * mesh.fracture_faces[f].area * out.vector("jump", f)[1];
+      estimated += 2 * mesh.fracture_faces[f].area * lacks.values[2 * f + 1];
+    }
+    expect_between(sum(*mesh.comm, estimated) / (exact - sum(*mesh.comm, mean)), 0.5, 2, "mean jump");
+    if (mesh.comm->getRank() == 0) fmt::print("  wavy of order {}\n", order);
+  }
+}
+
 /// Solutions that are in the discrete space.
 TEST(ErrorEstimate, NoneWhereThereIsNone) {
   for (const int dim : {2, 3})
