@@ -287,19 +287,19 @@ struct ReferenceCell {
   }
 };
 
-/// A rule for cells that are not is_straight(), most of them at crack tips: 6 points in each direction of a simplex, of
-/// the 2 triangles of a quadrilateral, of a hexahedron. In triangles and tetrahedra it collapses towards the corners
+/// A rule for cells that are not is_straight(), most of them at crack tips: n_1d points in each direction of a simplex,
+/// of the 2 triangles of a quadrilateral, of a hexahedron. In triangles and tetrahedra it collapses towards the corners
 /// that quarter points are next to: where all edges of one corner (of two, in 3D) have theirs, see
 /// move_to_quarter_points(), integrands of the stiffness are smooth in the rule's coordinates though not in the cell's,
 /// and polynomials in a triangle. A hexahedron keeps the product rule: its parts would need 8 points for the divergence
 /// theorem to hold, and linear displacements to be exact.
-template <Shape shape>
+template <Shape shape, int n_1d = 6>
 class CurvedQuadrature {
  public:
   using Cell = ReferenceCell<shape>;
   static constexpr int dim = Cell::dim, n_pieces = dim == 2 && !is_simplex(shape) ? 2 : 1;
   static constexpr bool collapses = dim == 2 || is_simplex(shape);
-  using Rule = Quadrature<!collapses ? shape : dim == 2 ? Shape::triangle : Shape::tetrahedron, 6>;
+  using Rule = Quadrature<!collapses ? shape : dim == 2 ? Shape::triangle : Shape::tetrahedron, n_1d>;
   static constexpr int n = n_pieces * Rule::n;
 
   /// X: node coordinates [node][component].

@@ -105,8 +105,8 @@ void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
 }
 
 /// Were errors to fall by the same factor r = E_k / E_(k-1) as estimates, the change since the last mesh would be
-/// e_(k-1) - e_k, hence e_k = r / (1 - r) times it. r is taken to be between 1/3 and 2/3. An estimate that falls by
-/// more than half at once may be luck, and is not believed at once.
+/// e_(k-1) - e_k, hence e_k = r / (1 - r) times it. r is taken to be between 1/3 and 2/3. An estimate that falls to
+/// less than 2^-order at once may be luck, and is not believed at once.
 Real Adaptation::space_error(const std::string& name) const {
   const auto& now = runs_.back().estimates.at(name);
   if (runs_.size() < 2) return now.error;
@@ -114,7 +114,7 @@ Real Adaptation::space_error(const std::string& name) const {
   const Real change = std::abs(now.value - before.value);
   const Real falls = before.error > 0 ? now.error / before.error : 1;
   const Real r = std::isfinite(falls) ? std::clamp<Real>(falls, 1.0 / 3, 2.0 / 3) : 2.0 / 3;
-  return std::max({now.error, before.error / 2, r / (1 - r) * change});
+  return std::max({now.error, before.error * std::exp2(-order_), r / (1 - r) * change});
 }
 
 bool Adaptation::reached() const {
@@ -144,6 +144,8 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
   const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
   runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), goals.estimates()});
   verdicts_.clear();
+  dim_ = mesh.dim();
+  order_ = mesh::order(mesh.shape);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto& now = runs_.back().estimates.at(name);
     const Real space = space_error(name), asked = quantity.asked(now.value);
@@ -160,7 +162,6 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
              : limit(accuracy, *mesh.comm);
   if (!why_.empty()) return;
   cells_ = cells_to_halve(model, goals);
-  dim_ = mesh.dim();
   if (cells_.empty()) why_ = "no cell is to blame by the estimate";
 }
 

@@ -62,7 +62,7 @@ class Adaptation {
   std::vector<Run> runs_;
   std::vector<Verdict> verdicts_;
   std::vector<GlobalIndex> cells_;  // to be halved, of all ranks
-  int dim_ = 0;
+  int dim_ = 0, order_ = 0;         // of the mesh
   std::string why_;
 };
 

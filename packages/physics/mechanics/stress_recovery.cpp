@@ -159,7 +159,7 @@ class Recovery final : public StressRecovery {
     } else {
       Real X[n_nodes][dim];
       assembly::gather_host<shape>(*mesh_, cell, X);
-      visit_all(assembly::CurvedQuadrature<shape>(X));
+      visit_all(assembly::CurvedQuadrature<shape, 4>(X));
     }
   }
 

@@ -4,10 +4,12 @@
 #include "mesh/facets.hpp"
 #include "physics/mechanics/symmetric.hpp"
 
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 namespace sprekk::physics {
 
@@ -31,9 +33,9 @@ class TipModes {
           add(face, static_cast<int>(k));
   }
 
-  /// Around a tip, a corner of a local cell, seen from a point of the cell: the front goes from the tip to the other
-  /// tips of the cell, or, where there are none, as the edges of the front around the tip say. Pa m^0.5. Nothing where
-  /// no fracture is known to end, as at a node that is tied to a tip.
+  /// Around a tip, a corner of a local cell, seen from a point of the cell: the front goes along its edge from the tip
+  /// that the cell has, or, where it has none, as the edges of the front around the tip say; tips of other fronts do
+  /// not count. Pa m^0.5. Nothing where no fracture is known to end, as at a node that is tied to a tip.
   std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x,
                                           Real poisson) const {
     using namespace mesh;
@@ -41,7 +43,7 @@ class TipModes {
     if (found == frames_.end()) return {};
     Vector along{}, normal = found->second.normal, ahead = Real(-1) * found->second.behind;
     if constexpr (dim == 3) {
-      const Vector other = front(cell, tip);
+      const Vector other = front(cell, tip, found->second.next);
       along = found->second.along;
       if (!(dot(along, along) > 0)) along = cross(ahead, normal);
       if (dot(other, other) > 0) along = (dot(other, along) < 0 ? Real(-1) : Real(1)) * other;
@@ -60,6 +62,7 @@ class TipModes {
  private:
   struct Frame {
     mesh::Vector normal{}, behind{}, along{};  // not of unit length; along: as ahead x normal
+    std::vector<LocalIndex> next;              // nodes at the other ends of the front's edges
   };
 
   mesh::Vector from_to(LocalIndex a, LocalIndex b) const {
@@ -69,7 +72,7 @@ class TipModes {
   }
 
   /// For the tip that is the k-th node of a face. Edges that both sides share, as the normal says which way round, add
-  /// up to those of the front: of others two faces have opposite directions.
+  /// up to those of the front: of others two faces have opposite directions, and both name their ends.
   void add(const mesh::Mesh::FractureFace& face, int k) {
     using namespace mesh;
     const LocalIndex node = face.nodes[0][k];
@@ -84,14 +87,22 @@ class TipModes {
     const auto to = [&](int other) { return from_to(node, face.nodes[0][other]); };
     const Real sign = dot(cross(to(next), to(last)), face.frame[0]) > 0 ? 1 : -1;
     for (const auto& [other, way] : {std::pair(next, -sign), std::pair(last, sign)})
-      if (face.nodes[0][other] == face.nodes[1][other]) frame.along = frame.along + way * to(other);
+      if (const LocalIndex end = face.nodes[0][other]; end == face.nodes[1][other]) {
+        frame.along = frame.along + way * to(other);
+        const auto found = std::find(frame.next.begin(), frame.next.end(), end);
+        if (found == frame.next.end())
+          frame.next.push_back(end);
+        else
+          frame.next.erase(found);
+      }
   }
 
-  /// From a tip to another one of the cell; zero if there is none.
-  mesh::Vector front(LocalIndex cell, LocalIndex tip) const {
+  /// From a tip to a next one that the cell has, too; zero if there is none.
+  mesh::Vector front(LocalIndex cell, LocalIndex tip, const std::vector<LocalIndex>& next) const {
     const int n_nodes = mesh_.nodes_per_cell();
     for (int k = 0; k < n_nodes; ++k)
-      if (const LocalIndex other = mesh_.cells[cell * n_nodes + k]; other != tip && mesh_.tip[other])
+      if (const LocalIndex other = mesh_.cells[cell * n_nodes + k];
+          std::find(next.begin(), next.end(), other) != next.end())
         return from_to(tip, other);
     return {};
   }
