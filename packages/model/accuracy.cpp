@@ -54,9 +54,8 @@ void Quantity::describe(base::Section& s) {
   s.required_choice(what, "quantity", names, fmt::format("{}", fmt::join(texts, "; ")));
   s.entry(fractures, "fractures", "-", "over which it is taken together; absent: all");
   s.entry(boundary, "boundary", "-",
-          "of a reaction: where displacements are prescribed; of a flow: where pressure is, or temperature");
-  s.entry(well, "well", "-",
-          "of a pressure: with a rate; of a flow: with a pressure; of temperature and heat flow: any");
+          "of a reaction: where displacements are prescribed; of a flow: where its potential is");
+  s.entry(well, "well", "-", "of a pressure: with a rate; of a flow: with a pressure; of what that carries: any");
   s.choice(component, "component", {"x", "y", "z"}, "of a reaction");
   s.entry(relative, "relative", "-", base::between(1e-8, 1), "error by the value at the end of the run");
   const auto own = unit(3);

@@ -145,7 +145,7 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
   runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), goals.estimates()});
   verdicts_.clear();
   dim_ = mesh.dim();
-  order_ = mesh::order(mesh.shape);
+  order_ = goals.any_flux() ? 1 : mesh::order(mesh.shape);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto& now = runs_.back().estimates.at(name);
     const Real space = space_error(name), asked = quantity.asked(now.value);

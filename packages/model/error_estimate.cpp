@@ -46,7 +46,7 @@ nlohmann::json ErrorEstimate::summary() const {
   result["stress"] = {{"relative", relative_stress}, {"energy_norm", stress}};
   if (!failure.empty())
     result["jump"] = {{"failure", failure}};
-  else if (fields.size() > 1)
+  else if (fields.back().name == "jump error")
     result["jump"] = {{"relative", relative_jump}, {"norm", jump}};
   return result;
 }
@@ -54,7 +54,8 @@ nlohmann::json ErrorEstimate::summary() const {
 ErrorEstimator::ErrorEstimator(Model& model)
     : model_(model),
       blocks_{block("displacement"), block("side bubble"), block("tip displacement")},
-      recovery_(make_recovery(model, layouts())) {
+      recovery_(make_recovery(model, layouts())),
+      rates_(model.setting().start) {
   section_ = std::pow(mesh::largest_extent(model.mesh()), model.mesh().dim() - 1);
   physics::for_each_physics([&](auto physics) {
     if (auto error = physics.mesh_error(model.setting(), model.system())) flux_errors_.push_back(std::move(error));
@@ -91,9 +92,10 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
                                .n_components = 1,
                                .values = std::move(density)});
   }
+  const bool any_goals = model_.scene().accuracy.has_value();
   auto right_side = fields::create_like(model_.state());
   if (!recovery_) {
-    estimate_answer(std::move(right_side), outputs, estimate);
+    if (any_goals) estimate_answer(std::move(right_side), outputs, estimate);
     return estimate;
   }
   auto error = (*recovery_)(displacement(model_.state()));
@@ -108,7 +110,8 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
                              .entity = fields::Entity::cell,
                              .n_components = 1,
                              .values = std::move(error.density)});
-  if (!wants_reactions_ && model_.mesh().fracture_names.empty() && flux_errors_.empty()) return estimate;
+  const bool any_balance = any_goals && !flux_errors_.empty();
+  if (!wants_reactions_ && model_.mesh().fracture_names.empty() && !any_balance) return estimate;
   add_stress(error, right_side);
   estimate_answer(std::move(right_side), outputs, estimate);
   return estimate;
@@ -156,16 +159,6 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const 
   return std::nullopt;
 }
 
-/// Rates of what is stored, in the last step, of each module that stores something.
-std::vector<fields::BlockMatrix> ErrorEstimator::storage() const {
-  auto& system = model_.system();
-  std::vector<fields::BlockMatrix> all;
-  for (std::size_t k = 0; k < system.modules().size(); ++k)
-    if (system.modules()[k]->declare(model_.mesh()).stores)
-      system.module_jacobian(static_cast<int>(k), model_.state(), all.emplace_back(system.create_matrix()));
-  return all;
-}
-
 std::vector<Real> ErrorEstimator::shares(const physics::Functional& J,
                                          const std::vector<std::vector<ErrorEstimate::Flux>>& steps) {
   const auto scope = model_.timers().scope("error estimate");
@@ -173,8 +166,6 @@ std::vector<Real> ErrorEstimator::shares(const physics::Functional& J,
   auto& error = *flux_errors_[0];
   auto right_side = fields::create_like(model_.state()), z = fields::create_like(model_.state());
   error.add_derivative(J, model_.state(), right_side);
-  const auto rates = storage();
-  auto product = fields::create_like(model_.state());
   std::vector<Real> result(model_.mesh().n_owned_cells, 0);
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     if (!model_.newton().answer(model_.state(), right_side, z, solve_tolerance).converged) return {};
@@ -188,11 +179,9 @@ std::vector<Real> ErrorEstimator::shares(const physics::Functional& J,
         result[error.cells()[k]] += std::abs(of_step.parts[k] * parts[k]);
     const auto weight = by_cell(error, squares);
     for (std::size_t c = 0; c < weight.size(); ++c) result[c] += std::sqrt(weight[c] * of_step.energy[c]);
-    for (auto& block : right_side) block->putScalar(0);
-    for (const auto& of_module : rates) {
-      of_module.apply(z, product);
-      for (std::size_t b = 0; b < product.size(); ++b) right_side[b]->update(1, *product[b], 1);
-    }
+    if (step + 1 == steps.rend()) break;
+    right_side = model_.system().stored(model_.state(), z);
+    for (auto& block : right_side) block->scale(model_.system().rates().now);
     hold(right_side);
   }
   return result;
@@ -266,13 +255,15 @@ void ErrorEstimator::add_stress(const physics::StressError& stress, fields::Bloc
 void ErrorEstimator::add_before(fields::BlockVector& right_side) {
   auto& system = model_.system();
   if (!system.has_rates()) return;
-  const auto [now, before] = system.rates();
+  const auto [now, before] = rates_.to(model_.time(), system.rates());
   const auto artificial = system.artificially_stored(model_.state());
   for (std::size_t b = 0; b < right_side.size(); ++b) {
     right_side[b]->update(now, *artificial[b], 1);
     if (!stored_[0].empty()) right_side[b]->update(now + before, *stored_[0][b], 1);
     if (!stored_[1].empty()) right_side[b]->update(-before, *stored_[1][b], 1);
   }
+  stored_[1] = std::move(stored_[0]);
+  stored_[0].clear();
 }
 
 /// With a lifting v of the unknowns that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
@@ -294,10 +285,7 @@ void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::
   const auto report = model_.newton().answer(model_.state(), right_side, x, solve_tolerance);
   estimate.failure = report.reason;
   if (!report.converged) return;
-  if (system.has_rates()) {
-    stored_[1] = std::move(stored_[0]);
-    stored_[0] = system.stored(model_.state(), x);
-  }
+  if (system.has_rates()) stored_[0] = system.stored(model_.state(), x);
   estimate.lacks = fields::create_like(x);
   fields::copy(x, estimate.lacks);
   for (std::size_t k = 0; k < flux_errors_.size(); ++k) {

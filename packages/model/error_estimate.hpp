@@ -1,8 +1,9 @@
-// How far the stress and the jumps of a model's present state are off, as far as the mesh is to blame.
+// How far stress, jumps and what flows in a model's present state are off, as far as the mesh is to blame.
 #pragma once
 
 #include "model/model.hpp"
 #include "physics/mechanics/stress_recovery.hpp"
+#include "physics/step_rates.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -20,10 +21,10 @@ struct ErrorEstimate {
   std::vector<Real> energy;              ///< [owned cell] of the stress' error, J
   /// Of balances that have an error of their own, see physics::MeshError.
   struct Flux {
-    std::string name;               ///< "flux", "heat flux"
+    std::string name;               ///< "flux"
     std::vector<Real> parts = {};   ///< [component]
-    std::vector<Real> energy = {};  ///< [owned cell] of its error, and of what it carries, W (heat: W K)
-    Real error = 0, whole = 0;      ///< of all in the norm of the energy, sqrt(W)
+    std::vector<Real> energy = {};  ///< [owned cell] of its error, and of what it carries
+    Real error = 0, whole = 0;      ///< of all in the norm of the energy, the root of that
   };
   std::vector<Flux> fluxes;
   std::string failure;  ///< why there is no estimate of the jumps
@@ -33,8 +34,8 @@ struct ErrorEstimate {
   fields::BlockVector lacks;
   /// By how much the reactions are too small, as System::reactions(); empty where there is no such estimate.
   std::vector<assembly::Reaction> reactions;
-  /// On cells "error density", J/m^3: energy of the stress' error per volume; on fracture faces "jump error", m: what
-  /// the jump lacks, in global components.
+  /// On cells "... error density" of each balance, its unit per m^3, and "error density", J/m^3: energy of
+  /// the stress' error per volume; on fracture faces "jump error", m: what the jump lacks, in global components.
   std::vector<assembly::OutputField> fields;
 
   /// What results.json has of it.
@@ -90,7 +91,6 @@ class ErrorEstimator {
 
   ErrorEstimate::Flux flux_error(physics::MeshError& error) const;
   std::vector<Real> by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const;
-  std::vector<fields::BlockMatrix> storage() const;
   /// Sets all rows of prescribed unknowns to zero.
   void hold(fields::BlockVector& right_side) const;
 
@@ -99,6 +99,7 @@ class ErrorEstimator {
   physics::ByField<int> blocks_;                       // of displacements, -1: there is none
   std::unique_ptr<physics::StressRecovery> recovery_;  // null: nothing deforms
   bool wants_reactions_ = false;
+  physics::StepRates rates_;
   std::array<fields::BlockVector, 2> stored_;  // what is stored too little, at the last state and the one before
   Real section_;                               // of a body of the domain's largest extent, m^2 (2D: m)
 };

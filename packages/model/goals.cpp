@@ -176,8 +176,10 @@ bool Goals::add_flux(const std::string& name, const Quantity& quantity, const Er
   if (!last) return true;
   const auto of_functional = estimator.of_functional(quantity, estimate);
   estimates_[name] = {of_functional->value, of_functional->error};
+  auto& bound = bounds_[name];
   if (!estimate.lacks.empty())
-    bounds_[name] = estimator.has_shares() ? estimator.shares(quantity, fluxes_) : all_energies(estimate.energy);
+    bound = estimator.has_shares() ? estimator.shares(quantity, fluxes_) : all_energies(estimate.energy);
+  bound.resize(model_.mesh().n_owned_cells, 0);
   return true;
 }
 

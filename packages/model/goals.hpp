@@ -25,6 +25,8 @@ class Goals {
   void weigh(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate,
              ErrorEstimator& estimator, bool last);
 
+  /// What flows is in error, too, which does not fall with the order of cells. Stored data.
+  bool any_flux() const { return !fluxes_.empty() && !fluxes_.back().empty(); }
   /// Of the last state, by the names of the quantities.
   const std::map<std::string, Estimate>& estimates() const { return estimates_; }
 

@@ -61,14 +61,24 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   });
 }
 
-void compare_error_estimate(Comparison& comparison, const std::string& place) {
+void compare_error_estimate(Comparison& comparison, const std::string& place, const Scene& scene) {
+  bool any_quantity = false, any_flux = false;
   physics::for_each_physics([&](auto physics) {
-    if (const auto why = physics.no_error_estimate(comparison.scene()); !why.empty()) comparison.fail(place, why);
+    if (const auto why = physics.no_error_estimate(scene); !why.empty()) comparison.fail(place, why);
+    if (!physics.is_in(scene)) return;
+    any_quantity = any_quantity || !physics.quantities().empty();
+    any_flux = any_flux || physics.needs_facets(scene);
   });
+  if (!any_quantity) comparison.fail(place, "has nothing to estimate in this scene");
+  const auto& cell = scene.mesh.cell;
+  if (any_flux && !scene.accuracy && !scene.mesh_file && (cell == "quadrilateral" || cell == "hexahedron"))
+    comparison.fail(place,
+                    fmt::format("is of triangles and tetrahedra where something flows; the mesh is of {}s", cell));
 }
 
-void compare_accuracy(Comparison& comparison, const Accuracy& accuracy) {
-  compare_error_estimate(comparison, "Accuracy");
+void compare_accuracy(Comparison& comparison, const Scene& scene) {
+  const auto& accuracy = *scene.accuracy;
+  compare_error_estimate(comparison, "Accuracy", scene);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto place = fmt::format("Accuracy > quantities > {}", name);
     for (const auto& fracture : quantity.fractures)
@@ -137,8 +147,8 @@ Comparison compared(const Draft& draft, MeshNames names) {
   Comparison comparison(draft.value, draft.report, names, tied_boundaries(draft.value), end_of_first_step(draft));
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);
-  if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"");
-  if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, *draft.value.accuracy);
+  if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"", draft.value);
+  if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, draft.value);
   return comparison;
 }
 

@@ -4,6 +4,7 @@
 #include "base/over_ranks.hpp"
 #include "physics/flow/well_connections.hpp"
 #include "physics/flux_truncation.hpp"
+#include "physics/step_rates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +34,13 @@ std::unique_ptr<FluxTruncation> truncation_of(const assembly::System& system, co
                               system.constrained(blocks[1]), std::move(parameters));
 }
 
-/// Of fractures as wide as they are at x; empty: they do not widen.
-std::vector<Real> transmissivities(const assembly::System& system, const std::vector<laws::Conduit>& conduits,
-                                   const fields::BlockVector& x) {
+/// Of fractures as wide as they are at x; none: they do not widen, on any rank.
+std::optional<std::vector<Real>> transmissivities(const assembly::System& system,
+                                                  const std::vector<laws::Conduit>& conduits,
+                                                  const fields::BlockVector& x) {
   const int block = block_of(system, "widening");
+  if (block < 0) return std::nullopt;
   std::vector<Real> all;
-  if (block < 0) return all;
   const auto& layout = system.layouts()[block];
   fields::Vector widening(layout.ghosted());
   widening.doImport(*x[block], *layout.import(), Tpetra::REPLACE);
@@ -50,7 +52,10 @@ std::vector<Real> transmissivities(const assembly::System& system, const std::ve
 class BalanceError final : public MeshError {
  public:
   BalanceError(assembly::System& system, BalanceErrorParameters parameters)
-      : system_(system), parameters_(std::move(parameters)), blocks_(blocks_of(system, parameters_.field)) {
+      : system_(system),
+        parameters_(std::move(parameters)),
+        blocks_(blocks_of(system, parameters_.field)),
+        rates_(parameters_.start) {
     const auto& mesh = system.mesh();
     auto& error = parameters_.error;
     const auto& wells = parameters_.wells;
@@ -82,21 +87,21 @@ class BalanceError final : public MeshError {
   const std::vector<LocalIndex>& cells() const override { return error_->cells(); }
   std::size_t n_of_energy() const override { return error_->n_of_energy(); }
   Parts of_state(const fields::BlockVector& x, Real t) override {
-    if (auto T = transmissivities(system_, parameters_.conduits, x); !T.empty()) {
-      error_->set_transmissivity(T);
-      truncation_->set_transmissivity(std::move(T));
+    if (const auto T = transmissivities(system_, parameters_.conduits, x)) {
+      error_->set_transmissivity(*T);
+      truncation_->set_transmissivity(*T);
     }
-    return without_wells(error_->of_state(*x[blocks_[0]], *x[blocks_[1]], t, system_.rates()));
+    const auto rates = rates_.to(t, system_.rates());
+    auto parts = without_wells(error_->of_state(*x[blocks_[0]], *x[blocks_[1]], t, rates));
+    of_state_ = parts.error;
+    return parts;
   }
   Parts of_answer(const fields::BlockVector& x, const fields::BlockVector& dx) override {
     return without_wells(error_->of_answer(*x[blocks_[0]], *x[blocks_[1]], *dx[blocks_[0]], *dx[blocks_[1]]));
   }
 
   void add_truncation(const fields::BlockVector& x, fields::BlockVector& right_side) override {
-    auto forces = error_->forces();
-    const auto n = forces.on_flows.in_cells.size() / std::max<std::size_t>(is_at_well_.size(), 1);
-    for (std::size_t k = 0; k < forces.on_flows.in_cells.size(); ++k)
-      if (is_at_well_[k / n]) forces.on_flows.in_cells[k] = forces.on_cells[k / n] = 0;
+    const auto forces = error_->forces(of_state_);
     auto& of_facets = *right_side[blocks_[1]];
     truncation_->add_to_rows(truncation_->flows(forces.on_flows), *right_side[blocks_[0]], of_facets);
     truncation_->add_over_ranks(forces.on_facets, of_facets);
@@ -105,8 +110,7 @@ class BalanceError final : public MeshError {
       for (std::size_t c = 0; c < forces.on_cells.size(); ++c) of_cells(c, 0) += forces.on_cells[c];
     }
     if (!carrier_) return;
-    if (auto T = transmissivities(system_, parameters_.carrier->conduits, x); !T.empty())
-      carrier_->set_transmissivity(std::move(T));
+    if (const auto T = transmissivities(system_, parameters_.carrier->conduits, x)) carrier_->set_transmissivity(*T);
     carried_ = {std::vector<Real>(forces.on_flows.in_cells.size(), 0),
                 std::vector<Real>(forces.on_flows.in_faces.size(), 0)};
     truncation_->add_upwind(carrier_->flows(*x[carriers_[0]], *x[carriers_[1]]), parameters_.carrier->capacity,
@@ -250,6 +254,8 @@ class BalanceError final : public MeshError {
   assembly::System& system_;
   BalanceErrorParameters parameters_;
   Blocks blocks_, carriers_{};
+  StepRates rates_;
+  std::vector<Real> of_state_;  // components of the last state that was asked for
   std::vector<WellConnection> connections_;
   std::vector<Real> index_of_wells_;       // sum of W over all ranks
   std::vector<char> is_at_well_;           // [owned cell]

@@ -22,6 +22,7 @@ struct BalanceErrorParameters {
   };
   Name potential, flow;
   HybridErrorParameters error;
+  Real start = 0;                            ///< time of the initial state
   std::vector<laws::Conduit> conduits = {};  ///< [local fracture face], whose transmissivity follows "widening"
   WellsParameters wells = {};                ///< whose connections take part in the balance
   /// A fluid's flow that carries `capacity` of it per volume and unit of the potential, upwind.

@@ -1,6 +1,7 @@
 #include "physics/flux_truncation.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "physics/patch_fit.hpp"
 
 namespace sprekk::physics {
@@ -114,18 +115,20 @@ class Truncation final : public FluxTruncation {
 
   void add_prescribed(Real t, fields::Vector& facets) const override {
     std::vector<Real> missed(mesh_->facets->id.size(), 0);
-    for (const auto& held : held_) {
-      if (!held.in_rock && dim == 2) continue;  // a point
-      Real mean = 0;
-      mesh::Vector middle{};
-      const auto points = flow_.points(held);
-      const auto n_corners = std::count_if(points.begin(), points.end(), [](const auto& p) { return p.a == p.b; });
-      for (const auto& point : points) {
-        mean += point.share * flow_.prescribed(held, point.x, t);
-        for (int i = 0; i < dim && point.a == point.b; ++i) middle[i] += point.x[i] / static_cast<Real>(n_corners);
+    base::collectively(*mesh_->comm, [&] {
+      for (const auto& held : held_) {
+        if (!held.in_rock && dim == 2) continue;  // a point
+        Real mean = 0;
+        mesh::Vector middle{};
+        const auto points = flow_.points(held);
+        const auto n_corners = std::count_if(points.begin(), points.end(), [](const auto& p) { return p.a == p.b; });
+        for (const auto& point : points) {
+          mean += point.share * flow_.prescribed(held, point.x, t);
+          for (int i = 0; i < dim && point.a == point.b; ++i) middle[i] += point.x[i] / static_cast<Real>(n_corners);
+        }
+        missed[held.facet] = mean - flow_.prescribed(held, middle, t);
       }
-      missed[held.facet] = mean - flow_.prescribed(held, middle, t);
-    }
+    });
     add_over_ranks(missed, facets);
   }
 

@@ -1,6 +1,7 @@
 #include "physics/hybrid_error.hpp"
 
 #include "base/check.hpp"
+#include "base/over_ranks.hpp"
 #include "physics/places.hpp"
 
 namespace sprekk::physics {
@@ -42,8 +43,7 @@ class Error final : public HybridError {
   MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
                             const assembly::Rates& rates) override {
     auto [result, s] = parts(Potentials(flow_.layouts(), rock().fluid, {&cells, &facets}), t, &sums_);
-    if (varies()) add_rates(s, t, rates, result);
-    of_state_ = result.error;
+    if (varies()) base::collectively(*mesh_->comm, [&] { add_rates(s, t, rates, result); });
     return result;
   }
   MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
@@ -56,9 +56,9 @@ class Error final : public HybridError {
     return result;
   }
 
-  Forces forces() const override {
-    Gradient of(*this);
-    auto next = of_state_.begin();
+  Forces forces(const std::vector<Real>& e) const override {
+    TransposedForm of(*this);
+    auto next = e.begin();
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) of.add_entity(cells_[c], of.in_cells[c], next);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) of.add_entity(faces_[f], of.in_faces[f], next);
     for (const auto& side : sides_)
@@ -262,14 +262,14 @@ class Error final : public HybridError {
 
   /// -e . e_v as a linear form of v: what components say of flows and of values at places, of which those of v follow
   /// as the means of the potentials around, or from facets where a potential is prescribed.
-  struct Gradient {
+  struct TransposedForm {
     const Error& error;
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
     std::vector<std::array<Real, 2>> at_places;  // on the values there; on all that flows into a face, at its last
     using Next = std::vector<Real>::const_iterator;
 
-    explicit Gradient(const Error& of)
+    explicit TransposedForm(const Error& of)
         : error(of), in_cells(of.cells_.size()), in_faces(of.faces_.size()), at_places(of.places_.size()) {}
 
     template <class Entity, class Flows>
@@ -325,8 +325,9 @@ class Error final : public HybridError {
       next += n;
     }
 
-    /// Values at places were improved once more: s - relaxation/stiffness times the slopes of the energy. Collective.
-    void undo_improvement() {
+    /// Of a step of improve(): values at places become s - relaxation/stiffness times the slopes of the energy.
+    /// Collective.
+    void transpose_improvement() {
       std::vector<std::array<Real, 2>> more(at_places.size());
       std::vector<Real> y(at_places.size(), 0);
       for (std::size_t p = 0; p < y.size(); ++p)
@@ -377,7 +378,7 @@ class Error final : public HybridError {
     Forces forces() {
       const auto& mesh = *error.mesh_;
       error.places_.sum_over_ranks(at_places);
-      for (int k = 0; k < n_sweeps; ++k) undo_improvement();
+      for (int k = 0; k < n_sweeps; ++k) transpose_improvement();
       Forces all{{}, std::vector<Real>(mesh.facets->id.size(), 0), {}};
       for (const auto& side : error.sides_)
         in_cells[side.cell][Flux::opposite(side.local_face)] += at_places[side.of_face.back()][1];
@@ -399,7 +400,7 @@ class Error final : public HybridError {
       return all;
     }
   };
-  friend struct Gradient;
+  friend struct TransposedForm;
 
   /// Of SimplexFlux::flux().
   struct Components {
@@ -418,6 +419,16 @@ class Error final : public HybridError {
       sum[weight] += entity.weight;
       sum[weighted] += entity.weight * p[k];
     }
+  }
+
+  /// At places of held_. Error where an expression has no value.
+  std::vector<Real> values_of_held(const Potentials& u, Real t) const {
+    std::vector<Real> given;
+    for (const auto& face : held_faces_)
+      for (std::size_t k = face.begin; k < face.end; ++k)
+        given.push_back(u.is_answer() ? u(Of::facet, held_[k].facet)
+                                      : u.of_pressure(flow_.prescribed(face.of, held_[k].x, t)));
+    return given;
   }
 
   /// And s at all places.
@@ -445,13 +456,11 @@ class Error final : public HybridError {
       sums[side.of_face.back()][inflow] += q;
     }
     std::vector<Real> given;
-    for (const auto& face : held_faces_)
-      for (std::size_t k = face.begin; k < face.end; ++k) {
-        const auto& one = held_[k];
-        given.push_back(u.is_answer() ? u(Of::facet, one.facet) : u.of_pressure(flow_.prescribed(face.of, one.x, t)));
-        ++sums[one.place][held];
-        sums[one.place][held_values] += given.back();
-      }
+    base::collectively(*mesh_->comm, [&] { given = values_of_held(u, t); });
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      ++sums[held_[k].place][held];
+      sums[held_[k].place][held_values] += given[k];
+    }
     places_.sum_over_ranks(sums);
     if (kept) *kept = sums;
     auto s = common_potential(sums);
@@ -501,10 +510,12 @@ class Error final : public HybridError {
   }
   /// At the start.
   void find_before() {
-    for (LocalIndex c = 0; !storage_.empty() && c < mesh_->n_owned_cells; ++c)
-      before_[0].push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
-        return rock().initial ? potential_of(rock().fluid, (*rock().initial)(x, 0)) : 0;
-      }));
+    base::collectively(*mesh_->comm, [&] {
+      for (LocalIndex c = 0; !storage_.empty() && c < mesh_->n_owned_cells; ++c)
+        before_[0].push_back(cells_[c].flux.variation([&](const auto& x, const auto&) {
+          return rock().initial ? potential_of(rock().fluid, (*rock().initial)(x, 0)) : 0;
+        }));
+    });
   }
 
   /// s at all places, see HybridErrorParameters.
@@ -692,8 +703,7 @@ class Error final : public HybridError {
   std::size_t n_of_energy_ = 0;
   /// [owned cell] variation of the potential in the last state and the one before; before the first step there is one
   std::array<std::vector<typename InCell::Flows>, 2> before_;
-  std::vector<Real> of_state_;  // components of the last state
-  Sums sums_;                   // of that
+  Sums sums_;  // of the last state
 };
 
 }  // namespace

@@ -47,9 +47,9 @@ class HybridError {
     std::vector<Real> on_cells, on_facets;  ///< times v, [owned cell], [local facet]
     HybridFlows on_flows;                   ///< times q_v
   };
-  /// -e . e_v of the last state e that was asked for and of an answer v, but for what v needs where a potential is
-  /// prescribed; v's potential begins as the means of v alone, whatever resists. Collective.
-  virtual Forces forces() const = 0;
+  /// -e . e_v of components e of the last state that was asked for and of an answer v, but for what v needs where a
+  /// potential is prescribed; v's potential begins as the means of v alone, whatever resists. Collective.
+  virtual Forces forces(const std::vector<Real>& e) const = 0;
   virtual void set_transmissivity(std::vector<Real> of_local_faces) = 0;
 };
 

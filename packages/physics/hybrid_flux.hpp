@@ -185,9 +185,10 @@ class HybridFlux {
     std::vector<Held> result;
     for (const auto& face : mesh_->boundary_faces) {
       const LocalIndex facet = facet_of_cell(face.cell, face.local_face);
-      if (face.owned && is_held(facet, 0) != 0)
-        result.push_back(
-            {true, face.cell, face.local_face, facet, condition_of(face.boundary, mesh_->cell_region[face.cell], -1)});
+      if (!face.owned || is_held(facet, 0) == 0) continue;
+      const int condition = condition_of(face.boundary, mesh_->cell_region[face.cell], -1);
+      if (condition < static_cast<int>(parameters_.held.size()))  // else something else holds it
+        result.push_back({true, face.cell, face.local_face, facet, condition});
     }
     std::map<std::pair<LocalIndex, int>, int> conditions;  // of ends, of which several boundaries may have one
     for (const auto& rim : mesh_->facets->rims) {

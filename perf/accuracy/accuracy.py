@@ -138,13 +138,14 @@ def entries(source, folder):
     return (f"Mesh file.path={source(folder)}",) if callable(source) else tuple(source)
 
 
-def plain(scene, folder):
+def unasked(scene, folder):
     """A scene that asks for no error by itself."""
     tree = ElementTree.parse(scene)
     asked = tree.getroot().find("ParameterList[@name='Accuracy']")
     if asked is None:
         return scene
     tree.getroot().remove(asked)
+    folder.mkdir(parents=True, exist_ok=True)
     tree.write(folder / scene.name)
     return folder / scene.name
 
@@ -165,7 +166,7 @@ def start(options, case, order, source, asked, label, others=()):
             sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")
-    command = [str(options.binary), "run", str(plain(ROOT / "xml" / case.scene, options.output / "meshes")), "--output", str(directory)]
+    command = [str(options.binary), "run", str(unasked(ROOT / "xml" / case.scene, options.output / "meshes")), "--output", str(directory)]
     command += [word for entry in sets for word in ("--set", entry)]
     if options.ranks > 1:
         command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(options.ranks)] + command

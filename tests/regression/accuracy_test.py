@@ -5,6 +5,7 @@ import math
 from program import ProgramTest, main
 
 SHEAR, CRACK, CROSSING = "verification/sneddon_shear.xml", "verification/sneddon.xml", "verification/crossing_2d.xml"
+DOUBLET = "accuracy/doublet_2d.xml"
 NETWORK = "flow/network_2d.xml"
 EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
 QUIET = "Output.vtu=false"
@@ -124,7 +125,9 @@ class Accuracy(ProgramTest):
         self.refuse(['goal > "boundary": is "east", where no displacement is prescribed'], "accuracy/fault_2d.xml", "Accuracy.quantities.goal.quantity=reaction",
                     "Accuracy.quantities.goal.boundary=east", "Accuracy.quantities.goal.relative=0.01")
         self.refuse(['"boundary": is "nort", must be one of', 'Did you mean "north"?'], CROSSING, *goal("reaction", relative=0.01, boundary="nort"))
-        self.refuse(['Accuracy: is of a fluid in rigid rock, or of rock without one; needs "Flow > rigid rock"'], "poro/shut_in_2d.xml", *good)
+        self.refuse(['Accuracy: is of upwind flow; not available with "Heat > advection" second order'], DOUBLET, "Heat.advection=second order")
+        self.refuse(['heat > "well": "injector" puts in fluid whose temperature is given'], DOUBLET, "Accuracy.quantities.heat.quantity=temperature",
+                    "Accuracy.quantities.heat.well=injector", "Accuracy.quantities.heat.relative=0.01")
         self.refuse(['goal > "quantity": is "slip", of which the scene has nothing'], NETWORK, *good)
         self.refuse(['goal: needs "boundary" or "well"'], NETWORK, *goal("flow", relative=0.01))
         self.refuse(['goal > "boundary": is "north", where no pressure is prescribed, so that its flow is known'], NETWORK, *goal("flow", boundary="north", relative=0.01))

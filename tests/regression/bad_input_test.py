@@ -379,7 +379,7 @@ class Scenes(BadInput):
         refuse(['"volumetric heat capacity": is "t"; it may depend on x, y, z, not on t'], "Materials.rock.volumetric heat capacity=t")
         refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
-        refuse(['"error estimate": is of stress and jumps, and the rock does not deform'], "Output.error estimate=true")
+        refuse(['"error estimate": is of triangles and tetrahedra where something flows; the mesh is of quadrilaterals'], "Output.error estimate=true")
         refuse(['Heat > "fluid": needs the section "Flow"', 'Heat > "advection": needs the section "Flow"'], "Heat.fluid=water",
                "Heat.advection=second order")
         refuse(["rock: no elastic constants given, exactly two are needed where the rock deforms"], "Bulk.rigid=false")
@@ -459,7 +459,7 @@ class Scenes(BadInput):
         refuse(['Materials > granite: "Biot coefficient" = 1.2-0*x is 1.2 at (', "must be between 0 and 1"],
                "Materials.granite.Biot coefficient=1.2-0*x")
         refuse(['middle > "fluid pressure": is not given but found, with "Flow"'], "Fractures.middle.fluid pressure=1")
-        refuse(['Output > "error estimate": is of a fluid in rigid rock, or of rock without one'], "Output.error estimate=true")
+        refuse(['Output > "error estimate": is of triangles and tetrahedra where something flows'], "Output.error estimate=true", "Mesh.cell=quadrilateral")
         refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
         refuse(['Materials > rough joint: give either "friction coefficient" or "friction angle"'], "Materials.rough joint.friction angle=30")
 

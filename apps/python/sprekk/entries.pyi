@@ -959,9 +959,8 @@ class Output(Section):
 
     vtu: write bulk.pvd and fractures.pvd for ParaView (default true)
     every: write them after every so many steps, and after the last (at least 1; default 1)
-    error_estimate: estimate after every step how far stress and jumps, or fluxes in rigid rock, are off on this mesh:
-        error_estimate in results.json, and fields; costs a pass over all cells and a linear solve per step (default
-        false)
+    error_estimate: estimate after every step how far stress, jumps and fluxes are off on this mesh: error_estimate in
+        results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per step (default false)
     time_unit: of times in tables of probes and in pictures ("s" | "min" | "h" | "d" | "year"; default s)
     checkpoints: what --restart goes on from; one is also written after the last step (may be absent)
     """
@@ -996,28 +995,31 @@ class Stage(Section):
 class AccuracyQuantitie(Section):
     """by names of your choice: numbers and the errors they may have
 
-    quantity: slip, opening: the mean over the area of fractures; normal force, shear force: the integral of
-        compression, of the size of shear traction; reaction: the force that holds a boundary; stress: root of the
-        integral of s : C^-1 s, twice the elastic energy; pressure: of a well, or the mean over fractures; flow: of
-        fluid into the domain from a well or through a boundary; flux: root of the power that the flow of fluid
-        dissipates ("slip" | "opening" | "normal force" | "shear force" | "reaction" | "stress" | "pressure" | "flow" |
-        "flux"; required)
+    quantity: slip: the mean of the plastic slip over the area of fractures; opening: the mean of the normal jump;
+        normal force: the integral of compression; shear force: the integral of the size of shear traction; reaction:
+        the force that holds a boundary; stress: root of the integral of s : C^-1 s, twice the elastic energy; pressure:
+        of a well, or the mean over fractures; flow: of fluid into the domain from a well or through a boundary; flux:
+        root of the power that the flow of fluid dissipates; temperature: of what a well puts in or takes out, or the
+        mean over fractures; heat flow: into the domain from a well or through a boundary ("slip" | "opening" | "normal
+        force" | "shear force" | "reaction" | "stress" | "pressure" | "flow" | "flux" | "temperature" | "heat flow";
+        required)
     fractures: over which it is taken together; absent: all (default {})
-    boundary: of a reaction: where displacements are prescribed; of a flow: where pressure is (default "")
-    well: of a pressure: with a rate; of a flow: with a pressure (default "")
+    boundary: of a reaction: where displacements are prescribed; of a flow: where its potential is (default "")
+    well: of a pressure: with a rate; of a flow: with a pressure; of what that carries: any (default "")
     component: of a reaction ("x" | "y" | "z"; default x)
     relative: error by the value at the end of the run (between 1e-08 and 1)
-    absolute: error; of forces in N (2D: N/m), of stress in sqrt(J) (2D: sqrt(J/m)), of flow in m^3/s (2D: m^2/s), of
-        flux in sqrt(W) (2D: sqrt(W/m)); with relative the larger one counts (m; positive)
+    absolute: error; of slip in m, of opening in m, of normal force in N (2D: N/m), of shear force in N (2D: N/m), of
+        reaction in N (2D: N/m), of stress in sqrt(J) (2D: sqrt(J/m)), of pressure in Pa, of flow in m^3/s (2D: m^2/s),
+        of flux in sqrt(W) (2D: sqrt(W/m)), of temperature in K, of heat flow in W (2D: W/m) (m; positive)
     """
-    quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress", "pressure", "flow", "flux"] | None
+    quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress", "pressure", "flow", "flux", "temperature", "heat flow"] | None
     fractures: Sequence[str] | None
     boundary: str | None
     well: str | None
     component: Literal["x", "y", "z"] | None
     relative: float | str | None
     absolute: float | str | None
-    def __init__(self, *, quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress", "pressure", "flow", "flux"] | None = ..., fractures: Sequence[str] | None = ..., boundary: str | None = ..., well: str | None = ..., component: Literal["x", "y", "z"] | None = ..., relative: float | str | None = ..., absolute: float | str | None = ...) -> None: ...
+    def __init__(self, *, quantity: Literal["slip", "opening", "normal force", "shear force", "reaction", "stress", "pressure", "flow", "flux", "temperature", "heat flow"] | None = ..., fractures: Sequence[str] | None = ..., boundary: str | None = ..., well: str | None = ..., component: Literal["x", "y", "z"] | None = ..., relative: float | str | None = ..., absolute: float | str | None = ...) -> None: ...
 
 class Accuracy(Section):
     """numbers that are to be reached with a given error, on meshes that the run refines (may be absent)

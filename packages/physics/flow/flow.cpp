@@ -316,6 +316,7 @@ std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::Sy
                                     .potential = {"pressure", "pressure"},
                                     .flow = {"flow", "rate"},
                                     .error = {.flow = std::move(flux)},
+                                    .start = setting.start,
                                     .conduits = std::move(conduits),
                                     .wells = std::move(wells)};
   const auto capacity = capacities(setting, of_fluid);

@@ -174,6 +174,11 @@ std::string Heat::refuses(const Scene& scene, const Functional& J) {
     return of_well ? "is of a \"boundary\" or a \"well\", not of both" : "needs \"boundary\" or \"well\"";
   if (of_well && (!scene.flow || !scene.flow->wells.count(J.well)))
     return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
+  if (!is_flow && of_well && scene.heat->wells.count(J.well)) {
+    const auto& rate = scene.flow->wells.at(J.well).rate;
+    if (rate && rate->is_constant() && (*rate)({}, 0) > 0)
+      return fmt::format("\"well\": \"{}\" puts in fluid whose temperature is given", J.well);
+  }
   const auto& conditions = scene.boundary_conditions;
   if (is_flow && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
         return one.second.boundary == J.boundary && one.second.temperature;

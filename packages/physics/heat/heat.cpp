@@ -287,7 +287,8 @@ std::unique_ptr<MeshError> Heat::mesh_error(const Setting& setting, assembly::Sy
                                     .inflows = "heat_inflows",
                                     .potential = {"temperature", "temperature"},
                                     .flow = {"heat flow", "heat"},
-                                    .error = {.flow = {.rock = std::move(rock)}}};
+                                    .error = {.flow = {.rock = std::move(rock)}},
+                                    .start = start};
   auto& error = parameters.error;
   if (!mesh.fracture_names.empty())
     for (const auto& face : fillings(setting)) {

@@ -310,8 +310,7 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
 }
 
 std::string Mechanics::no_error_estimate(const Scene& scene) {
-  if (!is_in(scene))
-    return has_fluid(scene) || scene.heat ? "" : "is of stress and jumps, and the rock does not deform";
+  if (!is_in(scene)) return "";
   const auto& conditions = scene.boundary_conditions;
   if (std::any_of(conditions.begin(), conditions.end(),
                   [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))

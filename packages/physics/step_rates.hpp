@@ -1,0 +1,30 @@
+// The rates of a step from one state to the next one that is looked at.
+#pragma once
+
+#include "assembly/rates.hpp"
+
+#include <cmath>
+
+namespace sprekk::physics {
+
+/// Follows the times at which states are looked at.
+class StepRates {
+ public:
+  explicit StepRates(Real start) : time_(start) {}
+
+  /// Of the step to t, where `last` are the system's; where it was cut those of implicit Euler over all of it.
+  assembly::Rates to(Real t, const assembly::Rates& last) {
+    using assembly::Rates;
+    const Real dt = t - time_;
+    const auto same = [&](const Rates& rates) { return std::abs(rates.now - last.now) <= 1e-6 * last.now; };
+    const Rates euler{1 / dt, 0}, bdf2 = Rates::of(Rates::Scheme::bdf2, dt, dt_);
+    time_ = t;
+    dt_ = dt;
+    return dt > 0 && last.before > 0 && same(bdf2) ? bdf2 : dt > 0 ? euler : Rates{};
+  }
+
+ private:
+  Real time_, dt_ = 0;
+};
+
+}  // namespace sprekk::physics
