@@ -21,9 +21,7 @@ class Truncation final : public FluxTruncation {
         flow_(mesh, layouts, std::move(parameters)),
         held_(flow_.held(held_facets)),
         around_cells_(cells(), fewest, mesh->comm),
-        around_faces_(faces(), dim == 2 ? 2 : 4, mesh->comm) {
-    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) centre_of_cell_.push_back(mesh::cell_centre(*mesh_, c));
-  }
+        around_faces_(faces(), dim == 2 ? 2 : 4, mesh->comm) {}
 
   void set_transmissivity(std::vector<Real> of_local_faces) override {
     flow_.set_transmissivity(std::move(of_local_faces));
@@ -63,24 +61,24 @@ class Truncation final : public FluxTruncation {
   void add_upwind(const HybridFlows& carrying, Real capacity, const fields::Vector& cells, const fields::Vector& facets,
                   HybridFlows& excess) const override {
     const Potentials T(flow_.layouts(), {}, {&cells, &facets});
-    const auto in_cells = around_cells_.gradients([&](LocalIndex c, const auto& corner, const auto& add) {
-      add(AroundCells::row({1}, mesh::operator-(centre_of_cell_[c], corner)), T(Of::cell, c));
-    });
+    std::vector<Real> values;
+    for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) values.push_back(T(Of::cell, c));
+    const auto in_cells = around_cells_.gradients(values);
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
       for (int k = 0; k < n; ++k) {
         const auto& way = flow_.cell(c).faces.centre[k];
         Real rise = 0;
-        for (int i = 0; i < dim; ++i) rise += in_cells[c][0][i] * way[i];
+        for (int i = 0; i < dim; ++i) rise += in_cells[c][i] * way[i];
         excess.in_cells[c * n + k] -= capacity * std::max(Real(0), carrying.in_cells[c * n + k]) * rise;
       }
-    const auto in_faces = around_faces_.gradients([&](LocalIndex f, const auto& corner, const auto& add) {
-      add(AroundFaces::row({1}, mesh::operator-(mesh_->fracture_faces[f].centre, corner)),
-          T(Of::facet, mesh_->facets->fracture_face[f]));
-    });
+    values.clear();
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      values.push_back(T(Of::facet, mesh_->facets->fracture_face[f]));
+    const auto in_faces = around_faces_.gradients(values);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for (int k = 0; k < dim; ++k) {
         Real rise = 0;
-        for (int i = 0; i < dim; ++i) rise += in_faces[f][0][i] * flow_.face(f).plane.d[k][i];
+        for (int i = 0; i < dim; ++i) rise += in_faces[f][i] * flow_.face(f).plane.d[k][i];
         excess.in_faces[f * dim + k] -= capacity * std::max(Real(0), carrying.in_faces[f * dim + k]) * rise;
       }
   }
@@ -148,8 +146,8 @@ class Truncation final : public FluxTruncation {
   }
 
  private:
-  using AroundCells = PatchFit<1, n>;
-  using AroundFaces = PatchFit<1, dim>;
+  using AroundCells = PatchFit<n>;
+  using AroundFaces = PatchFit<dim>;
 
   mesh::Vector at(LocalIndex node) const {
     mesh::Vector x{};
@@ -161,6 +159,7 @@ class Truncation final : public FluxTruncation {
     const auto n_regions = static_cast<GlobalIndex>(mesh_->region_names.size());
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
       auto& cell = all.emplace_back();
+      cell.centre = mesh::cell_centre(*mesh_, c);
       for (int k = 0; k < n; ++k) {
         const LocalIndex node = flow_.node(c, k);
         cell.corner[k] = mesh_->node_id[mesh_->free_node(node)] * n_regions + mesh_->cell_region[c];
@@ -170,13 +169,14 @@ class Truncation final : public FluxTruncation {
     }
     return all;
   }
-  /// Where fractures meet, fluxes along one jump.
+  /// Where fractures meet, values along one have a kink.
   std::vector<PatchEntity<dim>> faces() const {
     const auto n_fractures = static_cast<GlobalIndex>(mesh_->fracture_names.size());
     std::vector<PatchEntity<dim>> all;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const auto& face = mesh_->fracture_faces[f];
       auto& entity = all.emplace_back();
+      entity.centre = face.centre;
       for (int k = 0; k < dim; ++k) {
         entity.corner[k] = face.corners[k] * n_fractures + face.fracture;
         entity.at[k] = at(face.nodes[mesh::minus][k]);
@@ -206,7 +206,6 @@ class Truncation final : public FluxTruncation {
   std::vector<typename Flux::Held> held_;
   AroundCells around_cells_;
   AroundFaces around_faces_;
-  std::vector<mesh::Vector> centre_of_cell_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Gradients from what entities know of a linear function, from all entities around their corners.
+// Gradients of values that entities have at their centres, from all entities around their corners.
 #pragma once
 
 #include "physics/places.hpp"
@@ -7,24 +7,23 @@
 
 namespace sprekk::physics {
 
-/// Entities with corners; those of one corner have one number of it, on all ranks.
+/// An entity and its corners; entities of one corner have one number of it, on all ranks.
 template <int n_corners>
 struct PatchEntity {
-  std::array<GlobalIndex, n_corners> corner;
+  std::array<Real, 3> centre = {};
+  std::array<GlobalIndex, n_corners> corner = {};
   std::array<std::array<Real, 3>, n_corners> at = {};  ///< places of the corners
-  std::array<bool, n_corners> is_regular = {};         ///< the function is smooth around the corner
+  std::array<bool, n_corners> is_regular = {};         ///< values are smooth around the corner
 };
 
-/// Around every corner a linear function of m components, v + G (x - corner), is fitted by least squares to equations
-/// of the entities that meet there; the gradient of an entity is the mean of those of its corners, of corners with too
-/// few entities around them only where there are no others.
-template <int m, int n_corners>
+/// Around every corner a linear function is fitted by least squares to the values of the entities that meet there; the
+/// gradient in an entity is the mean of those of its corners, of corners with too few entities around them only where
+/// there are no others.
+template <int n_corners>
 class PatchFit {
  public:
   using Entity = PatchEntity<n_corners>;
-  static constexpr int n_unknowns = 4 * m;
-  using Row = std::array<Real, n_unknowns>;  ///< factors of v, then of G row by row
-  using Gradient = std::array<std::array<Real, 3>, m>;
+  using Vector = std::array<Real, 3>;
 
   /// Collective.
   PatchFit(std::vector<Entity> entities, int fewest, const RCP<const Comm>& comm)
@@ -36,82 +35,64 @@ class PatchFit {
     places_.close(comm);
   }
 
-  /// A row whose product with v and G is `along` . (v + G x).
-  static Row row(const std::array<Real, m>& along, const std::array<Real, 3>& x) {
-    Row result;
-    for (int i = 0; i < m; ++i) {
-      result[i] = along[i];
-      for (int j = 0; j < 3; ++j) result[m + 3 * i + j] = along[i] * x[j];
-    }
-    return result;
-  }
-
-  /// [entity] where equations(entity, k, add) calls add(row, value) for each, with x seen from corner k. Collective.
-  template <class Equations>
-  std::vector<Gradient> gradients(const Equations& equations) const {
+  /// [entity] of values [entity]. Collective.
+  std::vector<Vector> gradients(const std::vector<Real>& values) const {
     std::vector<Sums> sums(places_.size());
     for (std::size_t e = 0; e < entities_.size(); ++e)
-      for (int k = 0; k < n_corners; ++k) {
-        auto& sum = sums[place_[e][k]];
-        sum[count] += 1;
-        equations(static_cast<LocalIndex>(e), entities_[e].at[k],
-                  [&](const Row& row, Real value) { add(row, value, sum); });
-      }
+      for (int k = 0; k < n_corners; ++k) add(entities_[e], k, values[e], sums[place_[e][k]]);
     places_.sum_over_ranks(sums);
-    std::vector<Gradient> at_corners;
-    for (const auto& sum : sums) at_corners.push_back(solve(sum));
-    std::vector<Gradient> result;
+    std::vector<Vector> at_corners, result;
+    for (const auto& sum : sums) at_corners.push_back(gradient(sum));
     for (std::size_t e = 0; e < entities_.size(); ++e) {
-      const auto counts = [&](int k) { return entities_[e].is_regular[k] && sums[place_[e][k]][count] >= fewest_; };
+      const auto counts = [&](int k) { return entities_[e].is_regular[k] && sums[place_[e][k]][0] >= fewest_; };
       int n = 0;
       for (int k = 0; k < n_corners; ++k) n += counts(k);
-      auto& mean = result.emplace_back();
-      for (auto& of : mean) of = {};
+      Vector mean{};
       for (int k = 0; k < n_corners; ++k)
-        for (int i = 0; i < m && (n == 0 || counts(k)); ++i)
-          for (int j = 0; j < 3; ++j) mean[i][j] += at_corners[place_[e][k]][i][j] / (n == 0 ? n_corners : n);
+        for (int i = 0; i < 3 && (n == 0 || counts(k)); ++i)
+          mean[i] += at_corners[place_[e][k]][i] / (n == 0 ? n_corners : n);
+      result.push_back(mean);
     }
     return result;
   }
 
  private:
-  static constexpr Real ridge = 1e-3;  // of the mean of squares: no gradient where equations say nothing of it
-  static constexpr int n_products = n_unknowns * (n_unknowns + 1) / 2, count = n_products + n_unknowns;
-  using Sums = std::array<Real, count + 1>;
+  static constexpr Real ridge = 1e-3;  // of the mean spread: no gradient where the entities lie in a plane or a line
+  using Sums = std::array<Real, 14>;   // of 1, x, the six x_i x_j, v, v x, with x seen from the corner
 
-  static void add(const Row& row, Real value, Sums& sums) {
-    int next = 0;
-    for (int i = 0; i < n_unknowns; ++i)
-      for (int j = 0; j <= i; ++j) sums[next++] += row[i] * row[j];
-    for (int i = 0; i < n_unknowns; ++i) sums[next++] += row[i] * value;
+  static void add(const Entity& entity, int k, Real value, Sums& sums) {
+    Vector x;
+    for (int i = 0; i < 3; ++i) x[i] = entity.centre[i] - entity.at[k][i];
+    sums[0] += 1;
+    sums[10] += value;
+    for (int i = 0, next = 4; i < 3; ++i) {
+      sums[1 + i] += x[i];
+      sums[11 + i] += value * x[i];
+      for (int j = i; j < 3; ++j) sums[next++] += x[i] * x[j];
+    }
   }
 
-  /// By Cholesky's factors.
-  static Gradient solve(const Sums& sums) {
-    Real L[n_unknowns][n_unknowns], x[n_unknowns], squares[2] = {};
-    const auto is_gradient = [](int i) { return i >= m; };
-    for (int i = 0, next = 0; i < n_unknowns; ++i)
-      for (int j = 0; j <= i; ++j) L[i][j] = sums[next++];
-    for (int i = 0; i < n_unknowns; ++i) squares[is_gradient(i)] += L[i][i] / (is_gradient(i) ? 3 * m : m);
-    Gradient G{};
-    if (squares[1] == 0) return G;
-    for (int i = 0; i < n_unknowns; ++i) L[i][i] += ridge * squares[is_gradient(i)];
-    for (int i = 0; i < n_unknowns; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        for (int k = 0; k < j; ++k) L[i][j] -= L[i][k] * L[j][k];
-        L[i][j] = i == j ? std::sqrt(L[i][i]) : L[i][j] / L[j][j];
+  /// C^-1 times the sum of v x, both about the means, C the sum of x x^T and the ridge.
+  static Vector gradient(const Sums& sums) {
+    Real C[3][3], product[3];
+    for (int i = 0, next = 4; i < 3; ++i) {
+      product[i] = sums[11 + i] - sums[10] * sums[1 + i] / sums[0];
+      for (int j = i; j < 3; ++j) C[i][j] = C[j][i] = sums[next++] - sums[1 + i] * sums[1 + j] / sums[0];
+    }
+    const Real added = ridge * (C[0][0] + C[1][1] + C[2][2]) / 3;
+    if (added == 0) return {};  // of a single entity
+    for (int i = 0; i < 3; ++i) C[i][i] += added;
+    Vector result{};
+    Real det = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+        const Real cofactor = C[a][c] * C[b][d] - C[a][d] * C[b][c];
+        result[i] += cofactor * product[j];
+        if (i == 0) det += C[0][j] * cofactor;
       }
-      x[i] = sums[n_products + i];
-      for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-      x[i] /= L[i][i];
-    }
-    for (int i = n_unknowns - 1; i >= 0; --i) {
-      for (int k = i + 1; k < n_unknowns; ++k) x[i] -= L[k][i] * x[k];
-      x[i] /= L[i][i];
-    }
-    for (int i = 0; i < m; ++i)
-      for (int j = 0; j < 3; ++j) G[i][j] = x[m + 3 * i + j];
-    return G;
+    for (Real& component : result) component /= det;
+    return result;
   }
 
   std::vector<Entity> entities_;

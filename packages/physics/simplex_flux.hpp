@@ -128,29 +128,6 @@ class SimplexFlux {
       for (int i = 0; i < n_components; ++i) e[i] += s[k] * gradients[k][i];
     return e;
   }
-  /// The flux q at the centre.
-  std::array<Real, d> at_centre(const Flows& q) const { return affine(q).first; }
-  /// [corner] c_k = integral K^-1 (v - Pi v) . psi_k of v = G x, with the functions psi_k of Raviart and Thomas that
-  /// let 1 flow through the face opposite to a corner, and Pi v, made of them, with the flows of v.
-  Flows unresolved(const std::array<std::array<Real, d>, d>& G) const {
-    Flows q{};
-    for (int k = 0; k < n; ++k)  // the face's area vector is -d V grad l_k, its centre -X_k/d
-      for (int i = 0; i < d; ++i)
-        for (int j = 0; j < d; ++j) q[k] += volume_ * gradient_[k][i] * G[i][j] * X_[k][j];
-    const auto [a, b] = affine(q);
-    Real mean = 0;  // of (G x - b x) . K^-1 x
-    for (int k = 0; k < n; ++k) {
-      Real v[d];
-      for (int i = 0; i < d; ++i) {
-        v[i] = -b * X_[k][i];
-        for (int j = 0; j < d; ++j) v[i] += G[i][j] * X_[k][j];
-      }
-      mean += product(v, X_[k]) / (n * (n + 1));
-    }
-    Flows c;
-    for (int k = 0; k < n; ++k) c[k] = (mean + product(a, X_[k])) / d;
-    return c;
-  }
   /// What values(x, l) at places x with barycentric coordinates l are above their mean, so that sums of products are
   /// integrals, as far as both are linear.
   template <class ValuesAt>

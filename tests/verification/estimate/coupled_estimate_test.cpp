@@ -2,6 +2,8 @@
 #include "model/goals.hpp"
 #include "verification/heat/warm_boxes.hpp"
 
+#include <Teuchos_DefaultMpiComm.hpp>
+
 namespace sprekk::tests {
 namespace {
 
@@ -10,10 +12,10 @@ struct Measured {
 };
 
 /// Of a quantity, after all steps.
-Measured measure(model::Scene scene, const model::Quantity& quantity) {
+Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const Comm> comm = Tpetra::getDefaultComm()) {
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
-  model::Model model(scene, Tpetra::getDefaultComm());
+  model::Model model(scene, comm);
   model::ErrorEstimator estimator(model);
   estimator.want_reactions();
   model::Goals goals(model);
@@ -162,6 +164,39 @@ TEST(CoupledEstimate, HeatThatAFluidCarries) {
     model::Quantity temperature;
     temperature.what = "temperature";
     compare(cell, temperature, std::expm1(P / 2) / std::expm1(P), 1, scenes);
+  }
+}
+
+/// A fracture that fluid opens, so short that most ranks have none of it.
+TEST(CoupledEstimate, SameOnAnyNumberOfRanks) {
+  for (const std::string cell : {"triangle", "tetrahedron"}) {
+    const bool flat = is_flat(cell);
+    auto scene = column(cell, 1, 8);
+    using Corner = std::vector<Real>;
+    scene.mesh.fractures["a"] = {flat ? Corner{0.25, 0.875} : Corner{0.25, 0.25, 0.875},
+                                 flat ? Corner{0.5, 0.875} : Corner{0.5, 0.5, 0.875}};
+    scene.fractures["a"].material = "joint";
+    auto& joint = scene.materials["joint"];
+    joint.type = "joint";
+    joint.friction_coefficient = Expression(0.6);
+    joint.initial_aperture = Expression(0.1);
+    auto& rock = scene.materials.at("rock");
+    rock.biot = Expression(alpha);
+    rock.permeability = {Expression(mobility)};
+    rock.compressibility = storage;
+    scene.flow->viscosity = 1;
+    scene.boundary_conditions.at("top").pressure = Expression("t");
+    scene.time.scheme = "BDF2";
+    const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
+    for (const std::string what : {"opening", "pressure"}) {
+      SCOPED_TRACE(cell + ", " + what);
+      model::Quantity quantity;
+      quantity.what = what;
+      const auto together = measure(scene, quantity), single = measure(scene, quantity, alone);
+      EXPECT_NEAR(together.value, single.value, 1e-6 * std::abs(single.value));
+      EXPECT_NEAR(together.error, single.error, 1e-4 * single.error);
+      EXPECT_GT(single.error, 1e-6 * std::abs(single.value));
+    }
   }
 }
 
