@@ -154,7 +154,7 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const 
     auto x = fields::create_like(model_.state());
     fields::copy(model_.state(), x);
     for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *estimate.lacks[b], 1);
-    return OfFunctional{now, std::abs(error->value(J, x, reactions) - now)};
+    return OfFunctional{now, error->value(J, x, reactions) - now};
   }
   return std::nullopt;
 }

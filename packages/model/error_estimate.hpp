@@ -56,9 +56,9 @@ class ErrorEstimator {
   /// From now on that of the reactions is wanted, without fractures, too.
   void want_reactions() { wants_reactions_ = true; }
 
-  /// A functional that a balance knows, and by how much it is off; infinite: that is not known.
+  /// A functional that a balance knows, and what it lacks; infinite: that is not known.
   struct OfFunctional {
-    Real value, error;
+    Real value, lack;
   };
   /// Of the present state, whose estimate this is. None of all balances knows it: no value. Collective.
   std::optional<OfFunctional> of_functional(const physics::Functional& J, const ErrorEstimate& estimate);

@@ -175,7 +175,7 @@ bool Goals::add_flux(const std::string& name, const Quantity& quantity, const Er
   if (quantity.is_of_outputs() || quantity.what == "stress") return false;
   if (!last) return true;
   const auto of_functional = estimator.of_functional(quantity, estimate);
-  estimates_[name] = {of_functional->value, of_functional->error};
+  estimates_[name] = {of_functional->value, std::abs(of_functional->lack)};
   auto& bound = bounds_[name];
   if (!estimate.lacks.empty())
     bound = estimator.has_shares() ? estimator.shares(quantity, fluxes_) : all_energies(estimate.energy);

@@ -9,6 +9,7 @@ namespace {
 
 struct Measured {
   Real value, error;
+  std::optional<Real> lack;  // with its sign
 };
 
 /// Of a quantity, after all steps.
@@ -19,11 +20,12 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   model::ErrorEstimator estimator(model);
   estimator.want_reactions();
   model::Goals goals(model);
+  model::ErrorEstimate estimate;
   const auto times = model.scene().time.times();
   for (const Real t : times) {
     EXPECT_TRUE(model.step_to(t).converged);
     const auto outputs = Outputs(model).all();
-    const auto estimate = estimator(outputs);
+    estimate = estimator(outputs);
     goals.add(outputs, estimate, estimator, t == times.back());
     goals.weigh(outputs, estimate, estimator, t == times.back());
   }
@@ -33,7 +35,8 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &marked, &all);
   EXPECT_NEAR(all, 1, 1e-10);
   const auto& goal = goals.estimates().at("goal");
-  return {goal.value, goal.error};
+  const auto of_functional = estimator.of_functional(quantity, estimate);
+  return {goal.value, goal.error, of_functional ? std::optional(of_functional->lack) : std::nullopt};
 }
 
 /// Estimate over error on two meshes; the error falls with this order.
@@ -49,6 +52,7 @@ void compare(const std::string& name, const model::Quantity& quantity, Real exac
                  got.error / missed);
     EXPECT_GE(got.error / missed, 0.5);
     EXPECT_LE(got.error / missed, 2);
+    if (got.lack) EXPECT_GT(*got.lack * (exact - got.value), 0);
     if (before > 0) EXPECT_NEAR(std::log2(before / missed), order, 0.5);
     before = missed;
   }
