@@ -87,7 +87,8 @@ class BalanceError final : public MeshError {
   const std::vector<LocalIndex>& cells() const override { return error_->cells(); }
   std::size_t n_of_energy() const override { return error_->n_of_energy(); }
   Parts of_state(const fields::BlockVector& x, Real t) override {
-    if (const auto T = transmissivities(system_, parameters_.conduits, x)) {
+    const auto& conduits = parameters_.conduits;
+    if (const auto T = conduits ? transmissivities(system_, *conduits, x) : std::nullopt) {
       error_->set_transmissivity(*T);
       truncation_->set_transmissivity(*T);
     }

@@ -22,9 +22,10 @@ struct BalanceErrorParameters {
   };
   Name potential, flow;
   HybridErrorParameters error;
-  Real start = 0;                            ///< time of the initial state
-  std::vector<laws::Conduit> conduits = {};  ///< [local fracture face], whose transmissivity follows "widening"
-  WellsParameters wells = {};                ///< whose connections take part in the balance
+  Real start = 0;  ///< time of the initial state
+  /// [local fracture face], whose transmissivity follows "widening"; none: it does not.
+  std::optional<std::vector<laws::Conduit>> conduits = {};
+  WellsParameters wells = {};  ///< whose connections take part in the balance
   /// A fluid's flow that carries `capacity` of it per volume and unit of the potential, upwind.
   struct Carrier {
     HybridFluxParameters flow;

@@ -329,7 +329,7 @@ std::vector<QuantityKind> Mechanics::quantities() {
 }
 
 std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
-  if (!J.well.empty()) return "\"well\": is of pressure and flow alone";
+  if (!J.well.empty()) return fmt::format("\"well\": must be absent: \"{}\" is of none", J.what);
   const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
   if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" is of none", J.what);
   if (of_boundary && J.boundary.empty()) return "\"boundary\": missing; it is required of a reaction";

@@ -171,7 +171,7 @@ TEST(CoupledEstimate, HeatThatAFluidCarries) {
   }
 }
 
-/// A fracture that fluid opens, so short that most ranks have none of it.
+/// A fracture that fluid opens and cools, so short that most ranks have none of it.
 TEST(CoupledEstimate, SameOnAnyNumberOfRanks) {
   for (const std::string cell : {"triangle", "tetrahedron"}) {
     const bool flat = is_flat(cell);
@@ -191,8 +191,12 @@ TEST(CoupledEstimate, SameOnAnyNumberOfRanks) {
     scene.flow->viscosity = 1;
     scene.boundary_conditions.at("top").pressure = Expression("t");
     scene.time.scheme = "BDF2";
+    scene.time.steps = 2;
+    warm(scene, 2, 0.3, 0.7, 0.5);
+    rock.thermal_expansion = Expression(0.01);
+    hold_temperature(scene, flat ? "north" : "top", "1");
     const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
-    for (const std::string what : {"opening", "pressure"}) {
+    for (const std::string what : flat ? std::vector{"opening", "pressure", "temperature"} : std::vector{"opening"}) {
       SCOPED_TRACE(cell + ", " + what);
       model::Quantity quantity;
       quantity.what = what;
