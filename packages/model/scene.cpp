@@ -88,7 +88,8 @@ void Output::describe(base::Section& s) {
   s.entry(every, "every", "-", base::at_least(1), "write them after every so many steps, and after the last");
   s.entry(error_estimate, "error estimate", "-",
           "estimate after every step how far stress, jumps and fluxes are off on this mesh: "
-          "error_estimate in results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per step");
+          "error_estimate in results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per "
+          "step");
   s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "of times in tables of probes and in pictures");
   s.section(checkpoints, "checkpoints", "what --restart goes on from; one is also written after the last step");
 }
