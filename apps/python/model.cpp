@@ -144,11 +144,9 @@ py::dict dict_of(std::vector<OutputField> outputs) {
 /// What the mean over a face at a side consists of: shares of the nodes [node], mean of the bubble.
 std::pair<std::vector<Real>, Real> face_mean(const mesh::Mesh& mesh, LocalIndex f, int side) {
   const auto& face = mesh.fracture_faces[f];
-  return mesh::for_shape(mesh.shape, [&](auto shape) {
-    const auto shares = assembly::mean_shares<shape()>(mesh, face.cell[side], face.local_face[side]);
-    return std::pair(std::vector<Real>(shares.begin(), shares.begin() + mesh::n_face_nodes(shape())),
-                     assembly::bubble_mean<shape()>(mesh, face.cell[side], face.local_face[side]));
-  });
+  const auto shares = assembly::mean_shares(mesh, face.cell[side], face.local_face[side]);
+  return std::pair(std::vector<Real>(shares.begin(), shares.begin() + mesh::n_face_nodes(mesh.shape)),
+                   assembly::bubble_mean(mesh, face.cell[side], face.local_face[side]));
 }
 
 /// This rank's part of the mesh: owned entities first, all cells and nodes, and so many fracture faces.

@@ -8,7 +8,6 @@
 namespace sprekk::assembly {
 
 using fields::BlockVector;
-using fields::Vector;
 
 namespace {
 
@@ -20,7 +19,7 @@ Real pseudo_random(GlobalIndex unknown, int direction) {
   return 2 * static_cast<Real>((h ^ (h >> 31)) >> 11) / 9007199254740992.0 - 1;
 }
 
-void fill_direction(Vector& d, int direction, Real scale) {
+void fill_direction(fields::Vector& d, int direction, Real scale) {
   auto view = d.getLocalViewHost(Tpetra::Access::OverwriteAll);
   for (std::size_t i = 0; i < view.extent(0); ++i)
     view(i, 0) = scale * pseudo_random(d.getMap()->getGlobalElement(static_cast<LocalIndex>(i)), direction);
@@ -50,7 +49,7 @@ std::vector<JacobianError> check_jacobian(System& system, const BlockVector& x, 
     for (std::size_t column = 0; column < blocks.size(); ++column) {
       std::vector<Real> worst(blocks.size(), 0);
       for (int direction = 0; direction < n_directions; ++direction) {
-        Vector d(blocks[column].map);
+        fields::Vector d(blocks[column].map);
         fill_direction(d, direction, blocks[column].kinematic_scale);
         auto shifted = fields::create_like(x), forward = fields::create_like(x), backward = fields::create_like(x);
         fields::copy(x, shifted);

@@ -23,8 +23,8 @@ View<Real**> layer_volumes(const mesh::Mesh& mesh) {
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto& face = mesh.fracture_faces[sides[s][0]];
     const int side = sides[s][1], local_face = face.local_face[side];
-    const auto shares = mean_shares<shape>(mesh, face.cell[side], local_face);
-    const Real mean = bubble_mean<shape>(mesh, face.cell[side], local_face);
+    const auto shares = mean_shares(mesh, face.cell[side], local_face);
+    const Real mean = bubble_mean(mesh, face.cell[side], local_face);
     for (int i = 0; i < dim; ++i) {
       const Real area = (side == mesh::plus ? face.area : -face.area) * face.frame[0][i];
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)

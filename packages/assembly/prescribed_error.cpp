@@ -16,10 +16,9 @@ LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face,
 }
 
 /// The integral of g - I g over a face, and the face's area. Throws where g has no value.
-template <Shape shape>
 std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, const base::Expression& g,
                            Real t) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
+  const int dim = mesh.dim(), n = mesh::n_face_nodes(mesh.shape);
   FaceValues interpolant{};
   for (int k = 0; k < n; ++k) {
     std::array<Real, 3> x{};
@@ -27,7 +26,7 @@ std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFac
     interpolant[k] = g(x, t);
   }
   Real sum = 0, total = 0;
-  for_each_face_point<shape>(mesh, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
+  for_each_face_point(mesh, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
     sum += area * g(x, t);
     for (int k = 0; k < n; ++k) sum -= area * N[k] * interpolant[k];
     total += area;
@@ -36,7 +35,7 @@ std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFac
 }
 
 /// Adds to each node's integrals and areas those of the owned faces around it. [ghosted unknown, 2]
-template <Shape shape, class Sums>
+template <class Sums>
 void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletCondition& condition, Real t,
                const Sums& sums) {
   if (condition.within) return;  // single nodes
@@ -45,8 +44,8 @@ void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletConditio
     if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;
     for (int c = 0; c < n_components; ++c) {
       if (!condition.values[c]) continue;
-      const auto of_face = missed<shape>(mesh, face, *condition.values[c], t);
-      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+      const auto of_face = missed(mesh, face, *condition.values[c], t);
+      for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
         for (int i = 0; i < 2; ++i) sums(mesh.free_node(node_of(mesh, face, k)) * n_components + c, i) += of_face[i];
     }
   }
@@ -60,9 +59,7 @@ fields::Vector prescribed_error(const mesh::Mesh& mesh, const fields::Layout& la
   fields::MultiVector local(layout.ghosted(), 2), owned(layout.owned(), 2);  // integrals, areas
   base::collectively(*mesh.comm, [&] {
     const auto sums = local.getLocalViewHost(Tpetra::Access::ReadWrite);
-    mesh::for_shape(mesh.shape, [&](auto shape) {
-      for (const auto& condition : conditions) add_faces<shape()>(mesh, n_components, condition, t, sums);
-    });
+    for (const auto& condition : conditions) add_faces(mesh, n_components, condition, t, sums);
   });
   owned.doExport(local, *layout.import(), Tpetra::ADD);
   fields::Vector result(layout.owned());

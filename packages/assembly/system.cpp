@@ -19,7 +19,6 @@ using fields::BlockMatrix;
 using fields::BlockVector;
 using fields::Entity;
 using fields::MultiVector;
-using fields::Vector;
 
 namespace {
 
@@ -167,16 +166,16 @@ void System::declare_fields() {
     block.balance = unknowns_[b].balance;
     if (unknowns_[b].near_null_space != NearNullSpace::none) set_multigrid(unknowns_[b], layout, block);
     blocks_.push_back(block);
-    ghosted_.push_back(rcp(new Vector(layout.ghosted())));
-    weights_.push_back(rcp(new Vector(layout.owned())));
-    diagonals_.push_back(rcp(new Vector(layout.owned())));
+    ghosted_.push_back(rcp(new fields::Vector(layout.ghosted())));
+    weights_.push_back(rcp(new fields::Vector(layout.owned())));
+    diagonals_.push_back(rcp(new fields::Vector(layout.owned())));
     schur_.push_back(Teuchos::null);
-    load_.push_back(rcp(new Vector(layout.owned())));
+    load_.push_back(rcp(new fields::Vector(layout.owned())));
   }
   for (const auto& declaration : declarations_)
     for (const auto& name : declaration.schur)
       if (auto& schur = schur_[context().field(name)]; schur.is_null())
-        schur = rcp(new Vector(layouts_[context().field(name)].owned()));
+        schur = rcp(new fields::Vector(layouts_[context().field(name)].owned()));
   coupled_ = couples_balances();
   carried_.assign(unknowns_.size(), 0);
   for (const auto& declaration : declarations_)
@@ -424,11 +423,11 @@ fields::Globalisation& System::globalisation() { return contact_ ? *contact_ : B
 
 /// No row of the linear part sees rigid motions of pieces.
 bool System::linear_part_is_invariant() const {
-  Vector motion(layouts_[contact_blocks_.displacement].ghosted());
+  fields::Vector motion(layouts_[contact_blocks_.displacement].ghosted());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& A = linear_(static_cast<int>(b), contact_blocks_.displacement);
     if (A.is_null()) continue;
-    Vector rows(blocks_[b].map);
+    fields::Vector rows(blocks_[b].map);
     for (int mode : contact::rigid_modes(mesh_->dim())) {
       contact_->pieces()->set_rigid(mode, motion);
       A->localApply(motion, rows, Teuchos::NO_TRANS, 1.0, 0.0);
@@ -440,7 +439,7 @@ bool System::linear_part_is_invariant() const {
 
 BlockVector System::initial() const {
   BlockVector x;
-  for (const auto& block : blocks_) x.push_back(rcp(new Vector(block.map)));
+  for (const auto& block : blocks_) x.push_back(rcp(new fields::Vector(block.map)));
   const auto views = rows(x);
   for (const auto& module : modules_) module->initial(views);
   return x;

@@ -17,10 +17,10 @@ using mesh::operator*;
 
 namespace {
 
-constexpr Real loaded = 1e-10;   ///< share of the scale that a traction has at least
-constexpr Real margin = 1e-10;   ///< of the displacement scale, by which faces without load stay apart
-constexpr Real at_limit = 1e-8;  ///< of friction, relative to it
-constexpr Real settled = 1e-10;  ///< of the displacement scale; what moves less stays
+constexpr Real least_load = 1e-10;  ///< share of the scale that a traction has at least
+constexpr Real margin = 1e-10;      ///< of the displacement scale, by which faces without load stay apart
+constexpr Real at_limit = 1e-8;     ///< of friction, relative to it
+constexpr Real settled = 1e-10;     ///< of the displacement scale; what moves less stays
 
 /// Rows a b^T.
 std::array<Vector, 3> product(const Vector& a, const Vector& b) { return {a[0] * b, a[1] * b, a[2] * b}; }
@@ -98,7 +98,7 @@ bool Contact::settle(BlockVector& x) {
   if (!pieces_) return false;
   nearest_known_ = true;
   const auto sizes = equations_.sizes();
-  const Real length = sizes.displacement, least = loaded * sizes.traction;
+  const Real length = sizes.displacement, least = least_load * sizes.traction;
   auto released = equations_.grips(x);
   std::vector<Real> apart, touching;
   for (const auto& grip : released) {

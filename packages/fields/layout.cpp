@@ -105,4 +105,9 @@ Layout::Layout(const Field& field, const mesh::Mesh& mesh)
 
 std::size_t Layout::halo_messages() const { return import_->getDistributor().getNumReceives(); }
 
+View<Real**> by_entity(Vector& vector, int n_components) {
+  const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
+  return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
+}
+
 }  // namespace sprekk::fields

@@ -58,4 +58,7 @@ RCP<const Map> whole_map(const Field& field, const mesh::Mesh& mesh);
 /// Number of entities of a kind with unknowns of their own on this rank, owned only or with ghosts.
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts);
 
+/// The values of a vector on the device, [entity, component]: a view of the vector's own memory.
+View<Real**> by_entity(Vector& vector, int n_components);
+
 }  // namespace sprekk::fields

@@ -6,6 +6,7 @@
 
 #include "base/view.hpp"
 #include "laws/contact.hpp"
+#include "laws/joint_fwd.hpp"
 #include "laws/joint_kinds.hpp"
 
 #include <cmath>
@@ -217,8 +218,6 @@ struct JointLaw {
     return of_gap() + laws::n_history(friction) + laws::n_history(elastic);
   }
 };
-
-using Joint = JointLaw<>;
 
 /// The constants of the projection for an augmentation c, Pa/m:
 ///   1/c_t = 1/c + 1/K_t,  1/c_n = 1/c + 1/K_n + 2 mu tan(theta)/K_t

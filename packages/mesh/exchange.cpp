@@ -8,12 +8,12 @@
 namespace sprekk::mesh {
 namespace {
 
-using Map = Tpetra::Map<LocalIndex, GlobalIndex>;
-using Vector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;
+using IndexMap = Tpetra::Map<LocalIndex, GlobalIndex>;
+using IndexVector = Tpetra::Vector<GlobalIndex, LocalIndex, GlobalIndex>;
 
-RCP<const Map> map_of(const GlobalIndex* ids, LocalIndex n, const RCP<const Comm>& comm) {
-  return rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
-                     Teuchos::ArrayView<const GlobalIndex>(ids, n), 0, comm));
+RCP<const IndexMap> map_of(const GlobalIndex* ids, LocalIndex n, const RCP<const Comm>& comm) {
+  return rcp(new IndexMap(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                          Teuchos::ArrayView<const GlobalIndex>(ids, n), 0, comm));
 }
 
 }  // namespace
@@ -43,9 +43,9 @@ std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const 
   const auto here = map_of(ids.data(), static_cast<LocalIndex>(ids.size()), comm);
   const auto n =
       static_cast<Tpetra::global_size_t>(here->getMaxAllGlobalIndex() + 1);  // none: 0, for there is no index
-  const auto in_order = rcp(new Map(here->getGlobalNumElements() == 0 ? 0 : n, 0, comm));
+  const auto in_order = rcp(new IndexMap(here->getGlobalNumElements() == 0 ? 0 : n, 0, comm));
   const Tpetra::Export<LocalIndex, GlobalIndex> there(here, in_order);
-  Vector mine(here), sorted(in_order);
+  IndexVector mine(here), sorted(in_order);
   std::copy(counts.begin(), counts.end(), mine.getDataNonConst().begin());
   sorted.doExport(mine, there, Tpetra::INSERT);
   {

@@ -29,9 +29,9 @@ Map scaled_map(const std::vector<GlobalIndex>& cells, const std::vector<Real>& m
   return map;
 }
 
-class Builder {
+class HierarchyBuilder {
  public:
-  explicit Builder(const GlobalMesh& mesh)
+  explicit HierarchyBuilder(const GlobalMesh& mesh)
       : mesh_(mesh), dim_(mesh.dim()), n_fractures_(static_cast<int>(mesh.fracture_names.size())) {
     SPREKK_CHECK(mesh.fracture_faces.empty() || static_cast<GlobalIndex>(mesh.parent_node.size()) == mesh.n_nodes(),
                  "hierarchy: {} parent nodes for {} nodes; the mesh must come from split()", mesh.parent_node.size(),
@@ -269,6 +269,6 @@ int Hierarchy::count(int dimension) const {
                                         [&](const Subdomain& s) { return s.dimension == dimension; }));
 }
 
-Hierarchy make_hierarchy(const GlobalMesh& mesh) { return Builder(mesh).build(); }
+Hierarchy make_hierarchy(const GlobalMesh& mesh) { return HierarchyBuilder(mesh).build(); }
 
 }  // namespace sprekk::mesh

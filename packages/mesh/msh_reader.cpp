@@ -23,9 +23,9 @@ using Element = MshFile::Element;
 
 std::string text(const Vector& x) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", x[0], x[1], x[2]); }
 
-class Builder {
+class MshBuilder {
  public:
-  Builder(const MshFile& msh, const std::string& file, const MshOptions& options)
+  MshBuilder(const MshFile& msh, const std::string& file, const MshOptions& options)
       : msh_(msh), file_(file), options_(options) {}
 
   GlobalMesh build() {
@@ -413,11 +413,11 @@ class Builder {
 }  // namespace
 
 GlobalMesh parse_msh(std::string_view text, const std::string& file, const MshOptions& options) {
-  return Builder(parse_msh_file(text, file), file, options).build();
+  return MshBuilder(parse_msh_file(text, file), file, options).build();
 }
 
 GlobalMesh read_msh(const std::string& path, const MshOptions& options) {
-  return Builder(read_msh_file(path), path, options).build();
+  return MshBuilder(read_msh_file(path), path, options).build();
 }
 
 }  // namespace sprekk::mesh

@@ -85,27 +85,36 @@ inline constexpr std::array<FaceNodes, 8> all_face_nodes = {
 /// node (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
 constexpr const FaceNodes& face_nodes(Shape s) { return detail::all_face_nodes[static_cast<int>(s)]; }
 
-/// f(std::integral_constant<Shape, s>) for a shape that is known at run time only.
+/// f(std::integral_constant<Shape, c>) for the cell c of order 1 with the same corners: for code that depends on
+/// corners and faces alone, which is then compiled for four cells instead of eight.
 template <class F>
-auto for_shape(Shape s, const F& f) {
-  switch (s) {
+auto for_corners(Shape s, const F& f) {
+  switch (linear(s)) {
     case Shape::triangle:
       return f(std::integral_constant<Shape, Shape::triangle>());
     case Shape::quadrilateral:
       return f(std::integral_constant<Shape, Shape::quadrilateral>());
     case Shape::tetrahedron:
       return f(std::integral_constant<Shape, Shape::tetrahedron>());
-    case Shape::hexahedron:
-      return f(std::integral_constant<Shape, Shape::hexahedron>());
-    case Shape::triangle6:
-      return f(std::integral_constant<Shape, Shape::triangle6>());
-    case Shape::quadrilateral9:
-      return f(std::integral_constant<Shape, Shape::quadrilateral9>());
-    case Shape::tetrahedron10:
-      return f(std::integral_constant<Shape, Shape::tetrahedron10>());
     default:
-      return f(std::integral_constant<Shape, Shape::hexahedron27>());
+      return f(std::integral_constant<Shape, Shape::hexahedron>());
   }
+}
+
+/// The same for code that depends on the corners of faces alone: a triangle for all cells in 2D, a tetrahedron where
+/// faces are triangles, a hexahedron where they are quadrilaterals.
+template <class F>
+auto for_face_corners(Shape s, const F& f) {
+  if (dimension(s) == 2) return f(std::integral_constant<Shape, Shape::triangle>());
+  if (is_simplex(s)) return f(std::integral_constant<Shape, Shape::tetrahedron>());
+  return f(std::integral_constant<Shape, Shape::hexahedron>());
+}
+
+/// f(std::integral_constant<Shape, s>) for a shape that is known at run time only.
+template <class F>
+auto for_shape(Shape s, const F& f) {
+  if (order(s) == 1) return for_corners(s, f);
+  return for_corners(s, [&](auto corners) { return f(std::integral_constant<Shape, quadratic(corners())>()); });
 }
 
 }  // namespace sprekk::mesh

@@ -14,7 +14,7 @@ using nlohmann::json;
 namespace {
 
 constexpr int most_runs = 60;
-constexpr Real share = 0.5;          ///< of the sum of indicators that marked cells have
+constexpr Real marked_share = 0.5;   ///< of the sum of indicators that marked cells have
 constexpr Real share_of_time = 0.3;  ///< of the error that is asked for
 constexpr int most_halvings = 6;     ///< of steps
 
@@ -174,7 +174,7 @@ std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const Go
   }
   const auto& mesh = model.mesh();
   std::vector<GlobalIndex> cells;
-  for (const LocalIndex cell : marked(*mesh.comm, goals.indicators(weights), share))
+  for (const LocalIndex cell : marked(*mesh.comm, goals.indicators(weights), marked_share))
     cells.push_back(mesh.origin.is_null() ? mesh.cell_id[cell] : mesh.origin->cells[cell]);
   return base::gather_over_ranks(*mesh.comm, cells);
 }

@@ -91,12 +91,6 @@ void compare_places(const std::string& what, const std::map<std::string, Place>&
                                   place.n_components, fields::name_of(place.entity), old->second.n_components,
                                   fields::name_of(old->second.entity)));
 }
-
-View<Real**> entries(fields::Vector& vector, int n_components) {
-  const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
-  return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
-}
-
 /// The values of a field, [owned entity, component], from one part of a mesh to another one. Entities that only the
 /// latter has keep theirs.
 void carry(const fields::Field& field, const mesh::Mesh& whole, const mesh::Mesh& from, const View<Real**>& values,
@@ -104,12 +98,12 @@ void carry(const fields::Field& field, const mesh::Mesh& whole, const mesh::Mesh
   const int n = field.n_components;
   fields::Vector old(fields::whole_map(field, from)), now(fields::whole_map(field, to)),
       all(fields::owned_map(field, whole));
-  Kokkos::deep_copy(entries(old, n), values);
-  Kokkos::deep_copy(entries(now, n), carried);
+  Kokkos::deep_copy(fields::by_entity(old, n), values);
+  Kokkos::deep_copy(fields::by_entity(now, n), carried);
   for (const auto* part : {&now, &old})
     all.doExport(*part, fields::Export(part->getMap(), all.getMap()), Tpetra::REPLACE);
   now.doImport(all, fields::Import(all.getMap(), now.getMap()), Tpetra::REPLACE);
-  Kokkos::deep_copy(carried, entries(now, n));
+  Kokkos::deep_copy(carried, fields::by_entity(now, n));
 }
 
 }  // namespace
@@ -173,8 +167,8 @@ void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::B
   for (std::size_t b = 0; b < carried.size(); ++b)
     for (std::size_t o = 0; o < x.size(); ++o)
       if (const auto& field = to.layouts()[b].field(); from.layouts()[o].field().name == field.name)
-        carry(field, whole, old_mesh, entries(*x[o], field.n_components), mesh,
-              entries(*carried[b], field.n_components));
+        carry(field, whole, old_mesh, fields::by_entity(*x[o], field.n_components), mesh,
+              fields::by_entity(*carried[b], field.n_components));
   auto kept = from.histories();
   for (auto& passed : from.passed_on(x)) kept.push_back(std::move(passed));
   for (const auto& [field, values] : to.histories())

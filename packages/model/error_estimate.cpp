@@ -33,7 +33,7 @@ std::unique_ptr<physics::StressRecovery> make_recovery(const Model& model,
 }
 
 /// part / whole; close to 0 where the whole is nothing but round-off of something as large as scale.
-Real share(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / std::max(whole, 1e-10 * scale); }
+Real ratio_of(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / std::max(whole, 1e-10 * scale); }
 
 }  // namespace
 
@@ -81,11 +81,8 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   for (const auto& error : flux_errors_) {
     estimate.fluxes.push_back(flux_error(*error));
     auto density = estimate.fluxes.back().energy;
-    mesh::for_shape(model_.mesh().shape, [&](auto shape) {
-      for (std::size_t c = 0; c < density.size(); ++c)
-        density[c] /=
-            assembly::cell_mean<shape()>(model_.mesh(), static_cast<LocalIndex>(c), [](const auto&) { return 1; })[0];
-    });
+    for (std::size_t c = 0; c < density.size(); ++c)
+      density[c] /= assembly::cell_mean(model_.mesh(), static_cast<LocalIndex>(c), [](const auto&) { return 1; })[0];
     estimate.fields.push_back({.name = error->name() + " error density",
                                .unit = error->unit() + "/m^3",
                                .entity = fields::Entity::cell,
@@ -104,7 +101,7 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   estimate.stress = error.error;
   estimate.stress_norm = error.stress;
   estimate.energy = error.energy;
-  estimate.relative_stress = share(error.error, error.stress, std::sqrt(section_ * energy));
+  estimate.relative_stress = ratio_of(error.error, error.stress, std::sqrt(section_ * energy));
   estimate.fields.push_back({.name = "error density",
                              .unit = "J/m^3",
                              .entity = fields::Entity::cell,
@@ -342,7 +339,7 @@ void ErrorEstimator::estimate_jump(const std::vector<OutputField>& outputs, Erro
   const auto all = base::sum_over_ranks(*mesh.comm, here);
   estimate.jump = std::sqrt(all[0]);
   const Real length = model_.system().scales().at("displacement");
-  estimate.relative_jump = share(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);
+  estimate.relative_jump = ratio_of(estimate.jump, std::sqrt(all[1]), std::sqrt(section_) * length);
   estimate.fields.push_back(std::move(error));
 }
 

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real missing = std::numeric_limits<Real>::quiet_NaN();
 
 /// Sums and maxima over the faces of groups.
 class Groups {
@@ -81,7 +81,7 @@ class Adder {
   void add_maxima(const OutputField& output, const std::string& name) {
     auto maxima = groups_.maxima(output.values);
     for (std::size_t k = 0; k < maxima.size(); ++k)
-      if (area_[k] == 0) maxima[k] = none;  // without a face, all of it joined to others
+      if (area_[k] == 0) maxima[k] = missing;  // without a face, all of it joined to others
     columns_.push_back({name, "", output.unit, 1, maxima});
   }
 
@@ -95,7 +95,7 @@ class Adder {
   void add_derived(const assembly::Derived& derived, int n, const std::vector<Real>& from) {
     FractureColumn column{derived.name, "", derived.unit};
     for (std::size_t k = 0; k < groups_.n(); ++k)
-      column.values.push_back(derived.of({&from[k * n], &from[k * n] + n}).value_or(none));
+      column.values.push_back(derived.of({&from[k * n], &from[k * n] + n}).value_or(missing));
     columns_.push_back(column);
   }
 

@@ -33,13 +33,6 @@ T& named(std::vector<T>& all, const std::string& name, const Name& name_of, cons
 
 /// The name of a block's unknowns in a checkpoint.
 std::string key_of(const fields::Block& block) { return "unknowns: " + block.name; }
-
-/// A vector's values by entity and component.
-View<Real**> entries(fields::Vector& vector, int n_components) {
-  const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
-  return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
-}
-
 void redistribute(const fields::Vector& from, fields::Vector& to) {
   to.doImport(from, fields::Import(from.getMap(), to.getMap()), Tpetra::REPLACE);
 }
@@ -251,7 +244,7 @@ FieldView Model::field(const std::string& name) {
   std::vector<FieldView> all;
   for (std::size_t b = 0; b < x_.size(); ++b) {
     const auto& field = system_->layouts()[b].field();
-    all.push_back({field, entries(*x_[b], field.n_components)});
+    all.push_back({field, fields::by_entity(*x_[b], field.n_components)});
   }
   for (const auto& [field, values] : system_->histories()) all.push_back({field, values});
   return named(
@@ -270,7 +263,7 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[key_of(system_->blocks()[b])] = rcp(new fields::Vector(*x_[b], Teuchos::Copy));
   for (const auto& [field, values] : system_->histories()) {
     const auto vector = rcp(new fields::Vector(fields::owned_map(field, mesh())));
-    Kokkos::deep_copy(entries(*vector, field.n_components), values);
+    Kokkos::deep_copy(fields::by_entity(*vector, field.n_components), values);
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
@@ -292,7 +285,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     const auto kept = checkpoint.vectors.find(field.name);
     if (kept == checkpoint.vectors.end()) continue;  // rates, of steps whose length was not chosen
     redistribute(*kept->second, vector);
-    Kokkos::deep_copy(values, entries(vector, field.n_components));
+    Kokkos::deep_copy(values, fields::by_entity(vector, field.n_components));
   }
   time_ = content.at("time");
   system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration"),

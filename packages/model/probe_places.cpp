@@ -234,23 +234,20 @@ std::vector<Shares> shares_at(const Mesh& mesh, Entity entity, const std::vector
 
 Shares shares_on_boundary(const Mesh& mesh, Entity entity, int boundary) {
   Shares shares;
-  mesh::for_shape(mesh.shape, [&](auto shape) {
-    for (const auto& face : mesh.boundary_faces) {
-      if (!face.owned || face.boundary != boundary) continue;
-      Real area = 0;
-      assembly::FaceValues at_nodes{};
-      assembly::for_each_face_point<shape()>(mesh, face.cell, face.local_face,
-                                             [&](const auto& N, Real part, const auto&) {
-                                               area += part;
-                                               for (std::size_t k = 0; k < N.size(); ++k) at_nodes[k] += part * N[k];
-                                             });
-      if (entity == Entity::cell) shares.push_back({face.cell, area});
-      for (int k = 0; k < mesh::n_face_nodes(shape()) && entity == Entity::node; ++k) {
-        const int local = mesh::face_nodes(shape())[face.local_face][k];
-        shares.push_back({mesh.cells[face.cell * mesh.nodes_per_cell() + local], at_nodes[k]});
-      }
+  for (const auto& face : mesh.boundary_faces) {
+    if (!face.owned || face.boundary != boundary) continue;
+    Real area = 0;
+    assembly::FaceValues at_nodes{};
+    assembly::for_each_face_point(mesh, face.cell, face.local_face, [&](const auto& N, Real part, const auto&) {
+      area += part;
+      for (std::size_t k = 0; k < N.size(); ++k) at_nodes[k] += part * N[k];
+    });
+    if (entity == Entity::cell) shares.push_back({face.cell, area});
+    for (int k = 0; k < mesh::n_face_nodes(mesh.shape) && entity == Entity::node; ++k) {
+      const int local = mesh::face_nodes(mesh.shape)[face.local_face][k];
+      shares.push_back({mesh.cells[face.cell * mesh.nodes_per_cell() + local], at_nodes[k]});
     }
-  });
+  }
   return merged(std::move(shares));
 }
 

@@ -21,7 +21,7 @@ using physics::Probe;
 
 namespace {
 
-constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real missing_value = std::numeric_limits<Real>::quiet_NaN();
 
 /// Names of components: of one number none.
 std::vector<std::string> component_names(int n, bool is_local) {
@@ -213,7 +213,7 @@ void Probes::add_number(bool is_set, int fracture, const FractureColumn& column)
 void Probes::add_sum(const std::string& output, const std::string& place, int n, const std::string& unit) {
   for (const auto& component : component_names(n, false)) tables_.back().columns.push_back({output + component, unit});
   looks_.back().push_back([=](const Observation& seen) {
-    std::vector<Real> values(n, none);  // of a place without a condition
+    std::vector<Real> values(n, missing_value);  // of a place without a condition
     if (const auto* sum = find(seen.sums, {output, place}))
       for (int i = 0; i < n; ++i) values[i] = sum->is_array() ? sum->at(i).get<Real>() : sum->get<Real>();
     return values;
@@ -260,7 +260,7 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
       places = shares_at(mesh, output.entity, points);
     } catch (const Error&) {  // the same on all ranks
       if (mesh.origin.is_null()) throw;
-      const std::vector<Real> nothing(points.size() * output.n_components, none);  // the place is excavated
+      const std::vector<Real> nothing(points.size() * output.n_components, missing_value);  // the place is excavated
       return [nothing](const Observation&) { return nothing; };
     }
   }
@@ -284,7 +284,7 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
           at = is_sum ? at + weight * value : std::max(at, sign * value);
         }
     values = is_sum ? base::sum_over_ranks(*mesh.comm, values) : base::max_over_ranks(*mesh.comm, values);
-    for (auto& value : values) value = is_empty ? none : is_sum ? value / divisor : sign * value;
+    for (auto& value : values) value = is_empty ? missing_value : is_sum ? value / divisor : sign * value;
     return values;
   };
 }

@@ -73,8 +73,8 @@ View<Real**> side_volumes(const mesh::Mesh& mesh) {
     const LocalIndex cell = face.cell[side];
     const int local_face = face.local_face[side];
     const Real area = side == mesh::plus ? face.area : -face.area;
-    const auto shares = assembly::mean_shares<shape>(mesh, cell, local_face);
-    const Real mean = assembly::bubble_mean<shape>(mesh, cell, local_face);
+    const auto shares = assembly::mean_shares(mesh, cell, local_face);
+    const Real mean = assembly::bubble_mean(mesh, cell, local_face);
     for (int i = 0; i < dim; ++i) {
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
         host(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];

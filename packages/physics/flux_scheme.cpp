@@ -30,7 +30,7 @@ bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility
 /// How many cells are not orthogonal, and of how many, on all ranks. Collective.
 std::array<GlobalIndex, 2> skew_cells(const mesh::Mesh& mesh, const Properties<laws::Mobility>& mobility) {
   std::array<GlobalIndex, 2> here{0, mesh.n_owned_cells};
-  mesh::for_shape(mesh.shape, [&](auto shape) {
+  mesh::for_corners(mesh.shape, [&](auto shape) {
     Real X[mesh::n_nodes(shape())][mesh::dimension(shape())];
     for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
       assembly::gather_host<shape()>(mesh, c, X);

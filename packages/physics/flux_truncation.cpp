@@ -214,7 +214,7 @@ std::unique_ptr<FluxTruncation> make_flux_truncation(RCP<const mesh::Mesh> mesh,
                                                      const fields::Layout& facets, ConstView<char*> held_facets,
                                                      HybridFluxParameters parameters) {
   SPREKK_CHECK(mesh::is_simplex(mesh->shape), "the estimate of the error of fluxes is of triangles and tetrahedra");
-  return mesh::for_shape(mesh->shape, [&](auto shape) -> std::unique_ptr<FluxTruncation> {
+  return mesh::for_corners(mesh->shape, [&](auto shape) -> std::unique_ptr<FluxTruncation> {
     if constexpr (mesh::is_simplex(shape()))
       return std::make_unique<Truncation<shape()>>(mesh, Potentials::Layouts{&cells, &facets}, held_facets,
                                                    std::move(parameters));

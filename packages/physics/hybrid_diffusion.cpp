@@ -186,9 +186,8 @@ class HybridDiffusion final : public assembly::Module {
         const auto& one = outflow_.conditions()[k];
         if (face.boundary != one.boundary || (one.region >= 0 && mesh_->cell_region[face.cell] != one.region)) continue;
         const LocalIndex facet = mesh_->facets->of_cell[face.cell * n_faces + face.local_face];
-        assembly::for_each_face_point<shape>(
-            *mesh_, face.cell, face.local_face,
-            [&](const auto&, Real area, const auto& x) { outflow_.add(k, facet, area, x); });
+        assembly::for_each_face_point(*mesh_, face.cell, face.local_face,
+                                      [&](const auto&, Real area, const auto& x) { outflow_.add(k, facet, area, x); });
       }
   }
 
@@ -196,8 +195,8 @@ class HybridDiffusion final : public assembly::Module {
   template <class Visit>
   void for_each_source(Real t, const Visit& visit) const {
     for (LocalIndex c = 0; c < mesh_->n_owned_cells && !parameters_.source.empty(); ++c)
-      assembly::for_each_cell_point<shape>(
-          *mesh_, c, [&](const auto&, Real volume, const auto& x) { visit(c, volume, parameters_.source[0](x, t)); });
+      assembly::for_each_cell_point(*mesh_, c,
+                                    [&](Real volume, const auto& x) { visit(c, volume, parameters_.source[0](x, t)); });
   }
 
   HybridDiffusionParameters parameters_;
@@ -223,14 +222,11 @@ void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<R
     if (facet < mesh.facets->n_owned) on_facets(facet) = u(x, 0);
   };
   const int n_faces = mesh::n_faces(mesh.shape), n_ridges = mesh::n_face_corners(mesh.shape);
-  mesh::for_shape(mesh.shape, [&](auto shape) {
-    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-      if (c < mesh.n_owned_cells)
-        in_cells(c) = assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return u(x, 0); })[1];
-      for (int k = 0; k < n_faces; ++k)
-        put(mesh.facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(mesh, c, k)));
-    }
-  });
+  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+    if (c < mesh.n_owned_cells) in_cells(c) = assembly::cell_mean(mesh, c, [&](const auto& x) { return u(x, 0); })[1];
+    for (int k = 0; k < n_faces; ++k)
+      put(mesh.facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(mesh, c, k)));
+  }
   for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
     for (int k = 0; k < n_ridges; ++k) put(mesh.facets->ridge[f * n_ridges + k], mesh::ridge_centre(mesh, f, k));
   Kokkos::deep_copy(cells, in_cells);
@@ -238,7 +234,7 @@ void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<R
 }
 
 std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffusionParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+  return mesh::for_corners(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     return std::make_unique<HybridDiffusion<s()>>(std::move(parameters));
   });
 }

@@ -712,7 +712,7 @@ std::unique_ptr<HybridError> make_hybrid_error(RCP<const mesh::Mesh> mesh, const
                                                const fields::Layout& facets, ConstView<char*> held_facets,
                                                HybridErrorParameters parameters) {
   SPREKK_CHECK(mesh::is_simplex(mesh->shape), "the estimate of the error of flow is of triangles and tetrahedra");
-  return mesh::for_shape(mesh->shape, [&](auto shape) -> std::unique_ptr<HybridError> {
+  return mesh::for_corners(mesh->shape, [&](auto shape) -> std::unique_ptr<HybridError> {
     if constexpr (mesh::is_simplex(shape()))
       return std::make_unique<Error<shape()>>(mesh, cells, facets, held_facets, std::move(parameters));
     else

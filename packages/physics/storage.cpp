@@ -238,18 +238,16 @@ std::unique_ptr<assembly::Module> module_of(std::string name, std::string field,
 std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters) {
   const auto find = [parameters](const mesh::Mesh& mesh) {
     std::vector<Stored> stored;
-    mesh::for_shape(mesh.shape, [&](auto shape) {
-      const auto mean = [&](LocalIndex c, const base::Expression& of) {
-        return assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return of(x, 0); });
-      };
-      for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-        const auto [volume, initial] = mean(c, parameters.initial);
-        stored.push_back({.volume = volume,
-                          .capacity = parameters.capacity.of_cell(mesh, c),
-                          .initial = initial,
-                          .carried = parameters.change ? mean(c, parameters.change->initial)[1] : 0});
-      }
-    });
+    const auto mean = [&](LocalIndex c, const base::Expression& of) {
+      return assembly::cell_mean(mesh, c, [&](const auto& x) { return of(x, 0); });
+    };
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+      const auto [volume, initial] = mean(c, parameters.initial);
+      stored.push_back({.volume = volume,
+                        .capacity = parameters.capacity.of_cell(mesh, c),
+                        .initial = initial,
+                        .carried = parameters.change ? mean(c, parameters.change->initial)[1] : 0});
+    }
     return stored;
   };
   return module_of<StorageCell>(parameters.name, parameters.field, parameters.field, fields::Entity::cell, Loop::cells,
@@ -259,19 +257,17 @@ std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters) {
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
   const auto find = [parameters](const mesh::Mesh& mesh) {
     std::vector<Stored> stored;
-    mesh::for_shape(mesh.shape, [&](auto shape) {
-      const auto mean = [&](const mesh::Mesh::FractureFace& face, const base::Expression& of) {
-        return assembly::face_mean<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                            [&](const auto&, const auto& x) { return of(x, 0); });
-      };
-      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-        const auto& face = mesh.fracture_faces[f];
-        stored.push_back({.volume = face.area,
-                          .capacity = {.room = parameters.aperture[f], .growth = 0},
-                          .initial = mean(face, parameters.initial),
-                          .carried = parameters.change ? mean(face, parameters.change->initial) : 0});
-      }
-    });
+    const auto mean = [&](const mesh::Mesh::FractureFace& face, const base::Expression& of) {
+      return assembly::face_mean(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                 [&](const auto&, const auto& x) { return of(x, 0); });
+    };
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      stored.push_back({.volume = face.area,
+                        .capacity = {.room = parameters.aperture[f], .growth = 0},
+                        .initial = mean(face, parameters.initial),
+                        .carried = parameters.change ? mean(face, parameters.change->initial) : 0});
+    }
     return stored;
   };
   const auto make = [&](auto op) {

@@ -18,21 +18,21 @@ constexpr Real least_way = 0.5;
 constexpr Real swing_damping = 0.3;
 constexpr int most_unbalanced = 3, most_begun = 3;
 
-BlockVector blocks_of(const NOX::Abstract::Vector& v) {
+BlockVector nox_blocks(const NOX::Abstract::Vector& v) {
   return solve::blocks_of(dynamic_cast<const NOX::Thyra::Vector&>(v).getThyraVector());
 }
 
 }  // namespace
 
-BlockVector solution_of(const NOX::Abstract::Group& group) { return blocks_of(group.getX()); }
-BlockVector residual_of(const NOX::Abstract::Group& group) { return blocks_of(group.getF()); }
+BlockVector solution_of(const NOX::Abstract::Group& group) { return nox_blocks(group.getX()); }
+BlockVector residual_of(const NOX::Abstract::Group& group) { return nox_blocks(group.getF()); }
 
 bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::Abstract::Vector& direction,
                          const NOX::Solver::Generic& solver) {
   step = 0;
   const auto& from = solver.getPreviousSolutionGroup();
   const auto dx = direction.clone();
-  auto blocks = blocks_of(*dx);
+  auto blocks = nox_blocks(*dx);
   bool solved = model_.linear_history().back().converged;
   report_.damped =
       picard_.lags() || damping_ > 0 || std::any_of(swinging_.begin(), swinging_.end(), [](Real d) { return d > 0; });

@@ -2,6 +2,7 @@
 #include "joints.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 #include "physics/mechanics/joint_face.hpp"
+#include "physics/mechanics/joint_points_laws.hpp"
 #include "report.hpp"
 
 #include <cstdio>
@@ -54,6 +55,12 @@ struct Faces {
   }
 };
 
+/// The operator of faces with the laws that it points to.
+template <Shape shape>
+struct Face : physics::JointFace<mesh::dimension(shape), mesh::n_face_nodes(shape), false> {
+  ConstView<laws::Joint*> laws;
+};
+
 /// What laws keep of a face after a step that ends at the unknowns.
 template <class Face, int n_kept>
 struct Commit {
@@ -66,11 +73,12 @@ struct Commit {
     Real local[Face::Columns::size], elastic[dim], plastic[dim], p[dim - 1], kept[n_kept];
     for (int k = 0; k < Face::Columns::size; ++k) local[k] = x(f, k);
     const auto end = face.point(f, local);
-    const auto& law = face.law(face.number(f));
-    laws::split_jump<dim>(law, end.state, end.w, end.traction, end.p_old, elastic, plastic, face.history(f));
+    const auto& law = face.points.law[face.points.number(f)];
+    laws::split_jump<dim>(law, end.state, end.w, end.traction, end.p_old, elastic, plastic, face.points.history(f));
     for (int i = 0; i < dim - 1; ++i) p[i] = end.state == laws::ContactState::stick ? end.p_old[i] : plastic[i + 1];
-    for (int k = 0; k < n_kept; ++k) kept[k] = face.kept(f, k);
-    law.commit(laws::converged<dim>(law, end.state, end.w, end.traction, p, end.p_old, face.history(f)), {kept, 1});
+    for (int k = 0; k < n_kept; ++k) kept[k] = face.points.kept(f, k);
+    law.commit(laws::converged<dim>(law, end.state, end.w, end.traction, p, end.p_old, face.points.history(f)),
+               {kept, 1});
     for (int k = 0; k < n_kept; ++k) out(f, k) = kept[k];
   }
 };
@@ -78,7 +86,7 @@ struct Commit {
 /// Face f has joint f/n of all; frames, tractions and displacements are random.
 template <Shape shape>
 auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
-  using Face = physics::JointFace<shape, false>;
+  using Face = device::Face<shape>;
   constexpr int dim = Face::dim, n_nodes = Face::n, n_columns = Face::Columns::size;
   const int n_joints = static_cast<int>(faces.joints.size());
   Random random(17);
@@ -88,7 +96,7 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
     };
   };
   Face face;
-  face.frame = filled<Real***>(
+  face.points.frame = filled<Real***>(
       [&](const auto& view) {
         for (int f = 0; f < n; ++f) {  // a rotation
           const Real a = random(0, 6.28), b = random(0, 3.14), ca = std::cos(a), sa = std::sin(a);
@@ -102,15 +110,16 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
       n, dim, dim);
   face.share = filled<Real**>(numbers(0.8 / n_nodes, 1.2 / n_nodes), n, n_nodes);
   face.bubble_mean = filled<Real*>(numbers(0.4, 0.7), n);
-  face.law = filled<laws::Joint*>(
+  face.laws = filled<laws::Joint*>(
       [&](const auto& view) { std::copy(faces.joints.begin(), faces.joints.end(), view.data()); }, n_joints);
   const auto joint = [&](int f) { return static_cast<int>(static_cast<long>(f) * n_joints / n); };
-  face.number = filled<int*>(
+  face.points.law = face.laws.data();
+  face.points.number = filled<int*>(
       [&](const auto& view) {
         for (int f = 0; f < n; ++f) view(f) = joint(f);
       },
       n);
-  face.augmentation = filled<Real*>(numbers(2e10, 1e11), n);
+  face.points.augmentation = filled<Real*>(numbers(2e10, 1e11), n);
   const auto copy = [&](int begin) {
     return [&faces, &joint, begin, n](const auto& view) {
       for (int f = 0; f < n; ++f)
@@ -118,10 +127,10 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
           view(f, k) = faces.history[joint(f) * faces.size() + begin + k];
     };
   };
-  face.p_old = filled<Real**>(copy(0), n, dim - 1);
-  if (faces.n_kept > 0) face.kept = filled<Real**>(copy(dim - 1), n, faces.n_kept);
-  const auto old = host_of(face.p_old);
-  const auto frame = host_of(face.frame);
+  face.points.p_old = filled<Real**>(copy(0), n, dim - 1);
+  if (faces.n_kept > 0) face.points.kept = filled<Real**>(copy(dim - 1), n, faces.n_kept);
+  const auto old = host_of(face.points.p_old);
+  const auto frame = host_of(face.points.frame);
   const auto x = filled<Real**>(
       [&](const auto& view) {
         for (int f = 0; f < n; ++f) {
@@ -148,7 +157,7 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
 /// Differences of what is kept are to be small beside it, or beside a length of 0.1 mm.
 template <Shape shape>
 void add_commit(Report& report, const std::string& name, const Faces<mesh::dimension(shape)>& faces, int n) {
-  using Face = physics::JointFace<shape, false>;
+  using Face = device::Face<shape>;
   constexpr int n_kept = device::n_kept<Face::dim>;  // that of `faces`, which have all laws
   const auto made = joint_faces<shape>(faces, n);
   const Commit<Face, n_kept> commit{made.first, made.second, View<Real**>("out", n, n_kept)};

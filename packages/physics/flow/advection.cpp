@@ -272,7 +272,7 @@ std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried,
 
 std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffusionParameters& flow,
                                                  const Carried& carried, const std::vector<Real>& stored) {
-  return mesh::for_shape(shape, [&](auto s) {
+  return mesh::for_corners(shape, [&](auto s) {
     return flow.change ? module_of(InCells<s(), true>{flow}, carried, stored)
                        : module_of(InCells<s(), false>{flow}, carried, stored);
   });
@@ -281,7 +281,7 @@ std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffus
 std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens,
                                                           const std::vector<Real>& stored) {
-  return mesh::for_shape(shape, [&](auto s) {
+  return mesh::for_face_corners(shape, [&](auto s) {
     const auto make = [&](auto changes) {
       return widens ? module_of(InFractures<s(), true, changes()>{flow}, carried, stored)
                     : module_of(InFractures<s(), false, changes()>{flow}, carried, stored);

@@ -52,7 +52,7 @@ struct LineFlow {
 };
 
 /// One of the entities around a well: its flow matrix, what flows into it from the well, and its ends.
-struct PatchEntity {
+struct WellPatchEntity {
   std::vector<Real> T;  ///< [end * n + end]
   Real source;
   std::vector<LocalIndex> ends;  ///< numbers, the same for all entities that have the end
@@ -70,7 +70,7 @@ constexpr Real patch_bias = 0.05;
 /// solves for those of the patch, with exact pressures on its outer ends: `outside(end)` tells their mean of ln(rho),
 /// or no number: nothing flows through the end.
 template <class Outside>
-Real log_equivalent_radius(const std::vector<PatchEntity>& patch, const Outside& outside) {
+Real log_equivalent_radius(const std::vector<WellPatchEntity>& patch, const Outside& outside) {
   std::map<LocalIndex, int> number;  // of ends between two entities
   for (const auto& entity : patch)
     for (const LocalIndex end : entity.ends) ++number[end];

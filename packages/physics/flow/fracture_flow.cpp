@@ -198,8 +198,8 @@ class FractureFlow final : public assembly::Module {
     const auto& face = mesh_->fracture_faces[f];
     const auto& source = parameters_.source[face.fracture];
     if (source.is_constant() && source({}, 0) == 0) return;
-    assembly::for_each_face_point<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                         [&](const auto&, Real area, const auto& x) { visit(area, source(x, t)); });
+    assembly::for_each_face_point(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                  [&](const auto&, Real area, const auto& x) { visit(area, source(x, t)); });
   }
 
   /// Calls visit(condition, rim, length times aperture, x) for all ends of fractures with a condition.
@@ -232,7 +232,7 @@ class FractureFlow final : public assembly::Module {
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_fracture_flow(Shape shape, FractureFlowParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+  return mesh::for_face_corners(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     return std::make_unique<FractureFlow<s()>>(std::move(parameters));
   });
 }

@@ -191,7 +191,7 @@ class Finder {
     for (int k = 0; k < mesh::n_corners(shape); ++k)
       for (const LocalIndex other : cells_of_node_[mesh_->cells[cell * mesh_->nodes_per_cell() + k]])
         if (std::find(around.begin(), around.end(), other) == around.end()) around.push_back(other);
-    std::vector<PatchEntity> patch;
+    std::vector<WellPatchEntity> patch;
     std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // of ends: cell, face
     std::set<LocalIndex> crossed;                           // ends
     const Real far = std::numeric_limits<Real>::infinity();
@@ -213,8 +213,8 @@ class Finder {
     }
     return log_equivalent_radius(patch, [&](LocalIndex end) {
       if (crossed.count(end)) return std::numeric_limits<Real>::quiet_NaN();  // no flow along the well
-      return assembly::face_mean<shape>(*mesh_, where[end][0], where[end][1],
-                                        [&](const auto&, const auto& at) { return line.log_distance(at); });
+      return assembly::face_mean(*mesh_, where[end][0], where[end][1],
+                                 [&](const auto&, const auto& at) { return line.log_distance(at); });
     });
   }
 
@@ -273,7 +273,7 @@ class Finder {
     constexpr int n = mesh::n_face_corners(shape);
     const auto& face = mesh_->fracture_faces[f];
     const LineFlow line(dim, laws::Mobility::isotropic(1), x, face.frame[0]);
-    std::vector<PatchEntity> patch;
+    std::vector<WellPatchEntity> patch;
     std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // of ends: face, ridge
     const auto add = [&](LocalIndex one) {
       const FacePlane<shape> plane(*mesh_, one, 1, parameters_.scheme);
@@ -326,7 +326,7 @@ class Finder {
 }  // namespace
 
 WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParameters& parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) { return Finder<shape()>(mesh, parameters).find(); });
+  return mesh::for_corners(mesh.shape, [&](auto shape) { return Finder<shape()>(mesh, parameters).find(); });
 }
 
 }  // namespace sprekk::physics

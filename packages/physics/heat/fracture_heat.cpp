@@ -132,8 +132,8 @@ class FractureHeat final : public assembly::Module {
   /// Mean over a face at the start.
   Real start(LocalIndex f, const base::Expression& value) const {
     const auto& face = mesh_->fracture_faces[f];
-    return assembly::face_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                      [&](const auto&, const auto& x) { return value(x, 0); });
+    return assembly::face_mean(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus],
+                               [&](const auto&, const auto& x) { return value(x, 0); });
   }
   Real density_at(Real p, Real T) const {
     const auto& change = parameters_.change;
@@ -202,7 +202,7 @@ class FractureHeat final : public assembly::Module {
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_fracture_heat(Shape shape, FractureHeatParameters parameters) {
-  return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
+  return mesh::for_face_corners(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     if (parameters.fluid && parameters.expansion > 0)
       return std::make_unique<FractureHeat<s(), true>>(std::move(parameters));
     return std::make_unique<FractureHeat<s(), false>>(std::move(parameters));

@@ -146,7 +146,7 @@ class ThermalStress final : public assembly::Module {
   }
   Real initial(LocalIndex cell) const {
     if (parameters_.initial.is_constant()) return parameters_.initial({}, 0);
-    return assembly::cell_mean<shape>(*mesh_, cell, [&](const auto& x) { return parameters_.initial(x, 0); })[1];
+    return assembly::cell_mean(*mesh_, cell, [&](const auto& x) { return parameters_.initial(x, 0); })[1];
   }
   void find_sizes() {
     std::vector<Real> ends = {-std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity(), largest_};
@@ -212,14 +212,12 @@ class PoreExpansion final : public assembly::Module {
                                              std::vector{temperature_}, Assembler::Positions::keep);
     const auto& mesh = *context.mesh();
     std::vector<Real> room;
-    mesh::for_shape(mesh.shape, [&](auto shape) {
-      for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-        const auto [volume, mean] =
-            assembly::cell_mean<shape()>(mesh, c, [&](const auto& x) { return parameters_.initial(x, 0); });
-        room.push_back(volume * parameters_.expansion.of_cell(mesh, c));
-        initial_.push_back(mean);
-      }
-    });
+    for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+      const auto [volume, mean] =
+          assembly::cell_mean(mesh, c, [&](const auto& x) { return parameters_.initial(x, 0); });
+      room.push_back(volume * parameters_.expansion.of_cell(mesh, c));
+      initial_.push_back(mean);
+    }
     op_.room = assembly::to_device(room, "room");
   }
 

@@ -125,11 +125,11 @@ class BulkMomentum final : public assembly::Module {
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
         if (traction.holds(*mesh_, face))
-          assembly::for_each_face_point<shape>(*mesh_, face.cell, face.local_face,
-                                               [&, at = traction.on(*mesh_, face)](const auto&, Real, const auto& x) {
-                                                 for (int i = 0; i < dim; ++i)
-                                                   largest = std::max(largest, std::abs(at(i, x, t)));
-                                               });
+          assembly::for_each_face_point(*mesh_, face.cell, face.local_face,
+                                        [&, at = traction.on(*mesh_, face)](const auto&, Real, const auto& x) {
+                                          for (int i = 0; i < dim; ++i)
+                                            largest = std::max(largest, std::abs(at(i, x, t)));
+                                        });
     if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return {{"stress", largest}};
     Real force = 0;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
@@ -258,14 +258,13 @@ class BulkMomentum final : public assembly::Module {
       if (!traction.holds(*mesh_, face)) continue;
       const auto at = traction.on(*mesh_, face);
       const auto corners = mesh::face_nodes(shape)[face.local_face];
-      assembly::for_each_face_point<shape>(
-          *mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
-            for (int i = 0; i < dim; ++i) {
-              const Real force = area * at(i, x, t);
-              for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-                add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
-            }
-          });
+      assembly::for_each_face_point(*mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
+        for (int i = 0; i < dim; ++i) {
+          const Real force = area * at(i, x, t);
+          for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+            add(load, mesh_->free_node(mesh_->cells[face.cell * n + corners[k]]) * dim + i, N[k] * force);
+        }
+      });
     }
   }
 

@@ -12,20 +12,18 @@ namespace sprekk::physics {
 
 namespace {
 
-using View = typename fields::Vector::dual_view_type::t_host::const_type;
+using HostValues = typename fields::Vector::dual_view_type::t_host::const_type;
 
 /// An owned face whose cells have no tip.
-template <mesh::Shape shape>
 class Face {
  public:
-  static constexpr int dim = mesh::dimension(shape);
-
-  Face(const mesh::Mesh& mesh, LocalIndex f, const View& u, const View& beta, const base::Expression* gap)
+  Face(const mesh::Mesh& mesh, LocalIndex f, const HostValues& u, const HostValues& beta, const base::Expression* gap)
       : mesh_(mesh), face_(mesh.fracture_faces[f]), gap_(gap) {
+    const int dim = mesh.dim();
     for (int i = 0; i < dim; ++i) {
       const Real n = face_.frame[0][i];
       bubble_ += n * (beta((2 * f + mesh::plus) * dim + i, 0) - beta((2 * f + mesh::minus) * dim + i, 0));
-      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+      for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
         for (const int side : {mesh::minus, mesh::plus})
           nodal_[k] += (side == mesh::plus ? n : -n) * u(mesh.free_node(face_.nodes[side][k]) * dim + i, 0);
     }
@@ -37,12 +35,12 @@ class Face {
   /// The mean of value(o).
   template <class Value>
   Real mean(const Value& value) const {
-    return assembly::face_mean<shape>(mesh_, face_.cell[mesh::minus], face_.local_face[mesh::minus],
-                                      [&](const auto& N, const auto& x) {
-                                        Real o = shift_ + assembly::face_bubble<shape>(N) * bubble_;
-                                        for (int k = 0; k < mesh::n_face_nodes(shape); ++k) o += N[k] * nodal_[k];
-                                        return value(gap_ ? o - (*gap_)(x, 0) : o);
-                                      });
+    return assembly::face_mean(mesh_, face_.cell[mesh::minus], face_.local_face[mesh::minus],
+                               [&](const auto& N, const auto& x) {
+                                 Real o = shift_ + assembly::face_bubble(mesh_.shape, N) * bubble_;
+                                 for (int k = 0; k < mesh::n_face_nodes(mesh_.shape); ++k) o += N[k] * nodal_[k];
+                                 return value(gap_ ? o - (*gap_)(x, 0) : o);
+                               });
   }
 
  private:
@@ -82,31 +80,28 @@ bool add_edges_of_contact(const mesh::Mesh& mesh, const ByField<const fields::La
   const auto opens = bubbles.getLocalViewHost(Tpetra::Access::ReadWrite),
              presses = tractions.getLocalViewHost(Tpetra::Access::ReadWrite);
   bool any = false;
-  mesh::for_shape(mesh.shape, [&](auto s) {
-    constexpr auto shape = s();
-    constexpr int dim = mesh::dimension(shape);
-    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-      const auto& face = mesh.fracture_faces[f];
-      if (assembly::has_tip(mesh, face.cell[0]) || assembly::has_tip(mesh, face.cell[1])) continue;
-      const Real C = compliance(mesh, face, along.elasticity);
-      Real lambda = 0;
-      for (int i = 0; i < dim; ++i) lambda += face.frame[0][i] * grips[f].traction[i];
-      Face<shape> distances(mesh, f, u, beta, along.gap[f]);
-      distances.set_mean(grips[f].gap);
-      const Real excess = distances.mean([&](Real o) { return std::max(lambda < 0 ? o + C * lambda : -o, 0.0); });
-      any = any || excess > 0;
-      if (lambda >= 0) {
-        presses(f * dim, 0) -= 2 * excess / (3 * C);
-        continue;
-      }
-      const Real of_side =
-          2 * excess / 3 / assembly::bubble_mean<shape>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus]);
-      for (int i = 0; i < dim; ++i) {
-        opens((2 * f + mesh::plus) * dim + i, 0) += of_side * face.frame[0][i];
-        opens((2 * f + mesh::minus) * dim + i, 0) -= of_side * face.frame[0][i];
-      }
+  const int dim = mesh.dim();
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    if (assembly::has_tip(mesh, face.cell[0]) || assembly::has_tip(mesh, face.cell[1])) continue;
+    const Real C = compliance(mesh, face, along.elasticity);
+    Real lambda = 0;
+    for (int i = 0; i < dim; ++i) lambda += face.frame[0][i] * grips[f].traction[i];
+    Face distances(mesh, f, u, beta, along.gap[f]);
+    distances.set_mean(grips[f].gap);
+    const Real excess = distances.mean([&](Real o) { return std::max(lambda < 0 ? o + C * lambda : -o, 0.0); });
+    any = any || excess > 0;
+    if (lambda >= 0) {
+      presses(f * dim, 0) -= 2 * excess / (3 * C);
+      continue;
     }
-  });
+    const Real of_side =
+        2 * excess / 3 / assembly::bubble_mean(mesh, face.cell[mesh::minus], face.local_face[mesh::minus]);
+    for (int i = 0; i < dim; ++i) {
+      opens((2 * f + mesh::plus) * dim + i, 0) += of_side * face.frame[0][i];
+      opens((2 * f + mesh::minus) * dim + i, 0) -= of_side * face.frame[0][i];
+    }
+  }
   return base::on_any_rank(*mesh.comm, any);
 }
 

@@ -69,7 +69,7 @@ View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParam
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b) host(f, a, b) += area * N[a] * N[b];
     };
-    assembly::for_each_face_point<shape>(mesh, face.cell, face.local_face, add);
+    assembly::for_each_face_point(mesh, face.cell, face.local_face, add);
   });
   Kokkos::deep_copy(mass, host);
   return mass;

@@ -1,39 +1,35 @@
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
-#include "assembly/assembler.hpp"
-#include "assembly/tip_cell.hpp"
+#include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
-#include "physics/mechanics/friction_power.hpp"
-#include "physics/mechanics/joint_face.hpp"
+#include "physics/mechanics/joint_operators.hpp"
 #include "physics/mechanics/joint_slopes.hpp"
-#include "physics/mechanics/runaway.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 namespace sprekk::physics {
 
 using assembly::Loop;
 using laws::ContactState;
-using mesh::Shape;
 
 std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
                                                    const ElasticPlasticJumpParameters& parameters) {
   std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
   const auto& stress = parameters.initial_stress;
   const auto& fluid = parameters.fluid_pressure;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f)
-    mesh::for_shape(mesh.shape, [&](auto shape) {
-      const auto& face = mesh.fracture_faces[f];
-      for (const int side : {mesh::minus, mesh::plus}) {
-        const auto mean = mean_initial_traction<shape()>(stress, mesh, face, side);
-        for (int k = 0; k < mesh.dim(); ++k)
-          for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i] / 2;
-      }
-      if (!fluid.empty())
-        tractions[f][0] += mean_fluid_pressure<shape()>(fluid, mesh, face, mesh::minus, parameters.start);
-    });
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    for (const int side : {mesh::minus, mesh::plus}) {
+      const auto mean = mean_initial_traction(stress, mesh, face, side);
+      for (int k = 0; k < mesh.dim(); ++k)
+        for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i] / 2;
+    }
+    if (!fluid.empty()) tractions[f][0] += mean_fluid_pressure(fluid, mesh, face, mesh::minus, parameters.start);
+  }
   return tractions;
 }
 
@@ -55,14 +51,14 @@ int joint_of(const ElasticPlasticJumpParameters& parameters, const mesh::Mesh& m
   return parameters.joint_of_face.empty() ? mesh.fracture_faces[face].fracture : parameters.joint_of_face[face];
 }
 
-template <Shape shape, bool tips>
+template <int dim>
 class ElasticPlasticJump final : public assembly::Module {
  public:
-  using Op = JointFace<shape, tips>;
-  using Point = typename Op::Point;
-  static constexpr int dim = Op::dim, n = Op::n;
+  using Points = JointPoints<dim>;
+  using Point = JointPoint<dim>;
 
-  explicit ElasticPlasticJump(ElasticPlasticJumpParameters parameters) : parameters_(std::move(parameters)) {}
+  ElasticPlasticJump(bool has_tips, ElasticPlasticJumpParameters parameters)
+      : has_tips_(has_tips), parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "elastic-plastic jump"; }
 
@@ -75,7 +71,7 @@ class ElasticPlasticJump final : public assembly::Module {
     traction.local_group = "fracture face";
     d.unknowns = {traction};
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
-    if (tips) d.couplings[0].columns.push_back("tip displacement");
+    if (has_tips_) d.couplings[0].columns.push_back("tip displacement");
     d.stores = dissipates();
     if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
@@ -91,14 +87,14 @@ class ElasticPlasticJump final : public assembly::Module {
 
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    faces_->add_residual(at(state), state, r);
-    if (dissipates()) sliding_->add_residual(sliding(state), state, r);
+    operators_->add_residual(at(state), state, r);
+    if (dissipates()) operators_->add_power(at(state), state, r);
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    Op op = at(state);
-    op.damping = state.contact.damping;
-    faces_->add_jacobian(op, state, J);
-    if (dissipates()) sliding_->add_jacobian(sliding(state), state, J);
+    Points points = at(state);
+    points.damping = state.contact.damping;
+    operators_->add_jacobian(points, state, J);
+    if (dissipates()) operators_->add_power_jacobian(at(state), state, J);
   }
   void initial(const assembly::Rows& x) const override;
   void initial_history(const std::vector<View<Real**>>& history) const override;
@@ -116,38 +112,27 @@ class ElasticPlasticJump final : public assembly::Module {
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
 
-  /// [owned face], on the host
-  Kokkos::View<Point*, Kokkos::LayoutRight, Kokkos::HostSpace> points(const assembly::State& state) const {
-    const Op op = at(state);
-    View<Point*> points("points", mesh_->n_owned_fracture_faces);
-    faces_->for_each(
-        op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) { points(f) = op.point(f, x); });
-    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
-  }
-
  private:
   /// Calls visit(face, point) for every owned face, on the host.
   template <class Visit>
   void for_each_face(const assembly::State& state, const Visit& visit) const {
-    const auto host = points(state);
+    const auto points = operators_->evaluate(at(state), state);
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
 
-  /// The operator with the history of `state`.
-  Op at(const assembly::State& state) const {
-    Op op = *op_;
-    op.p_old = state.history[0];
-    if (parameters_.n_kept > 0) op.kept = state.history[2];
-    op.factor = state.contact.augmentation;
-    op.tether = state.contact.tether;
-    op.anchor = state.contact.anchor;
-    return op;
+  /// The laws with the history of `state`.
+  Points at(const assembly::State& state) const {
+    Points points = points_;
+    points.p_old = state.history[0];
+    if (parameters_.n_kept > 0) points.kept = state.history[2];
+    points.factor = state.contact.augmentation;
+    points.tether = state.contact.tether;
+    points.anchor = state.contact.anchor;
+    return points;
   }
 
   bool dissipates() const { return !parameters_.power_to.empty(); }
-  SlidingFace<shape, tips> sliding(const assembly::State& state) const {
-    return {.face = at(state), .area = area_, .rate = state.rate};
-  }
 
   /// What laws keep of a face, on the host.
   auto kept_on_host(const assembly::State& state) const {
@@ -157,21 +142,6 @@ class ElasticPlasticJump final : public assembly::Module {
       if (numbers.extent(1) == 0) return laws::History();
       return laws::History{&numbers(f, 0), static_cast<long>(numbers.stride(1))};
     };
-  }
-
-  /// Means over the face of psi of the nodes of a side, in the order of face.nodes. A fracture that ends on this one
-  /// has its tip on one side only.
-  assembly::FaceValues tip_shares(const mesh::Mesh::FractureFace& face, int side) const {
-    assembly::FaceValues shares{};
-    const LocalIndex cell = face.cell[side];
-    if (!assembly::has_tip(*mesh_, cell)) return shares;
-    const auto means = assembly::TipCell<shape>(*mesh_, cell, rules_).face_means(face.local_face[side]);
-    for (int k = 0; k < n; ++k) {
-      const int node = mesh::face_nodes(shape)[face.local_face[side]][k];
-      for (int l = 0; l < n; ++l)
-        if (face.nodes[side][l] == mesh_->cells[cell * mesh_->nodes_per_cell() + node]) shares[l] = means[k];
-    }
-    return shares;
   }
 
   /// L/G of the softer side, m/Pa: about what rock gives in under shear of a face of a fracture of size L. Device.
@@ -198,17 +168,18 @@ class ElasticPlasticJump final : public assembly::Module {
   Real slip_since_start(LocalIndex f, const Shown& face) const;
   ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
   void add_outputs(assembly::Declaration& d) const;
+  void set_points();
+  void set_sizes();
 
+  bool has_tips_;
   ElasticPlasticJumpParameters parameters_;
   bool holds_fluid_ = false;  // of unknown pressure
   RCP<const mesh::Mesh> mesh_;
-  std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
-  std::unique_ptr<Op> op_;
-  std::unique_ptr<assembly::Assembler<Op>> faces_;
-  std::unique_ptr<assembly::Assembler<SlidingFace<shape, tips>>> sliding_;  // where power goes somewhere
-  ConstView<Real*> area_;                                                   // [owned face] m^2, there
-  View<Real*> softness_;                                                    // [owned face], where laws keep numbers
+  ConstView<laws::Joint*> laws_;
+  Points points_;  // without history
+  std::unique_ptr<JointOperators<dim>> operators_;
+  View<Real*> softness_;           // [owned face], where laws keep numbers
   View<Real*> merit_weight_;       // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
   std::vector<Real> modulus_;      // [owned face] Young's, of the softer side, Pa
   std::vector<Real> size_;         // [fracture] m
@@ -216,8 +187,8 @@ class ElasticPlasticJump final : public assembly::Module {
   int pressure_ = -1;              // the block of face pressures, if it holds fluid
 };
 
-template <Shape shape, bool tips>
-ConstView<Real**> ElasticPlasticJump<shape, tips>::initial_jump() const {
+template <int dim>
+ConstView<Real**> ElasticPlasticJump<dim>::initial_jump() const {
   if (parameters_.initial_stress.empty()) return {};
   View<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
   const auto host = Kokkos::create_mirror_view(rest);
@@ -229,8 +200,8 @@ ConstView<Real**> ElasticPlasticJump<shape, tips>::initial_jump() const {
 }
 
 /// That of the initial stress, where it presses.
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::initial(const assembly::Rows& x) const {
+template <int dim>
+void ElasticPlasticJump<dim>::initial(const assembly::Rows& x) const {
   const auto traction = Kokkos::create_mirror_view(x[fields_[2]]);
   const auto known = initial_tractions(*mesh_, parameters_);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
@@ -238,124 +209,88 @@ void ElasticPlasticJump<shape, tips>::initial(const assembly::Rows& x) const {
   Kokkos::deep_copy(x[fields_[2]], traction);
 }
 
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::initial_history(const std::vector<View<Real**>>& history) const {
+template <int dim>
+void ElasticPlasticJump<dim>::initial_history(const std::vector<View<Real**>>& history) const {
   const auto p = Kokkos::create_mirror_view(history[0]);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
     for (int k = 0; k < dim - 1; ++k) p(f, k) = parameters_.joints[joint_of(f)].plastic_jump[k];
   Kokkos::deep_copy(history[0], p);
 }
 
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::bind(const assembly::Context& context) {
+template <int dim>
+void ElasticPlasticJump<dim>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
-  if (tips) fields_.push_back(context.field("tip displacement"));
+  if (has_tips_) fields_.push_back(context.field("tip displacement"));
   if (holds_fluid_) pressure_ = context.field("face pressure");
-  using Assembler = assembly::Assembler<Op>;
-  faces_ = std::make_unique<Assembler>(context, Loop::fracture_faces, std::vector<int>{fields_[2]}, fields_,
-                                       Assembler::Positions::keep);
-  if (dissipates()) {
-    using Sliding = assembly::Assembler<SlidingFace<shape, tips>>;
-    sliding_ =
-        std::make_unique<Sliding>(context, Loop::fracture_faces, std::vector<int>{context.field(parameters_.power_to)},
-                                  fields_, Sliding::Positions::keep);
-    std::vector<Real> area;
-    for (const auto& face : mesh_->fracture_faces) area.push_back(face.area);
-    area_ = assembly::to_device(area, "area");
-  }
-  const LocalIndex n_faces = mesh_->n_owned_fracture_faces;
-  View<Real***> frame("frame", n_faces, dim, dim);
-  View<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);
-  View<Real*> bubble_mean("bubble mean", n_faces);
-  View<laws::Joint*> law("law", parameters_.joints.size());
-  View<int*> number("number", n_faces);
-  View<Real*> augmentation("augmentation", n_faces);
-  merit_weight_ = View<Real*>("weight", n_faces * dim);
-  modulus_.assign(n_faces, 0);
-  const auto frame_h = Kokkos::create_mirror_view(frame);
-  const auto share_h = Kokkos::create_mirror_view(share), tip_share_h = Kokkos::create_mirror_view(tip_share);
-  const auto bubble_h = Kokkos::create_mirror_view(bubble_mean);
-  const auto law_h = Kokkos::create_mirror_view(law);
-  const auto number_h = Kokkos::create_mirror_view(number);
-  const auto augmentation_h = Kokkos::create_mirror_view(augmentation);
-  const auto weight_h = Kokkos::create_mirror_view(merit_weight_);
   for (const auto& extents : mesh::fracture_extents(*mesh_)) size_.push_back(mesh::norm(extents));
   for (const auto& extents : mesh::single_fracture_extents(*mesh_)) single_size_.push_back(mesh::norm(extents));
-  for (std::size_t k = 0; k < parameters_.joints.size(); ++k) law_h(k) = parameters_.joints[k].law;
-  for (LocalIndex f = 0; f < n_faces; ++f) {
-    const auto& face = mesh_->fracture_faces[f];
-    number_h(f) = joint_of(f);
-    const auto shares = assembly::mean_shares<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
-    for (int k = 0; k < n; ++k) share_h(f, k) = shares[k];
-    if constexpr (tips)
-      for (int side : {mesh::minus, mesh::plus}) {
-        const auto shares = tip_shares(face, side);
-        for (int k = 0; k < n; ++k) tip_share_h(f, side * n + k) = shares[k];
-      }
-    bubble_h(f) = assembly::bubble_mean<shape>(*mesh_, face.cell[mesh::minus], face.local_face[mesh::minus]);
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) frame_h(f, k, i) = face.frame[k][i];
-    Real& modulus = modulus_[f];  // of the softer side
-    Real height = 0;              // of the cells
-    for (int side : {mesh::minus, mesh::plus}) {
-      const Real E = parameters_.elasticity[elasticity_of(face.cell[side])].youngs_modulus();
-      modulus = side == mesh::minus ? E : std::min(modulus, E);
-      assembly::for_each_cell_point<shape>(
-          *mesh_, face.cell[side], [&](const auto&, Real volume, const auto&) { height += volume / face.area / 2; });
-    }
-    augmentation_h(f) = parameters_.augmentation * modulus / size_[face.fracture];
-    for (int i = 0; i < dim; ++i) weight_h(f * dim + i) = face.area * height / (10 * modulus);
-  }
-  Kokkos::deep_copy(frame, frame_h);
-  Kokkos::deep_copy(share, share_h);
-  Kokkos::deep_copy(tip_share, tip_share_h);
-  Kokkos::deep_copy(bubble_mean, bubble_h);
-  Kokkos::deep_copy(law, law_h);
-  Kokkos::deep_copy(number, number_h);
-  Kokkos::deep_copy(augmentation, augmentation_h);
-  Kokkos::deep_copy(merit_weight_, weight_h);
+  const int power_to = dissipates() ? context.field(parameters_.power_to) : -1;
+  operators_ = make_joint_operators<dim>(context, fields_, power_to, initial_jump());
+  set_points();
+  set_sizes();
   if (parameters_.n_kept > 0) softness_ = softness();
-  op_ =
-      std::make_unique<Op>(Op{frame, share, tip_share, bubble_mean, law, number, initial_jump(), augmentation, {}, {}});
 }
 
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::commit(assembly::State& state) const {
-  const Op op = at(state);
-  const auto p = state.history[0], slid = state.history[1];
-  const auto runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>();
-  const auto softness = softness_;
-  faces_->for_each(
-      op, state, KOKKOS_LAMBDA(int f, const Real(&x)[Op::Columns::size]) {
-        const Point point = op.point(f, x);
-        slid(f, 0) = point.state == ContactState::slip;
-        const auto& law = op.law(op.number(f));
-        if (point.state != ContactState::stick) {
-          Real elastic[dim], plastic[dim];
-          laws::split_jump<dim>(law, point.state, point.w, point.traction, point.p_old, elastic, plastic,
-                                op.history(f));
-          for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
-        }
-        if (op.kept.extent(1) == 0) return;
-        Real now[dim - 1];
-        for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
-        const auto end =
-            laws::converged<dim>(law, point.state, point.w, point.traction, now, point.p_old, op.history(f));
-        if (point.state == ContactState::slip) {
-          const Real slip = runaway_slip(law, end, softness(f) + law.elastic.initial_compliance());
-          if (slip > runaway(f, 0)) runaway(f, 0) = slip;
-        }
-        law.commit(end, op.kept_of(f));
-      });
+template <int dim>
+void ElasticPlasticJump<dim>::set_points() {
+  std::vector<laws::Joint> laws;
+  for (const auto& joint : parameters_.joints) laws.push_back(joint.law);
+  std::vector<int> number;
+  const View<Real***> frame("frame", mesh_->n_owned_fracture_faces, dim, dim);
+  const auto host = Kokkos::create_mirror_view(frame);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    number.push_back(joint_of(f));
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) host(f, k, i) = mesh_->fracture_faces[f].frame[k][i];
+  }
+  Kokkos::deep_copy(frame, host);
+  points_.frame = frame;
+  laws_ = assembly::to_device(laws, "law");
+  points_.law = laws_.data();
+  points_.number = assembly::to_device(number, "number");
+}
+
+/// The augmentation, Young's modulus of the softer side, and the weights of the merit.
+template <int dim>
+void ElasticPlasticJump<dim>::set_sizes() {
+  std::vector<Real> augmentation;
+  merit_weight_ = View<Real*>("weight", mesh_->n_owned_fracture_faces * dim);
+  const auto weight = Kokkos::create_mirror_view(merit_weight_);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto& face = mesh_->fracture_faces[f];
+    Real modulus = std::numeric_limits<Real>::max(), height = 0;  // height of the cells
+    for (const LocalIndex cell : face.cell) {
+      modulus = std::min(modulus, parameters_.elasticity[elasticity_of(cell)].youngs_modulus());
+      assembly::for_each_cell_point(*mesh_, cell, [&](Real volume, const auto&) { height += volume / face.area / 2; });
+    }
+    modulus_.push_back(modulus);
+    augmentation.push_back(parameters_.augmentation * modulus / size_[face.fracture]);
+    for (int i = 0; i < dim; ++i) weight(f * dim + i) = face.area * height / (10 * modulus);
+  }
+  Kokkos::deep_copy(merit_weight_, weight);
+  points_.augmentation = assembly::to_device(augmentation, "augmentation");
+}
+
+template <int dim>
+void ElasticPlasticJump<dim>::commit(assembly::State& state) const {
+  const Points points = at(state);
+  const JointHistory history{.plastic_jump = state.history[0],
+                             .slid = state.history[1],
+                             .runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>(),
+                             .softness = softness_};
+  const auto end = operators_->evaluate(points, state);
+  Kokkos::parallel_for(
+      "commit", Kokkos::RangePolicy<Execution>(0, end.extent(0)),
+      KOKKOS_LAMBDA(int f) { points.commit(f, end(f), history); });
 }
 
 /// Slip follows the traction at the end of the step, though on the way there it followed others: with an angle alpha
 /// between the tractions at both ends, it is off by about sin(alpha)/2 (back along the same line it is exact). In the
 /// mean over faces that have slid, weighted by their shear forces.
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::step_errors(const assembly::State& begin, const assembly::State& end,
-                                                  fields::StepErrors& errors) const {
+template <int dim>
+void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const assembly::State& end,
+                                          fields::StepErrors& errors) const {
   if (dim == 2) return;
   const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), begin.x[fields_[2]]);
   std::vector<Real> sums(2, 0);  // of force times error, and of force
@@ -374,9 +309,9 @@ void ElasticPlasticJump<shape, tips>::step_errors(const assembly::State& begin, 
 
 /// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t
 /// where they stick or slip are held against the displacement scale, less what rounding leaves of the jump.
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, const assembly::Scales& scales,
-                                              std::vector<fields::Measure>& measures) const {
+template <int dim>
+void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assembly::Scales& scales,
+                                      std::vector<fields::Measure>& measures) const {
   Real largest = 0;
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
@@ -390,8 +325,8 @@ void ElasticPlasticJump<shape, tips>::measure(const assembly::State& state, cons
 }
 
 /// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::vector<contact::Grip>& grips) const {
+template <int dim>
+void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<contact::Grip>& grips) const {
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
@@ -446,8 +381,8 @@ void ElasticPlasticJump<shape, tips>::grip(const assembly::State& state, std::ve
 
 /// A fluid opens a fracture of size L by about 0.4 L/E times its pressure where the sides do not touch: a disc of
 /// radius L/3 by 16/(3 pi) (1 - nu^2) (L/3)/E at most, and two thirds of that in the mean (Sneddon 1946).
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, const assembly::Rows& diagonals) const {
+template <int dim>
+void ElasticPlasticJump<dim>::add_schur(const assembly::State& state, const assembly::Rows& diagonals) const {
   const auto rows = Kokkos::create_mirror_view(diagonals[pressure_]);
   Kokkos::deep_copy(rows, diagonals[pressure_]);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
@@ -461,8 +396,8 @@ void ElasticPlasticJump<shape, tips>::add_schur(const assembly::State& state, co
 
 /// Sliding, and an elasticity that depends on the normal traction, make a face's matrix non-symmetric; a bond that
 /// softens makes it indefinite.
-template <Shape shape, bool tips>
-bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) const {
+template <int dim>
+bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
   bool symmetric = true;
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
@@ -478,8 +413,8 @@ bool ElasticPlasticJump<shape, tips>::symmetric(const assembly::State& state) co
 
 /// What is shown of a face. One that slid in the step lies on the limit of friction for the plastic jump that it has
 /// now.
-template <Shape shape, bool tips>
-struct ElasticPlasticJump<shape, tips>::Shown {
+template <int dim>
+struct ElasticPlasticJump<dim>::Shown {
   const Point& point;
   ContactState state;
   Real elastic[dim], plastic[dim], slip, aperture, slip_tendency = 0;
@@ -499,17 +434,18 @@ struct ElasticPlasticJump<shape, tips>::Shown {
   }
 };
 
-template <Shape shape, bool tips>
-Real ElasticPlasticJump<shape, tips>::slip_since_start(LocalIndex f, const Shown& face) const {
+template <int dim>
+Real ElasticPlasticJump<dim>::slip_since_start(LocalIndex f, const Shown& face) const {
   Real slip[dim - 1];  // of what was committed: 0 without rounding where a face has never slid
   for (int i = 0; i < dim - 1; ++i) slip[i] = face.point.p_old[i] - parameters_.joints[joint_of(f)].plastic_jump[i];
   return laws::norm(slip);
 }
 
-template <Shape shape, bool tips>
-void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) const {
+template <int dim>
+void ElasticPlasticJump<dim>::add_outputs(assembly::Declaration& d) const {
   using assembly::Summary;
-  const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary, const auto& append) {
+  const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary,
+                       const std::function<void(LocalIndex, const Shown&, std::vector<Real>&)>& append) {
     const auto values = [this, append](const assembly::State& state) {
       const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
       const auto kept = kept_on_host(state);
@@ -521,10 +457,10 @@ void ElasticPlasticJump<shape, tips>::add_outputs(assembly::Declaration& d) cons
     };
     d.outputs.push_back({{name, unit, fields::Entity::fracture_face, n, summary}, values});
   };
-  const auto number = [&](const char* name, const char* unit, const Summary& summary, const auto& of) {
+  const auto number = [&](const char* name, const char* unit, const Summary& summary, Real (*of)(const Shown&)) {
     add(name, unit, 1, summary, [of](LocalIndex, const Shown& face, auto& all) { all.push_back(of(face)); });
   };
-  const auto vector = [&](const std::string& name, const char* unit, const auto& of,
+  const auto vector = [&](const std::string& name, const char* unit, const Real* (*of)(const Shown&),
                           const std::vector<assembly::Derived>& derived = {}) {
     add(name + " local", unit, dim, {Summary::mean, name, "local", {}, "", derived},
         [of](LocalIndex, const Shown& face, auto& all) { all.insert(all.end(), of(face), of(face) + dim); });
@@ -594,11 +530,9 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
                                                             ElasticPlasticJumpParameters parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    if constexpr (mesh::order(s()) == 1)
-      if (mesh.n_global_enriched > 0) return std::make_unique<ElasticPlasticJump<s(), true>>(std::move(parameters));
-    return std::make_unique<ElasticPlasticJump<s(), false>>(std::move(parameters));
-  });
+  const bool has_tips = mesh::order(mesh.shape) == 1 && mesh.n_global_enriched > 0;
+  if (mesh.dim() == 2) return std::make_unique<ElasticPlasticJump<2>>(has_tips, std::move(parameters));
+  return std::make_unique<ElasticPlasticJump<3>>(has_tips, std::move(parameters));
 }
 
 }  // namespace sprekk::physics

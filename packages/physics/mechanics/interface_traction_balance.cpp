@@ -106,7 +106,7 @@ class InterfaceTractionBalance final : public assembly::Module {
   void for_each_pressure(Real t, const Visit& visit) const {
     if (parameters_.fluid_pressure.empty()) return;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      visit(mean_fluid_pressure<shape>(parameters_.fluid_pressure, *mesh_, mesh_->fracture_faces[f], mesh::minus, t));
+      visit(mean_fluid_pressure(parameters_.fluid_pressure, *mesh_, mesh_->fracture_faces[f], mesh::minus, t));
   }
 
   void set_pressure(Real t) {
@@ -116,7 +116,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     if (op_->pressure.extent(0) == 0) op_->pressure = View<Real*>("pressure", sides.size());
     const auto pressure = Kokkos::create_mirror_view(op_->pressure);
     for (std::size_t s = 0; s < sides.size(); ++s)
-      pressure(s) = mean_fluid_pressure<shape>(fluid, *mesh_, mesh_->fracture_faces[sides[s][0]], sides[s][1], t);
+      pressure(s) = mean_fluid_pressure(fluid, *mesh_, mesh_->fracture_faces[sides[s][0]], sides[s][1], t);
     Kokkos::deep_copy(op_->pressure, pressure);
   }
 
@@ -137,13 +137,13 @@ class InterfaceTractionBalance final : public assembly::Module {
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) force(i) -= volume * sigma[i][j] * gb[j];
     });
-    const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
+    const auto mean = mean_initial_traction(stress, *mesh_, face, side);
     const auto nodes = mesh::face_nodes(shape)[local_face];
-    assembly::for_each_face_point<shape>(*mesh_, cell, local_face, [&](const auto& N, Real area, const auto& x) {
-      const auto traction = stress.template traction<dim>(*mesh_, cell, x, face.frame[0]);
+    assembly::for_each_face_point(*mesh_, cell, local_face, [&](const auto& N, Real area, const auto& x) {
+      const auto traction = stress.traction(*mesh_, cell, x, face.frame[0]);
       for (int i = 0; i < dim; ++i) {
         const Real deviation = sign * area * (traction[i] - mean[i]);
-        force(i) -= assembly::face_bubble<shape>(N) * deviation;
+        force(i) -= assembly::face_bubble(shape, N) * deviation;
         for (int k = 0; k < mesh::n_face_nodes(shape); ++k) nodal(nodes[k] * dim + i) -= N[k] * deviation;
       }
     });
@@ -164,8 +164,8 @@ class InterfaceTractionBalance final : public assembly::Module {
       const Real signed_area = side == mesh::plus ? face.area : -face.area;
       stiffness(s) = n_faces[cell] * bubble_stiffness<shape>(*mesh_, cell, local_face, law(cell));
       integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
-      bubble(s) = signed_area * assembly::bubble_mean<shape>(*mesh_, cell, local_face);
-      const auto shares = assembly::mean_shares<shape>(*mesh_, cell, local_face);
+      bubble(s) = signed_area * assembly::bubble_mean(*mesh_, cell, local_face);
+      const auto shares = assembly::mean_shares(*mesh_, cell, local_face);
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
         push(s, mesh::face_nodes(shape)[local_face][k]) = signed_area * shares[k];
       for (int k = 0; k < dim; ++k)

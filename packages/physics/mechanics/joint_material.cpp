@@ -121,7 +121,7 @@ const Entry* entry_of(const Kind& kind, const std::string& name) {
   return nullptr;
 }
 
-bool is_zero(const Value& value) { return value.is_constant() && value({}, 0) == 0; }
+bool vanishes(const Value& value) { return value.is_constant() && value({}, 0) == 0; }
 
 /// Calls visit(entry, value) for the entries that the chosen kinds have and the material gives.
 template <class Visit>
@@ -329,7 +329,7 @@ void JointMaterial::compare_entries(base::Section& s) const {
       if (given.size() > 1) s.fail(give_one_of(names));
     });
   for_each_given(*this, [&](const Entry& entry, const Value& value) {
-    if (!entry.needs.empty() && !is_zero(value) && !this->entry(entry.needs))
+    if (!entry.needs.empty() && !vanishes(value) && !this->entry(entry.needs))
       s.fail(entry.needs, fmt::format("missing; it is required with a \"{}\" above 0", entry.name));
   });
   if (!s.complete() || !is_uniform() || !missing().empty()) return;

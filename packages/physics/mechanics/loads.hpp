@@ -50,23 +50,11 @@ struct InitialStress {
       sigma[0][2] = sigma[2][0] = component[5](x, 0);
     }
   }
-  /// The traction sigma_0 n at a point x of a face of a cell, on the cell's side of it. Where sigma_0 steps across the
-  /// face, rounding would say on which side x lies; so it is continued from inside of the cell, with d = 1e-6 (centre -
-  /// x) as 2 sigma_0(x + d) - sigma_0(x + 2 d), which is exact where it is linear.
-  template <int dim, class Normal>
+  /// The traction sigma_0 n, Pa, at a point x of a face of a cell, on the cell's side of it. Where sigma_0 steps across
+  /// the face, rounding would say on which side x lies; so it is continued from inside of the cell, with
+  /// d = 1e-6 (centre - x) as 2 sigma_0(x + d) - sigma_0(x + 2 d), which is exact where it is linear.
   std::array<Real, 3> traction(const mesh::Mesh& mesh, LocalIndex cell, const std::array<Real, 3>& x,
-                               const Normal& n) const {
-    const auto centre = mesh::cell_centre(mesh, cell);
-    std::array<Real, 3> t{}, inside = x;
-    for (const Real weight : {2.0, -1.0}) {
-      for (int i = 0; i < dim; ++i) inside[i] += 1e-6 * (centre[i] - x[i]);
-      Real sigma[dim][dim];
-      at(mesh, cell, inside, sigma);
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) t[i] += weight * sigma[i][j] * n[j];
-    }
-    return t;
-  }
+                               const std::array<Real, 3>& n) const;
 };
 
 /// Pressure p of a fluid in the fractures, Pa, compression positive: the traction on the rock is lambda - p n. Empty:
@@ -81,29 +69,11 @@ struct FluidPressure {
 };
 
 /// Mean of a fluid's pressure over a fracture face at time t, as the cell on `side` sees the face, Pa.
-template <mesh::Shape shape>
 Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
-                         int side, Real t) {
-  const auto& p = fluid.value[face.fracture];
-  if (p.is_constant()) return p({}, t);
-  return assembly::face_mean<shape>(mesh, face.cell[side], face.local_face[side],
-                                    [&](const auto&, const auto& x) { return p(x, t); });
-}
+                         int side, Real t);
 
 /// Mean of sigma_0 n over a fracture face, n from minus to plus, as the cell on `side` sees it; global components, Pa.
-template <mesh::Shape shape>
 std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mesh::Mesh& mesh,
-                                          const mesh::Mesh::FractureFace& face, int side) {
-  std::array<Real, 3> sum{};
-  Real total = 0;
-  assembly::for_each_face_point<shape>(
-      mesh, face.cell[side], face.local_face[side], [&](const auto&, Real area, const auto& x) {
-        const auto traction = stress.template traction<mesh::dimension(shape)>(mesh, face.cell[side], x, face.frame[0]);
-        for (int i = 0; i < 3; ++i) sum[i] += area * traction[i];
-        total += area;
-      });
-  for (auto& component : sum) component /= total;
-  return sum;
-}
+                                          const mesh::Mesh::FractureFace& face, int side);
 
 }  // namespace sprekk::physics

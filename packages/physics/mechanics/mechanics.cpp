@@ -19,10 +19,8 @@ namespace {
 
 /// Mean over a fracture face whose cell on side minus is local.
 Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const base::Expression& value) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) {
-    return assembly::face_mean<shape()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                        [&](const auto&, const auto& x) { return value(x, 0); });
-  });
+  return assembly::face_mean(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                             [&](const auto&, const auto& x) { return value(x, 0); });
 }
 
 /// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are

@@ -149,7 +149,7 @@ class SolidPressure final : public assembly::Module {
   PressedCell pressed_cells() {
     std::vector<Real> compliance, schur;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-      const Real size = assembly::cell_mean<shape>(*mesh_, c, [](const auto&) { return 0; })[0];
+      const Real size = assembly::cell_mean(*mesh_, c, [](const auto&) { return 0; })[0];
       const auto [G, lambda] = law(c);
       compliance.push_back(size / (modulus(c) > 0 ? modulus(c) : G));
       if (c < mesh_->n_owned_cells) schur.push_back(modulus(c) > 0 ? size / (2 * G + lambda) : 0);

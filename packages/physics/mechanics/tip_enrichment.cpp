@@ -275,11 +275,11 @@ class TipEnrichment final : public assembly::Module {
     const auto& face = mesh_->fracture_faces[f];
     const LocalIndex cell = face.cell[side];
     const auto& stress = parameters_.initial_stress;
-    const auto mean = mean_initial_traction<shape>(stress, *mesh_, face, side);
+    const auto mean = mean_initial_traction(stress, *mesh_, face, side);
     const Real sign = side == mesh::plus ? 1 : -1;
     tip(cell).for_each_face_point(face.local_face[side],
                                   [&](const auto&, const auto& psi, const auto& area, const auto& x) {
-                                    const auto traction = stress.template traction<dim>(*mesh_, cell, x, face.frame[0]);
+                                    const auto traction = stress.traction(*mesh_, cell, x, face.frame[0]);
                                     for (int k = 0; k < Tip::n_face; ++k)
                                       for (int i = 0; i < dim; ++i)
                                         add(load, cell, mesh::face_nodes(shape)[face.local_face[side]][k], i,
@@ -291,7 +291,7 @@ class TipEnrichment final : public assembly::Module {
   template <class Push, class Host>
   void add_pressure(LocalIndex f, int side, Real t, const Push& push, const Host& load) const {
     const auto& face = mesh_->fracture_faces[f];
-    const Real p = mean_fluid_pressure<shape>(fluid_, *mesh_, face, side, t);
+    const Real p = mean_fluid_pressure(fluid_, *mesh_, face, side, t);
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i) add(load, face.cell[side], a, i, p * push(a) * face.frame[0][i]);
   }
@@ -315,7 +315,7 @@ class TipEnrichment final : public assembly::Module {
 std::unique_ptr<assembly::Module> make_tip_enrichment(Shape shape, BulkMomentumParameters parameters,
                                                       FluidPressure fluid_pressure) {
   SPREKK_CHECK(mesh::order(shape) == 1, "tip enrichment: needs cells of order 1");
-  return mesh::for_shape(mesh::linear(shape), [&](auto s) -> std::unique_ptr<assembly::Module> {
+  return mesh::for_corners(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
     if constexpr (mesh::order(s()) == 1)
       return std::make_unique<TipEnrichment<s()>>(std::move(parameters), std::move(fluid_pressure));
     return nullptr;

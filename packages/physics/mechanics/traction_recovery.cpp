@@ -35,7 +35,7 @@ class Unresolved {
       for (const int side : {mesh::minus, mesh::plus}) {
         Vector& own = traction_.emplace_back(t);
         if (initial.empty() || face.cell[side] < 0) continue;
-        const auto mean = mean_initial_traction<shape>(initial, mesh, face, side);
+        const auto mean = mean_initial_traction(initial, mesh, face, side);
         for (int i = 0; i < dim; ++i) own[i] -= mean[i];
       }
       for (const auto& nodes : face.nodes)
@@ -73,14 +73,13 @@ class Unresolved {
     const auto nodes = mesh::face_nodes(shape)[face.local_face[side]];
     const auto node = [&](int k) { return mesh_.cells[cell * n_nodes + nodes[k]]; };
     const auto force = [&](int i, Real area, const auto& x) { return sign * area * t(i, x); };
-    assembly::for_each_face_point<shape>(
-        mesh_, cell, face.local_face[side], [&](const auto& N, Real area, const auto& x) {
-          for (int i = 0; i < dim; ++i) {
-            to[bubble]((f * 2 + side) * dim + i, 0) += assembly::face_bubble<shape>(N) * force(i, area, x);
-            for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-              to[nodal](mesh_.free_node(node(k)) * dim + i, 0) += N[k] * force(i, area, x);
-          }
-        });
+    assembly::for_each_face_point(mesh_, cell, face.local_face[side], [&](const auto& N, Real area, const auto& x) {
+      for (int i = 0; i < dim; ++i) {
+        to[bubble]((f * 2 + side) * dim + i, 0) += assembly::face_bubble(shape, N) * force(i, area, x);
+        for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
+          to[nodal](mesh_.free_node(node(k)) * dim + i, 0) += N[k] * force(i, area, x);
+      }
+    });
     if constexpr (mesh::order(shape) == 1)
       if (assembly::has_tip(mesh_, cell))
         assembly::TipCell<shape>(mesh_, cell)
@@ -96,7 +95,7 @@ class Unresolved {
   Vector mean_place(LocalIndex cell, int local_face) const {
     Vector sum{};
     Real total = 0;
-    assembly::for_each_face_point<shape>(mesh_, cell, local_face, [&](const auto&, Real area, const auto& x) {
+    assembly::for_each_face_point(mesh_, cell, local_face, [&](const auto&, Real area, const auto& x) {
       for (int i = 0; i < dim; ++i) sum[i] += area * x[i];
       total += area;
     });

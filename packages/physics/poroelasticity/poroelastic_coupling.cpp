@@ -191,7 +191,7 @@ class PoroelasticCoupling final : public assembly::Module {
 
   Real initial(const mesh::Vector& x) const { return parameters_.initial(x, 0); }
   Real mean_initial(LocalIndex cell) const {
-    return assembly::cell_mean<shape>(*mesh_, cell, [&](const auto& x) { return initial(x); })[1];
+    return assembly::cell_mean(*mesh_, cell, [&](const auto& x) { return initial(x); })[1];
   }
   Real biot(LocalIndex cell) const { return parameters_.biot.of_cell(*mesh_, cell); }
   /// alpha^2/(lambda + 2G)
@@ -249,7 +249,7 @@ void PoroelasticCoupling<shape>::build_cells() {
   cells_.op.volume = cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   std::vector<Real> reference, schur;
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    const auto [volume, mean] = assembly::cell_mean<shape>(*mesh_, c, [&](const auto& x) { return initial(x); });
+    const auto [volume, mean] = assembly::cell_mean(*mesh_, c, [&](const auto& x) { return initial(x); });
     reference.push_back(mean);
     if (c < mesh_->n_owned_cells) schur.push_back(softness(c) * volume);
   }
@@ -287,8 +287,7 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
       for (int j = 0; j < n_faces; ++j) T(c, i * n_faces + j) = matrix.T[i][j];
     const Real mean = falls ? mean_initial(c) : 0;
     for (int j = 0; j < n_faces && falls; ++j) {
-      lift(c, j) =
-          assembly::face_mean<shape>(*mesh_, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
+      lift(c, j) = assembly::face_mean(*mesh_, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
     }
   }
   Kokkos::deep_copy(T_device, T);

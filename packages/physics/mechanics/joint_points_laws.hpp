@@ -1,0 +1,151 @@
+// The functions of JointPoints, by all laws of joints; derivatives by Sacado.
+#pragma once
+
+#include "laws/joint.hpp"
+#include "physics/mechanics/joint_points.hpp"
+#include "physics/mechanics/runaway.hpp"
+
+#include <Sacado.hpp>
+
+namespace sprekk::physics {
+
+/// A number with derivatives in w, then in lambda.
+template <int dim>
+using JointFad = Sacado::Fad::SFad<Real, 2 * dim>;
+
+template <int dim>
+KOKKOS_INLINE_FUNCTION void seed(const Real (&w)[dim], const Real (&lambda)[dim], JointFad<dim> (&w_fad)[dim],
+                                 JointFad<dim> (&lambda_fad)[dim]) {
+  for (int i = 0; i < dim; ++i) {
+    w_fad[i] = JointFad<dim>(2 * dim, i, w[i]);
+    lambda_fad[i] = JointFad<dim>(2 * dim, dim + i, lambda[i]);
+  }
+}
+
+/// The part of the traction that contact and friction bear, and the jump that goes with it: the proximal term bears
+/// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
+/// stretches the joint as a whole: p = w_t - lambda_t/K_t, K_t being that at first loading.
+template <int dim>
+template <class T>
+KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], const T (&traction)[dim],
+                                                      T (&jump)[dim], T (&borne)[dim]) const {
+  for (int k = 0; k < dim; ++k) {
+    jump[k] = w[k];
+    borne[k] = traction[k];
+    if (tether == 0) continue;
+    const Real compliance = k == 0 ? 0 : law[number(f)].elastic.initial_compliance();
+    Real there = 0;
+    for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
+    const T pull = tether * constant(f) * (w[k] - compliance * traction[k] - there);
+    jump[k] -= compliance * pull;
+    borne[k] -= pull;
+  }
+}
+
+template <int dim>
+template <class T>
+KOKKOS_INLINE_FUNCTION laws::ContactState JointPoints<dim>::evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
+                                                                     T (&R)[dim]) const {
+  Real old[dim - 1];
+  for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
+  T jump[dim], borne[dim];
+  contact(f, w, traction, jump, borne);
+  const auto& joint = law[number(f)];
+  return laws::contact_residual<dim>(joint, laws::augmentation(joint, constant(f)), jump, borne, old, R, history(f));
+}
+
+template <int dim>
+template <class T>
+KOKKOS_INLINE_FUNCTION void JointPoints<dim>::damp(int f, laws::ContactState state, T (&R)[dim]) const {
+  const Real share = damping.extent(0) > 0 ? damping(f) : 0;
+  if (share == 0 || state == laws::ContactState::stick) return;
+  const auto& joint = law[number(f)];
+  const auto constants = laws::augmentation(joint, constant(f));
+  const auto add = [&](int k, Real stiffness, Real compliance) {
+    R[k].fastAccessDx(k) -= stiffness;
+    R[k].fastAccessDx(dim + k) += stiffness * compliance;
+  };
+  for (int k = 1; k < dim; ++k) add(k, share * constants.tangential, joint.elastic.initial_compliance());
+  if (state == laws::ContactState::open) add(0, share * constants.normal, joint.gap.closure.initial_compliance());
+}
+
+template <int dim>
+template <class T>
+KOKKOS_INLINE_FUNCTION T JointPoints<dim>::dissipated(int f, const T (&w)[dim], const T (&traction)[dim]) const {
+  const auto& joint = law[number(f)];
+  T p[dim - 1] = {}, before[dim - 1], sum = 0;
+  Real old[dim - 1];
+  const Real none[dim - 1] = {};
+  const T compliance = joint.compliance(laws::contact<dim>(traction[0], T(0), p, none, history(f)));
+  for (int i = 0; i < dim - 1; ++i) {
+    p[i] = w[i + 1] - compliance * traction[i + 1];
+    before[i] = old[i] = p_old(f, i);
+    sum += traction[i + 1] * (p[i] - old[i]);
+  }
+  const auto gap = [&](const T(&jump)[dim - 1]) {
+    auto at = laws::contact<dim>(traction[0], laws::norm(jump), jump, old, history(f));
+    T step[dim - 1], shear[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) {
+      step[i] = jump[i] - old[i];
+      shear[i] = traction[i + 1];
+    }
+    at.slip_of_step = laws::norm(step);
+    for (int i = 0; i < dim - 1 && at.slip_of_step > 0; ++i) at.slip_direction[i] = step[i] / at.slip_of_step;
+    at.shear = laws::norm(shear);
+    return joint.normal_gap(at);
+  };
+  return sum + traction[0] * (gap(p) - gap(before));
+}
+
+template <int dim>
+KOKKOS_FUNCTION laws::ContactState JointPoints<dim>::residual(int f, const Real (&w)[dim], const Real (&lambda)[dim],
+                                                              Real (&R)[dim]) const {
+  return evaluate(f, w, lambda, R);
+}
+
+template <int dim>
+KOKKOS_FUNCTION void JointPoints<dim>::jacobian(int f, const Real (&w)[dim], const Real (&lambda)[dim],
+                                                Real (&dR)[dim][2 * dim]) const {
+  JointFad<dim> jump[dim], traction[dim], R[dim];
+  seed(w, lambda, jump, traction);
+  damp(f, evaluate(f, jump, traction, R), R);
+  for (int k = 0; k < dim; ++k)
+    for (int l = 0; l < 2 * dim; ++l) dR[k][l] = R[k].dx(l);
+}
+
+template <int dim>
+KOKKOS_FUNCTION Real JointPoints<dim>::work(int f, const Real (&w)[dim], const Real (&lambda)[dim]) const {
+  return dissipated(f, w, lambda);
+}
+
+template <int dim>
+KOKKOS_FUNCTION void JointPoints<dim>::dwork(int f, const Real (&w)[dim], const Real (&lambda)[dim],
+                                             Real (&derivatives)[2 * dim]) const {
+  JointFad<dim> jump[dim], traction[dim];
+  seed(w, lambda, jump, traction);
+  const JointFad<dim> sum = dissipated(f, jump, traction);
+  for (int l = 0; l < 2 * dim; ++l) derivatives[l] = sum.dx(l);
+}
+
+template <int dim>
+KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end, const JointHistory& to) const {
+  const auto& joint = law[number(f)];
+  const auto& p = to.plastic_jump;
+  to.slid(f, 0) = end.state == laws::ContactState::slip;
+  if (end.state != laws::ContactState::stick) {
+    Real elastic[dim], plastic[dim];
+    laws::split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));
+    for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
+  }
+  if (kept.extent(1) == 0) return;
+  Real now[dim - 1];
+  for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
+  const auto contact = laws::converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f));
+  if (end.state == laws::ContactState::slip) {
+    const Real slip = runaway_slip(joint, contact, to.softness(f) + joint.elastic.initial_compliance());
+    if (slip > to.runaway(f, 0)) to.runaway(f, 0) = slip;
+  }
+  joint.commit(contact, kept_of(f));
+}
+
+}  // namespace sprekk::physics
