@@ -5,6 +5,8 @@ find_package(Trilinos REQUIRED COMPONENTS
   Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 MueLu NOX Sacado Kokkos Teuchos)
 add_library(sprekk_trilinos INTERFACE IMPORTED)
 target_link_libraries(sprekk_trilinos INTERFACE MPI::MPI_CXX)
+# The C++ bindings of Open MPI are unused; without this definition each object file contains them.
+target_compile_definitions(sprekk_trilinos INTERFACE OMPI_SKIP_MPICXX)
 if(TARGET Trilinos::all_selected_libs)
   target_link_libraries(sprekk_trilinos INTERFACE Trilinos::all_selected_libs)
 else()

@@ -1,18 +1,57 @@
-# sprekk_package(NAME [USES packages...] [LINKS external targets...])
+# With precompiled headers: without it ccache does not recognise files.
+set(SPREKK_PRECOMPILED $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+
+# sprekk_grouped(RESULT PREFIX sources... [ALONE paths...])
+# Sets RESULT to files that include the sources of each folder in groups of eight: a group reads each header once and
+# instantiates each template once, which takes half of the CPU time. Names in unnamed namespaces are therefore unique
+# within a folder. Sources named by ALONE, with large kernels or options of their own, remain single files. Without
+# SPREKK_GROUPS all do. PREFIX: of the folder in #include.
+function(sprekk_grouped result prefix)
+  cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
+  set(files)
+  foreach(source ${ARG_UNPARSED_ARGUMENTS})
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
+    if(NOT SPREKK_GROUPS OR path IN_LIST ARG_ALONE)
+      list(APPEND files ${source})
+      continue()
+    endif()
+    get_filename_component(folder ${path} DIRECTORY)
+    string(REPLACE "/" "_" folder "${folder}")
+    math(EXPR group "0${n_${folder}} / 8")
+    math(EXPR n_${folder} "0${n_${folder}} + 1")
+    set(file ${CMAKE_CURRENT_BINARY_DIR}/group_${folder}${group}.cpp)
+    list(APPEND groups ${file})
+    string(APPEND ${file} "#include \"${prefix}${path}\"\n")
+  endforeach()
+  list(REMOVE_DUPLICATES groups)
+  foreach(file ${groups})
+    file(CONFIGURE OUTPUT ${file} CONTENT "${${file}}" @ONLY)
+  endforeach()
+  set(${result} ${files} ${groups} PARENT_SCOPE)
+endfunction()
+
+# sprekk_package(NAME [USES packages...] [LINKS external targets...] [ALONE sources...])
 # A package is every .cpp of its folder and of those in it; one without any is header-only. Includes read
-# "package/header.hpp".
+# "package/header.hpp". ALONE: see sprekk_grouped.
 function(sprekk_package name)
-  cmake_parse_arguments(ARG "" "" "USES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "USES;LINKS;ALONE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(uses ${ARG_USES})
   list(TRANSFORM uses PREPEND sprekk_)
   if(sources)
+    sprekk_grouped(sources ${name}/ ${sources} ALONE ${ARG_ALONE})
     add_library(sprekk_${name} STATIC ${sources})
     set(scope PUBLIC)
     if(SPREKK_PYTHON_MODULE)
       set_target_properties(sprekk_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
       target_compile_options(sprekk_${name} PRIVATE -fno-semantic-interposition)
     endif()
+    if(name STREQUAL base)
+      target_precompile_headers(sprekk_base PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/precompiled.hpp)
+    else()
+      target_precompile_headers(sprekk_${name} REUSE_FROM sprekk_base)
+    endif()
+    target_compile_options(sprekk_${name} PRIVATE ${SPREKK_PRECOMPILED})
     if(SPREKK_DEBUG_CHECKS)
       target_compile_definitions(sprekk_${name} PUBLIC SPREKK_DEBUG_CHECKS)
     endif()
@@ -46,8 +85,6 @@ function(sprekk_test name)
     ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}" ${ARG_PROPERTIES})
 endfunction()
 
-set(SPREKK_PRECOMPILED $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # or ccache would not know the files again
-
 # sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...])
 # One GoogleTest program of all .cpp in the current folder, run on each number of ranks. Those of whole scenes, which
 # link sprekk_model, share a precompiled header.
@@ -60,6 +97,8 @@ function(sprekk_tests name)
   if(NOT sources)
     return()
   endif()
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR}/tests OUTPUT_VARIABLE folder)
+  sprekk_grouped(sources ${folder}/ ${sources})
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE sprekk_test_main ${ARG_LINKS})
   if("sprekk_model" IN_LIST ARG_LINKS)

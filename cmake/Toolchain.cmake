@@ -10,7 +10,7 @@ if(SPREKK_LLD)
   add_link_options(-fuse-ld=lld)
 endif()
 find_program(SPREKK_CCACHE ccache)
-if(SPREKK_CCACHE)
+if(SPREKK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # Copies of the sources share what was compiled, also with precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
     CCACHE_SLOPPINESS=pch_defines,time_macros ${SPREKK_CCACHE})

@@ -25,12 +25,12 @@ base::Expression text(const std::string& formula) {
   return e;
 }
 
-struct Problem {
+struct ConstrainedProblem {
   mesh::GlobalMesh global;
   RCP<const mesh::Mesh> mesh;
   fields::Layout layout;
 
-  explicit Problem(const std::string& cell)
+  explicit ConstrainedProblem(const std::string& cell)
       : global(mesh::make_box(crossed(cell))),
         mesh(mesh::make_distributed(global, Tpetra::getDefaultComm())),
         layout({"displacement", fields::Entity::node, mesh->dim(), "m"}, *mesh) {}
@@ -65,7 +65,7 @@ struct Problem {
 
 TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
   for (const auto& cell : mesh::testing::all_cells) {
-    const Problem p(cell);
+    const ConstrainedProblem p(cell);
     const int dim = p.mesh->dim();
     auto constraints = p.constraints(
         {p.on("lid", "north", {text("2*x+t"), std::nullopt}), p.on("wall", "west", {std::nullopt, text("y*y")})});
@@ -97,7 +97,7 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
 /// -g''/12 in the mean, on triangles, too; where two boundaries meet, by what lies between theirs.
 TEST(Constraints, MissCurvedValuesBetweenNodes) {
   for (const auto& cell : mesh::testing::all_cells) {
-    const Problem p(cell);
+    const ConstrainedProblem p(cell);
     const int dim = p.mesh->dim();
     const auto g = text("3*x*x+6*t*y*y+x-y"), linear = text("t*x-2*y");
     const std::vector<DirichletCondition> conditions = {p.on("lid", "north", {g, linear}), p.on("wall", "west", {g})};
@@ -119,7 +119,7 @@ TEST(Constraints, MissCurvedValuesBetweenNodes) {
 
 /// Values at nodes, but none in the middle of one face.
 TEST(Constraints, HaveNoValueBetweenNodesOnAnyRank) {
-  const Problem p("quadrilateral");
+  const ConstrainedProblem p("quadrilateral");
   const auto conditions = {p.on("lid", "north", {text("sqrt(abs(x-1.5)-0.45)")})};
   EXPECT_EQ(p.error_of(p.constraints(conditions), 0), "");
   EXPECT_THROW(prescribed_error(*p.mesh, p.layout, conditions, 0), Error);
@@ -145,7 +145,7 @@ TEST(Constraints, MissLessAtOrderTwo) {
 }
 
 TEST(Constraints, MayMeetWhereTheyAgree) {
-  const Problem p("quadrilateral");
+  const ConstrainedProblem p("quadrilateral");
   auto constraints = p.constraints({p.on("lid", "north", {text("t*x")}), p.on("wall", "east", {text("6*t")})});
   for (Real t : {0.0, 1.0, -2.5}) EXPECT_EQ(p.error_of(constraints, t), "");
   constraints.evaluate(2);
@@ -160,7 +160,7 @@ TEST(Constraints, MayMeetWhereTheyAgree) {
 
 TEST(Constraints, ConflictsNameBothConditionsAndThePlace) {
   for (const std::string cell : {"triangle", "hexahedron"}) {
-    const Problem p(cell);
+    const ConstrainedProblem p(cell);
     const auto constraints = p.constraints(
         {p.on("lid", "north", {std::nullopt, text("0.25*t")}), p.on("wall", "east", {text("1"), text("0")})});
     EXPECT_EQ(p.error_of(constraints, 0), "");  // they agree at t = 0
@@ -171,12 +171,12 @@ TEST(Constraints, ConflictsNameBothConditionsAndThePlace) {
 }
 
 TEST(Constraints, SameConditionMayGiveANodeItsValueFromManyFaces) {
-  const Problem p("tetrahedron");
+  const ConstrainedProblem p("tetrahedron");
   EXPECT_EQ(p.error_of(p.constraints({p.on("lid", "north", {text("x*y+z"), text("1"), text("t")})}), 1), "");
 }
 
 TEST(Constraints, NoneHoldNothing) {
-  const Problem p("triangle");
+  const ConstrainedProblem p("triangle");
   auto constraints = p.constraints({});
   constraints.evaluate(1);
   EXPECT_TRUE(constraints.entries().empty());

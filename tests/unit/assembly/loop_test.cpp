@@ -13,17 +13,16 @@ namespace {
 
 using fields::Entity;
 using fields::Layout;
-using mesh::testing::all_cells;
 using mesh::testing::crossed;
 
 /// A mesh with its layouts: displacement (nodes), side bubble and traction (faces).
-struct Problem {
+struct LoopProblem {
   mesh::GlobalMesh global;
   RCP<const mesh::Mesh> mesh;
   int dim;
   Layout u, beta, lambda;
 
-  explicit Problem(const std::string& cell)
+  explicit LoopProblem(const std::string& cell)
       : global(mesh::make_box(crossed(cell))),
         mesh(mesh::make_distributed(global, Tpetra::getDefaultComm())),
         dim(mesh->dim()),
@@ -60,8 +59,8 @@ std::vector<GlobalIndex> times(std::vector<GlobalIndex> nodes, int width) {
 }
 
 TEST(Stencil, CellsAndBoundaryFacesTouchTheirNodes) {
-  for (const auto& cell : all_cells) {
-    const Problem p(cell);
+  for (const auto& cell : mesh::testing::all_cells) {
+    const LoopProblem p(cell);
     const auto cells = make_stencil(*p.mesh, Loop::cells, p.u);
     EXPECT_EQ(cells.width, p.dim);
     ASSERT_EQ(static_cast<LocalIndex>(cells.first.extent(0)), p.mesh->n_cells());
@@ -78,8 +77,8 @@ TEST(Stencil, CellsAndBoundaryFacesTouchTheirNodes) {
 }
 
 TEST(Stencil, FractureSidesTouchTheirCellAndTheirHalfOfATwoSidedField) {
-  for (const auto& cell : all_cells) {
-    const Problem p(cell);
+  for (const auto& cell : mesh::testing::all_cells) {
+    const LoopProblem p(cell);
     const auto sides = fracture_sides(*p.mesh);
     const auto u = make_stencil(*p.mesh, Loop::fracture_sides, p.u),
                beta = make_stencil(*p.mesh, Loop::fracture_sides, p.beta),
@@ -98,8 +97,8 @@ TEST(Stencil, FractureSidesTouchTheirCellAndTheirHalfOfATwoSidedField) {
 }
 
 TEST(Stencil, OwnedFractureFacesTouchBothSides) {
-  for (const auto& cell : all_cells) {
-    const Problem p(cell);
+  for (const auto& cell : mesh::testing::all_cells) {
+    const LoopProblem p(cell);
     const auto u = make_stencil(*p.mesh, Loop::fracture_faces, p.u),
                beta = make_stencil(*p.mesh, Loop::fracture_faces, p.beta);
     EXPECT_EQ(beta.width, 2 * p.dim);
@@ -122,7 +121,7 @@ TEST(Stencil, OwnedFractureFacesTouchBothSides) {
 }
 
 TEST(Stencil, FieldsOutOfReachAreRefused) {
-  const Problem p("triangle");
+  const LoopProblem p("triangle");
   const Layout pressure({"pressure", Entity::cell, 1, "Pa"}, *p.mesh);
   EXPECT_THROW(make_stencil(*p.mesh, Loop::cells, p.beta), Error);
   EXPECT_THROW(make_stencil(*p.mesh, Loop::fracture_faces, pressure), Error);
@@ -144,7 +143,7 @@ test::Dense pattern_of(const fields::CrsMatrix& matrix) {
 
 TEST(MakeMatrix, HasTheEntriesOfItsStencilsAndNoOthers) {
   for (const std::string cell : {"triangle", "quadrilateral", "tetrahedron"}) {
-    const Problem p(cell);
+    const LoopProblem p(cell);
     const auto at = [&](Loop loop, const Layout& layout) { return make_stencil(*p.mesh, loop, layout); };
     const int n_u = static_cast<int>(p.u.owned()->getGlobalNumElements()),
               n_beta = static_cast<int>(p.beta.owned()->getGlobalNumElements());
@@ -165,8 +164,8 @@ TEST(MakeMatrix, HasTheEntriesOfItsStencilsAndNoOthers) {
 }
 
 TEST(FindPositions, PointAtTheColumnsOfOwnedRows) {
-  for (const auto& cell : all_cells) {
-    const Problem p(cell);
+  for (const auto& cell : mesh::testing::all_cells) {
+    const LoopProblem p(cell);
     const auto sides = make_stencil(*p.mesh, Loop::fracture_sides, p.u),
                halves = make_stencil(*p.mesh, Loop::fracture_sides, p.beta);
     const auto matrix = make_matrix(p.u, p.beta, {{sides, halves}});
@@ -188,7 +187,7 @@ TEST(FindPositions, PointAtTheColumnsOfOwnedRows) {
 }
 
 TEST(FindPositions, RefuseEntriesThatTheMatrixLacks) {
-  const Problem p("triangle");
+  const LoopProblem p("triangle");
   const auto faces = make_stencil(*p.mesh, Loop::fracture_faces, p.lambda),
              sides = make_stencil(*p.mesh, Loop::fracture_faces, p.u);
   const auto diagonal = make_matrix(p.lambda, p.lambda, {{faces, faces}});

@@ -27,8 +27,6 @@ using mesh::operator+;
 using mesh::operator-;
 using mesh::operator*;
 
-const std::vector<std::string> all_cells = {"triangle", "quadrilateral", "tetrahedron", "hexahedron"};
-
 bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
 
 /// A box of unit steps, of order 2, with fractures {lowest x, y, greatest x, y} along all of its third direction.
@@ -94,7 +92,7 @@ std::array<Real, 2> least_determinant_and_volume(const GlobalMesh& mesh) {
 }
 
 TEST(QuarterPoints, OfEdgesFromTips) {
-  for (const auto& cell : all_cells) {
+  for (const auto& cell : mesh::testing::all_cells) {
     SCOPED_TRACE(cell);
     auto mesh = make_box(box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 0, 3, 2}}));
     const auto before = mesh;
@@ -137,7 +135,7 @@ TEST(QuarterPoints, NodesInside) {
 
 /// Of a fracture of one face both ends are tips: the cells beside it would collapse onto it.
 TEST(QuarterPoints, NotInCellsWithAFaceOfTips) {
-  for (const auto& cell : all_cells) {
+  for (const auto& cell : mesh::testing::all_cells) {
     SCOPED_TRACE(cell);
     auto mesh = make_box(box(cell, {5, 4, 1}, {{2, 2, 3, 2}}));
     move_to_quarter_points(mesh);
@@ -228,7 +226,7 @@ TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
 /// As many nodes at the same places as in the box of twice the cells, on any number of ranks.
 TEST(QuarterPoints, OfPartsThatWereRefined) {
   const auto comm = Tpetra::getDefaultComm();
-  for (const auto& cell : all_cells) {
+  for (const auto& cell : mesh::testing::all_cells) {
     auto parameters = box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 1, 3, 3}});
     if (!is_flat(cell)) {  // its front ends in the other, whose far side has no tips
       parameters.fractures["f1"].lower_corner = {2, 1, 1};
@@ -294,8 +292,7 @@ TEST(QuarterPoints, MeansOfBubblesOnTriangles) {
     int n_tips = 0;
     for (int k = 0; k < 3; ++k) n_tips += mesh->coordinates[face.nodes[0][k] * 3] == 1;
     for (int side : {0, 1})
-      EXPECT_NEAR(bubble_mean<Shape::tetrahedron10>(*mesh, face.cell[side], face.local_face[side]),
-                  n_tips == 0 ? 0.45 : 3.0 / 7, 1e-14);
+      EXPECT_NEAR(bubble_mean(*mesh, face.cell[side], face.local_face[side]), n_tips == 0 ? 0.45 : 3.0 / 7, 1e-14);
   }
 }
 

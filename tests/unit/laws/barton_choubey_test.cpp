@@ -13,13 +13,13 @@ Real bound(const BartonChoubeyFriction& law, Real compression) {
   return law.bound(at);
 }
 
-Real tangent(Real angle) { return tangent_of_degrees(angle); }
+Real tangent_of(Real angle) { return tangent_of_degrees(angle); }
 
 TEST(BartonChoubey, BoundAtAnglesKnownByHand) {
   const BartonChoubeyFriction law{17, 50e6, 28, 70};
   EXPECT_NEAR(bound(law, 5e6), 5e6, 1e-6);  // one decade below JCS: 28 + 17 degrees
-  EXPECT_NEAR(bound(law, 80e6), 80e6 * tangent(28), 1e-6);
-  EXPECT_NEAR(bound(law, 1), tangent(70), 1e-12);
+  EXPECT_NEAR(bound(law, 80e6), 80e6 * tangent_of(28), 1e-6);
+  EXPECT_NEAR(bound(law, 1), tangent_of(70), 1e-12);
   EXPECT_EQ(bound(law, 0), 0);
   EXPECT_LT(bound(law, -1), 0);
 }
@@ -27,8 +27,8 @@ TEST(BartonChoubey, BoundAtAnglesKnownByHand) {
 /// Barton and Choubey (1977): a joint that slides at 59 degrees under 1 kPa has JRC = (59 - 29)/log10(100/0.001) = 6;
 /// the mean of 136 joints, JRC 8.9, JCS 92 MPa, phi_r 27.5 degrees.
 TEST(BartonChoubey, PublishedJoints) {
-  EXPECT_NEAR(bound({6, 100e6, 29, 70}, 1e3), 1e3 * tangent(59), 1e-9);
-  EXPECT_NEAR(bound({8.9, 92e6, 27.5, 70}, 1e6), 1e6 * tangent(44.9777), 5);  // four decimals of a degree
+  EXPECT_NEAR(bound({6, 100e6, 29, 70}, 1e3), 1e3 * tangent_of(59), 1e-9);
+  EXPECT_NEAR(bound({8.9, 92e6, 27.5, 70}, 1e6), 1e6 * tangent_of(44.9777), 5);  // four decimals of a degree
 }
 
 /// Computed apart from this code, with ten digits; the later ones of larger blocks, whose JRC and JCS are smaller.

@@ -31,7 +31,7 @@ struct Meeting {
   std::vector<int> facets;  ///< on each cell, from each neighbour of one dimension more
 };
 
-struct Case {
+struct HierarchyCase {
   std::string name;
   std::vector<Piece> pieces;
   std::vector<Meeting> meetings;
@@ -51,7 +51,7 @@ GlobalMesh split_along(const std::string& cell, std::vector<int> n, int order, s
   return split(std::move(mesh), marked);
 }
 
-GlobalMesh mesh_of(const Case& c, const std::string& cell, int order) {
+GlobalMesh mesh_of(const HierarchyCase& c, const std::string& cell, int order) {
   std::set<std::string> names;
   for (const auto& piece : c.pieces) names.insert(piece.fracture);
   const auto is_on = [&](const std::string& fracture, const Vector& x) {
@@ -66,7 +66,7 @@ GlobalMesh mesh_of(const Case& c, const std::string& cell, int order) {
 }
 
 // In a 6 x 4 box, counted by hand.
-const std::vector<Case> plane_cases{
+const std::vector<HierarchyCase> plane_cases{
     {"immersed", {{"a", {1, 2, 0}, {5, 2, 0}}}, {}, {2}},
     {"to the boundary", {{"a", {0, 2, 0}, {4, 2, 0}}}, {}, {1}},
     {"one face", {{"a", {2, 2, 0}, {3, 2, 0}}}, {}, {2}},
@@ -92,7 +92,7 @@ const std::vector<Case> plane_cases{
     {"a fracture that crosses itself", {{"a", {1, 2, 0}, {5, 2, 0}}, {"a", {3, 1, 0}, {3, 3, 0}}}, {}, {4}}};
 
 // In a 6 x 4 x 4 box, counted by hand.
-const std::vector<Case> space_cases{
+const std::vector<HierarchyCase> space_cases{
     {"triple point of planes through",
      {{"a", {0, 0, 2}, {6, 4, 2}}, {"b", {0, 2, 0}, {6, 2, 4}}, {"c", {3, 0, 0}, {3, 4, 4}}},
      {{"a*b", 1, 6, 6, {2, 2}}, {"a*c", 1, 4, 4, {2, 2}}, {"b*c", 1, 4, 4, {2, 2}}, {"a*b*c", 0, 1, 1, {2, 2, 2}}},
@@ -133,7 +133,7 @@ const std::vector<Case> space_cases{
     {"touching in one node only", {{"a", {1, 1, 2}, {3, 2, 2}}, {"b", {3, 2, 2}, {3, 4, 4}}}, {}, {6, 4}}};
 
 /// The plane case times the height 4.
-Case extruded(Case c) {
+HierarchyCase extruded(HierarchyCase c) {
   for (auto& piece : c.pieces) piece.upper[2] = 4;
   for (auto& meeting : c.meetings) meeting.dimension = 1, meeting.n_cells *= 4, meeting.measure *= 4;
   for (int& n : c.tips) n *= 4;
@@ -145,7 +145,7 @@ template <class Use>
 void for_all_cases(const Use& use) {
   for (const auto& cell : all_cells)
     for (int order : {1, 2}) {
-      std::vector<Case> cases = dim_of(cell) == 2 ? plane_cases : space_cases;
+      std::vector<HierarchyCase> cases = dim_of(cell) == 2 ? plane_cases : space_cases;
       for (const auto& c : plane_cases)
         if (dim_of(cell) == 3) cases.push_back(extruded(c));
       for (const auto& c : cases) {
@@ -156,7 +156,7 @@ void for_all_cases(const Use& use) {
 }
 
 TEST(ParentNode, OfEachCopyIsAtTheSamePlaceAndThereIsOneForEachPlace) {
-  for_all_cases([](const Case&, const GlobalMesh& split) {
+  for_all_cases([](const HierarchyCase&, const GlobalMesh& split) {
     for (const auto& mesh : {split, renumbered(split, 3)}) {
       ASSERT_EQ(static_cast<GlobalIndex>(mesh.parent_node.size()), mesh.n_nodes());
       std::map<Vector, std::set<GlobalIndex>> parents;
@@ -172,7 +172,7 @@ TEST(ParentNode, OfEachCopyIsAtTheSamePlaceAndThereIsOneForEachPlace) {
 }
 
 TEST(Hierarchy, HasTheEntitiesCountedByHand) {
-  for_all_cases([](const Case& c, const GlobalMesh& mesh) {
+  for_all_cases([](const HierarchyCase& c, const GlobalMesh& mesh) {
     const auto h = make_hierarchy(mesh);
     const int n_fractures = static_cast<int>(mesh.fracture_names.size()), dim = mesh.dim();
     ASSERT_EQ(h.subdomains.size(), 1 + n_fractures + c.meetings.size());
@@ -269,7 +269,7 @@ void expect_projects(const GlobalMesh& mesh, const Hierarchy& h, const Interface
 }
 
 TEST(Hierarchy, ProjectionsKeepConstantsPlacesAndIntegrals) {
-  for_all_cases([](const Case&, const GlobalMesh& split) {
+  for_all_cases([](const HierarchyCase&, const GlobalMesh& split) {
     for (const auto& mesh : {split, renumbered(split, 11)}) {
       const auto h = make_hierarchy(mesh);
       for (const auto& interface : h.interfaces) {
@@ -343,7 +343,7 @@ TEST(Hierarchy, ObliquePlanesThroughOneLine) {
 }
 
 TEST(Hierarchy, DoesNotDependOnTheNumbering) {
-  for_all_cases([](const Case&, const GlobalMesh& mesh) {
+  for_all_cases([](const HierarchyCase&, const GlobalMesh& mesh) {
     const auto a = make_hierarchy(mesh), b = make_hierarchy(renumbered(mesh, 7));
     EXPECT_EQ(a.tips, b.tips);
     ASSERT_EQ(a.ridges.size(), b.ridges.size());

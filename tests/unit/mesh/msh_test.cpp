@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Case {
+struct MshCase {
   const char* name;
   int n_fractures;
   int copies;              ///< counted by hand: what the fractures add to the nodes
@@ -27,7 +27,7 @@ const Real slanted = std::hypot(1, 0.8), diagonal = 2 * std::hypot(0.8, 1);
 
 /// An arm of two segments away from others adds one corner, and with order 2 two middles; a point where n fractures
 /// arms meet adds n - 1; what lies on tips adds nothing.
-const std::vector<Case> cases{
+const std::vector<MshCase> msh_cases{
     {"immersed", 1, 3, {4}, {2}, 2, 0, 0, 16},
     {"immersed_order2", 1, 3 + 4, {4}, {2}, 2, 0, 0, 16},
     {"x_order1_v22", 2, 3 + 4, {4, 4}, {3.2, 3.2}, 4, 1, 1, 16},
@@ -89,7 +89,7 @@ Real misplacement(const GlobalMesh& mesh) {
   return largest;
 }
 
-void check(const Case& c, const GlobalMesh& mesh) {
+void check(const MshCase& c, const GlobalMesh& mesh) {
   const auto info = describe(mesh);
   EXPECT_EQ(info.n_copies, c.copies);
   EXPECT_NEAR(volume(mesh), c.volume, 1e-10);
@@ -107,7 +107,7 @@ void check(const Case& c, const GlobalMesh& mesh) {
 }
 
 TEST(Msh, CopiesAreasAndNodes) {
-  for (const auto& c : cases) {
+  for (const auto& c : msh_cases) {
     SCOPED_TRACE(c.name);
     check(c, read_msh(path_of(c.name), fractures(c.n_fractures)));
   }
@@ -115,7 +115,7 @@ TEST(Msh, CopiesAreasAndNodes) {
 
 /// A file of order 1 that is raised splits as the file of order 2 does.
 TEST(Msh, OrderRaised) {
-  for (const auto& c : cases) {
+  for (const auto& c : msh_cases) {
     const std::string name = c.name, suffix = "_order2";
     if (name.size() < suffix.size() || name.substr(name.size() - suffix.size()) != suffix) continue;
     SCOPED_TRACE(name);
@@ -200,7 +200,7 @@ TEST(Msh, InvertedCellsAreMirrored) {
        {"l", "l_order2", "squares", "squares_order2", "planes", "planes_order2", "cubes", "cubes_order2"}) {
     SCOPED_TRACE(name);
     const auto found =
-        std::find_if(cases.begin(), cases.end(), [&](const Case& c) { return c.name == std::string(name); });
+        std::find_if(msh_cases.begin(), msh_cases.end(), [&](const MshCase& c) { return c.name == std::string(name); });
     const auto mesh = parse_msh(mirrored(content_of(name)), name, fractures(2));
     EXPECT_LT(*std::min_element(mesh.coordinates.begin(), mesh.coordinates.end()), -1);
     check(*found, mesh);

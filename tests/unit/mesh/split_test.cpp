@@ -15,7 +15,7 @@ GlobalIndex copies(const BoxMesh& box) {
   return make_box(box).n_nodes() - make_box(whole).n_nodes();
 }
 
-struct Case {
+struct SplitCase {
   const char* name;
   std::vector<std::array<std::array<Real, 2>, 2>> fractures;
   int copies, faces;  ///< in 2D; three times the copies and twice the faces when extruded
@@ -23,20 +23,20 @@ struct Case {
 
 // In a 6 x 4 box: copies counted by hand, one per tip-free node, two more at a T, three more at a crossing of
 // interiors.
-const std::vector<Case> cases{{"immersed", {{{{1, 2}, {5, 2}}}}, 3, 4},
-                              {"one face", {{{{2, 2}, {3, 2}}}}, 0, 1},
-                              {"to the boundary", {{{{0, 2}, {4, 2}}}}, 4, 4},
-                              {"through", {{{{0, 2}, {6, 2}}}}, 7, 6},
-                              {"X of two through", {{{{0, 2}, {6, 2}}}, {{{3, 0}, {3, 4}}}}, 6 + 4 + 3, 10},
-                              {"X of two immersed", {{{{1, 2}, {5, 2}}}, {{{3, 1}, {3, 3}}}}, 2 + 3, 6},
-                              {"T", {{{{0, 2}, {6, 2}}}, {{{3, 2}, {3, 4}}}}, 6 + 2 + 2, 8},
-                              {"L at two tips", {{{{1, 2}, {3, 2}}}, {{{3, 2}, {3, 3}}}}, 2, 3},
-                              {"in line at a tip", {{{{1, 2}, {3, 2}}}, {{{3, 2}, {5, 2}}}}, 3, 4},
-                              {"parallel", {{{{1, 1}, {5, 1}}}, {{{1, 2}, {5, 2}}}}, 6, 8}};
+const std::vector<SplitCase> split_cases{{"immersed", {{{{1, 2}, {5, 2}}}}, 3, 4},
+                                         {"one face", {{{{2, 2}, {3, 2}}}}, 0, 1},
+                                         {"to the boundary", {{{{0, 2}, {4, 2}}}}, 4, 4},
+                                         {"through", {{{{0, 2}, {6, 2}}}}, 7, 6},
+                                         {"X of two through", {{{{0, 2}, {6, 2}}}, {{{3, 0}, {3, 4}}}}, 6 + 4 + 3, 10},
+                                         {"X of two immersed", {{{{1, 2}, {5, 2}}}, {{{3, 1}, {3, 3}}}}, 2 + 3, 6},
+                                         {"T", {{{{0, 2}, {6, 2}}}, {{{3, 2}, {3, 4}}}}, 6 + 2 + 2, 8},
+                                         {"L at two tips", {{{{1, 2}, {3, 2}}}, {{{3, 2}, {3, 3}}}}, 2, 3},
+                                         {"in line at a tip", {{{{1, 2}, {3, 2}}}, {{{3, 2}, {5, 2}}}}, 3, 4},
+                                         {"parallel", {{{{1, 1}, {5, 1}}}, {{{1, 2}, {5, 2}}}}, 6, 8}};
 
 TEST(Split, CopiesOfNodes) {
   for (const auto& cell : all_cells)
-    for (const auto& c : cases) {
+    for (const auto& c : split_cases) {
       const bool flat = dim_of(cell) == 2;
       auto box = unit_steps(cell, flat ? std::vector<int>{6, 4} : std::vector<int>{6, 4, 2});
       for (std::size_t f = 0; f < c.fractures.size(); ++f) {

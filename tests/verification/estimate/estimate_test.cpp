@@ -1,4 +1,5 @@
 // What a run says of its own error, against the error: of stress and jump, where both are known.
+#include "base/over_ranks.hpp"
 #include "assembly/geometry.hpp"
 #include "model/results.hpp"
 #include "verification/scenes.hpp"
@@ -11,12 +12,6 @@ namespace {
 using Function = std::function<Vector3(const Vector3& x, bool above)>;
 
 model::ErrorEstimate estimate(model::Model& model) { return model::ErrorEstimator(model)(Outputs(model).all()); }
-
-Real sum(const Comm& comm, Real here) {
-  Real all = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-  return all;
-}
 
 /// s : C^-1 s of rock with the constants of `law`.
 template <int dim>
@@ -64,7 +59,7 @@ Real stress_error(model::Model& model, const Function& u, Real middle) {
       });
     }
   });
-  return std::sqrt(sum(*mesh.comm, square));
+  return std::sqrt(base::sum_over_ranks(*mesh.comm, square));
 }
 
 /// Norm of the error of the faces' mean jumps. Collective.
@@ -76,15 +71,15 @@ Real jump_error(model::Model& model, const Function& u) {
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const auto& face = mesh.fracture_faces[f];
       Vector3 error = out.vector("jump", f);
-      assembly::for_each_face_point<s()>(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
-                                         [&](const auto&, Real area, const Vector3& x) {
-                                           const auto jump = difference(u(x, true), u(x, false));
-                                           for (int i = 0; i < 3; ++i) error[i] -= area / face.area * jump[i];
-                                         });
+      assembly::for_each_face_point(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                    [&](const auto&, Real area, const Vector3& x) {
+                                      const auto jump = difference(u(x, true), u(x, false));
+                                      for (int i = 0; i < 3; ++i) error[i] -= area / face.area * jump[i];
+                                    });
       square += face.area * dot(error, error);
     }
   });
-  return std::sqrt(sum(*mesh.comm, square));
+  return std::sqrt(base::sum_over_ranks(*mesh.comm, square));
 }
 
 /// The displacement that a manufactured scene prescribes on the boundaries of its regions "below" and "above".
@@ -152,7 +147,7 @@ TEST(ErrorEstimate, Cracks) {
       }
       const auto e = estimate(model);
       const Real least = tips == std::string("plain") ? 0.4 : 0.5;
-      expect_between(e.jump / std::sqrt(sum(*mesh.comm, square)), least, 2, "jump");
+      expect_between(e.jump / std::sqrt(base::sum_over_ranks(*mesh.comm, square)), least, 2, "jump");
       if (mesh.comm->getRank() == 0) fmt::print("  {} of order {}, {} tips\n", name, order, tips);
       // the error is largest in cells at the tips
       const auto& density = e.fields[0].values;
@@ -201,7 +196,8 @@ TEST(ErrorEstimate, ContactThatEndsWithinAFace) {
       mean += 2 * mesh.fracture_faces[f].area * out.vector("jump", f)[1];
       estimated += 2 * mesh.fracture_faces[f].area * lacks.values[2 * f + 1];
     }
-    expect_between(sum(*mesh.comm, estimated) / (exact - sum(*mesh.comm, mean)), 0.5, 2, "mean jump");
+    expect_between(base::sum_over_ranks(*mesh.comm, estimated) / (exact - base::sum_over_ranks(*mesh.comm, mean)), 0.5,
+                   2, "mean jump");
     if (mesh.comm->getRank() == 0) fmt::print("  wavy of order {}\n", order);
   }
 }

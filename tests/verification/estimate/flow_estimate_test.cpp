@@ -1,4 +1,5 @@
 // Estimates of the error of flow, against exact solutions.
+#include "base/over_ranks.hpp"
 #include "model/goals.hpp"
 #include "physics/flow/face_plane.hpp"
 #include "verification/flow/boxes.hpp"
@@ -35,12 +36,6 @@ void cut(model::Scene& scene, Real end, Real along, Real across) {
   auto& joint = scene.materials.at("joint");
   joint.tangential_permeability = along / aperture;
   joint.normal_permeability = base::Expression(across * aperture / 2);  // 1/R = 2 k_n/a
-}
-
-Real sum(const Comm& comm, Real here) {
-  Real all = 0;
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-  return all;
 }
 
 /// |q_h - q| over rock and fractures in the norm of the energy, with fluxes from the unknowns of the model.
@@ -83,8 +78,8 @@ Real true_error(model::Model& model, const Exact& exact) {
     for (int k = 0; k < n; ++k)
       if (resistance.count(c * n + k)) {
         Real area = 0;
-        assembly::for_each_face_point<shape>(mesh, c, k, [&](const auto&, Real da, const auto&) { area += da; });
-        assembly::for_each_face_point<shape>(mesh, c, k, [&](const auto&, Real da, const auto& x) {
+        assembly::for_each_face_point(mesh, c, k, [&](const auto&, Real da, const auto&) { area += da; });
+        assembly::for_each_face_point(mesh, c, k, [&](const auto&, Real da, const auto& x) {
           square += da * exact.resistance * std::pow(q[k] / area + exact.away(x[0]), 2);
         });
       }
@@ -98,7 +93,7 @@ Real true_error(model::Model& model, const Exact& exact) {
         q[i] += plane.T[i][j] * (p["face pressure"][mesh.facets->fracture_face[f]] -
                                  p["face pressure"][mesh.facets->ridge[f * dim + j]]);
     const auto corner = [&](int k, int i) { return mesh.coordinates[face.nodes[mesh::minus][k] * dim + i]; };
-    assembly::for_each_face_point<shape>(
+    assembly::for_each_face_point(
         mesh, face.cell[mesh::minus], face.local_face[mesh::minus], [&](const auto&, Real da, const Vector3& x) {
           for (int i = 0; i < dim; ++i) {
             Real discrete = 0;
@@ -109,14 +104,14 @@ Real true_error(model::Model& model, const Exact& exact) {
           }
         });
   }
-  return std::sqrt(sum(*mesh.comm, square));
+  return std::sqrt(base::sum_over_ranks(*mesh.comm, square));
 }
 
-struct Measured {
+struct MeasuredFlux {
   Real error, estimate, value, goal_error;
 };
 
-Measured measure(model::Scene scene, const Exact& exact, const model::Quantity& quantity) {
+MeasuredFlux measure(model::Scene scene, const Exact& exact, const model::Quantity& quantity) {
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, Tpetra::getDefaultComm());
@@ -296,7 +291,7 @@ std::vector<Case> cases() {
 TEST(FlowEstimate, BoundsTheErrorOfFluxes) {
   for (const auto& one : cases()) {
     SCOPED_TRACE(one.name + ", " + one.cell);
-    Measured before{};
+    MeasuredFlux before{};
     for (const int n : one.meshes) {
       const auto got = measure(one.scene(n), one.exact, one.quantity);
       const Real ratio = got.estimate / got.error, missed = std::abs(got.value - one.value);

@@ -4,9 +4,8 @@
 namespace sprekk::tests {
 namespace {
 
-// Round-off, see inclined_test.cpp. A slipping joint stands exactly on its friction bound, but it slides by a given
+// A slipping joint stands exactly on its friction bound, but it slides by a given
 // amount that is far from 0, and rounding mu moves its traction no more than by rounding mu N.
-constexpr Real tolerance = 1e-11;
 
 struct Line {
   Real degrees, K_t, zeta;  ///< slides by zeta lambda_t

@@ -4,10 +4,6 @@
 namespace sprekk::tests {
 namespace {
 
-// Moduli, sides, displacements and stresses are of the order of 1: 1e-11 is round-off (1e-16) times the condition of
-// the matrix.
-constexpr Real tolerance = 1e-11;
-
 /// Examples of the formulas, calculated independently.
 TEST(InclinedPatch, Formulas) {
   struct Example {
