@@ -148,6 +148,11 @@ class Launcher(ProgramTest):
         with run:
             self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
 
+    def test_progress_of_the_build_in_a_pipe(self):
+        (self.folder / "stubs/ninja").write_text('#!/usr/bin/env bash\nfor i in {0..40}; do echo "[$i/40] Building"; done\n')
+        _, err = self.launch("check", PUSH)
+        self.assertEqual(re.findall("building (.*)", err), [f"{n} of 40" for n in (1, *range(4, 41, 4))])
+
     def test_build_that_fails(self):
         (self.folder / "broken").touch()
         out, err = self.launch("check", PUSH, expect=1)
