@@ -18,10 +18,6 @@
 #include <iostream>
 #include <unistd.h>
 
-#ifndef SPREKK_VERSION
-#define SPREKK_VERSION "unknown"
-#endif
-
 namespace {
 
 using namespace sprekk;
@@ -48,13 +44,13 @@ struct Arguments {
   model::RunOptions options;
   std::string mesh_file;
   std::vector<std::string> fractures;
-  bool schema = false;
+  bool schema = false, quiet = false;
   model::SafetyOptions safety;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
   auto& options = arguments.options;
-  app.set_version_flag("--version", std::string("sprekk ") + SPREKK_VERSION);
+  app.set_version_flag("--version", "sprekk " + model::version());
   app.require_subcommand(1);
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
@@ -86,6 +82,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   for (auto* command : {run, check})
     command->add_flag("--strict", options.strict,
                       "take warnings of the scene as errors; and end with status 3 where Accuracy is not reached");
+  for (auto* command : {run, safety})
+    command->add_flag("--quiet", arguments.quiet, "print nothing on standard output");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
@@ -98,8 +96,10 @@ std::string message(const CLI::ParseError& error, const Arguments& arguments) {
 }
 
 /// Runs the scene until a signal asks to stop; the exit status.
-int run_scene(model::RunOptions options, RCP<const Comm> comm) {
+int run_scene(const Arguments& arguments, RCP<const Comm> comm) {
   handle_stop_signals(comm->getRank() == 0 ? ask_to_stop_aloud : ask_to_stop);
+  auto options = arguments.options;
+  options.prints_log = !arguments.quiet;
   options.should_stop = [] { return stop_asked != 0; };
   const auto ending = model::run(options, comm);
   if (ending == model::Ending::interrupted) return 4;
@@ -128,7 +128,7 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
   auto options = arguments.safety;
   options.scene = arguments.options.scene;
   options.overrides = arguments.options.overrides;
-  const bool speaks = comm->getRank() == 0;
+  const bool speaks = comm->getRank() == 0 && !arguments.quiet;
   const auto found = model::factor_of_safety(options, comm, [&](const model::Reduction& one) {
     if (speaks)
       fmt::print("{:<14.10g} {}\n", one.factor,
@@ -149,7 +149,7 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
 int execute(const std::string& command, const Arguments& arguments, RCP<const Comm> comm) {
   const auto& options = arguments.options;
   const bool speaks = comm->getRank() == 0;
-  if (command == "run") return run_scene(options, comm);
+  if (command == "run") return run_scene(arguments, comm);
   if (command == "reference" && speaks) std::cout << (arguments.schema ? model::schema() : model::reference());
   if (command == "materials" && speaks) std::cout << physics::library_markdown();
   if (command == "mesh-info")
@@ -173,12 +173,8 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
 int run_command(int argc, char** argv, RCP<const Comm> comm) {
   const bool speaks = comm->getRank() == 0;
   Arguments arguments;
-  const auto is_set = [](const char* name) {
-    const char* value = std::getenv(name);
-    return value && std::string(value) == "1";
-  };
-  arguments.options.terminal = is_set("SPREKK_TERMINAL");
-  arguments.options.reserved = is_set("SPREKK_RESERVED");  // ./sprekk holds the lock of the directory
+  const char* reserved = std::getenv("SPREKK_RESERVED");
+  arguments.options.reserved = reserved && std::string(reserved) == "1";  // ./sprekk holds the lock of the directory
   CLI::App app{"Sprekk: deformation of fractured rock", "sprekk"};
   declare(app, arguments);
   try {

@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/directory_lock.hpp"
+#include "io/file.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
 #include "model/adaptation.hpp"
@@ -29,7 +30,7 @@ namespace sprekk::model {
 
 namespace {
 
-/// A line per time step, for terminals.
+/// The table of time steps in the log: a line each.
 class Progress {
  public:
   Progress(base::Log& log, const Steps& steps) : log_(log), steps_(steps), share_before_(steps.share_done()) {
@@ -122,8 +123,8 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
 void describe(const Model& model, base::Log& log) {
   const auto& mesh = model.mesh();
   const int n_ranks = mesh.comm->getSize();
-  log.info("{}: {} cells, {} nodes, {} fracture faces, {} ranks", model.scene().origin, mesh.n_global_cells,
-           mesh.n_global_nodes, mesh.n_global_fracture_faces, n_ranks);
+  log.info("mesh: {} cells, {} nodes, {} fracture faces", mesh.n_global_cells, mesh.n_global_nodes,
+           mesh.n_global_fracture_faces);
   const auto& partition = mesh.partition;
   if (n_ranks > 1)
     log.info("partition: {} to {} cells per rank (largest/mean {:.3f}), {} to {} fracture faces ({:.3f}); {} cut edges",
@@ -132,7 +133,7 @@ void describe(const Model& model, base::Log& log) {
   std::vector<std::string> modules;
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
-  log.info("linear solver: {}", model.newton().linear().solver().describe());
+  log.info("linear solver: {}", base::trimmed(model.newton().linear().solver().describe()));
 }
 
 /// A line for each part of the preconditioner: what it has cost on this rank.
@@ -200,6 +201,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
       for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);
+      log.check_file();
       return taken;
     });
     const auto& report = taken.report;
@@ -229,6 +231,8 @@ std::pair<std::string, bool> file_name(const std::string& text) {
 }
 
 }  // namespace
+
+std::string version() { return SPREKK_VERSION; }
 
 std::string default_directory(const RunOptions& options) {
   std::string all, variant;
@@ -276,16 +280,18 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   return ending;
 }
 
-/// The same; `task` says what is being done.
-Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
-  base::Log log(*comm, options.terminal ? base::Log::Level::normal : base::Log::Level::quiet);
-  const std::string directory = options.output.empty() ? default_directory(options) : options.output;
-  io::DirectoryLock lock(comm, directory);
+/// The same; the log has its file as soon as the directory is that of this run alone.
+Ending run(const RunOptions& options, const std::string& directory, io::DirectoryLock& lock, base::Log& log,
+           RCP<const Comm> comm, std::string& task) {
+  const int n_ranks = comm->getSize();
+  log.info("sprekk {}: {} on {} {}", version(), options.scene, n_ranks, n_ranks == 1 ? "rank" : "ranks");
   const bool reserved = base::any_rank(*comm, [&] { return options.reserved; });  // ranks elsewhere may not be told
   const auto reserve = [&] {
-    if (reserved) return;
-    if (const auto why = lock.take(); !why.empty())
+    if (reserved)
+      io::make_directory(*comm, directory);
+    else if (const auto why = lock.take(); !why.empty())
       log.warning("{}: its file system has no locks ({}): see to it that no other run writes there", directory, why);
+    log.open(directory + "/log.txt", options.restart);
   };
   if (lock.has_directory()) reserve();
   Adaptation adaptation;
@@ -294,18 +300,27 @@ Ending run(const RunOptions& options, RCP<const Comm> comm, std::string& task) {
     ending = run_once(options, directory, reserve, adaptation, log, comm, task);
   for (const auto& verdict : adaptation.verdicts())
     if (!verdict.reached) log.warning("{}: not reached, for {}", verdict.line(), adaptation.why());
-  if (ending == Ending::completed || ending == Ending::inaccurate) log.info("results in {}", directory);
+  log.info("results in {}", directory);
+  log.check_file();
   return ending;
 }
 
 }  // namespace
 
 Ending run(const RunOptions& options, RCP<const Comm> comm) {
+  base::Log log(*comm, options.prints_log);
+  const std::string directory = options.output.empty() ? default_directory(options) : options.output;
+  io::DirectoryLock lock(comm, directory);
   std::string task = options.scene + ": making the mesh and the equations";
   try {
-    return run(options, comm, task);
+    return run(options, directory, lock, log, comm, task);
   } catch (const std::bad_alloc&) {  // perhaps here alone
-    throw std::runtime_error(fmt::format("{}: {}", task, base::out_of_memory()));
+    const auto message = fmt::format("{}: {}", task, base::out_of_memory());
+    log.error(message);
+    throw std::runtime_error(message);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+    throw;
   }
 }
 
@@ -317,7 +332,7 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
     const Probes probes(model);
     const auto warnings = model.warnings();
     if (options.strict) base::throw_errors(warnings);
-    base::Log log(*comm, base::Log::Level::quiet);
+    base::Log log(*comm, false);
     for (const auto& warning : warnings) log.warning("{}", warning);
   });
 }

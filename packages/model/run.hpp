@@ -14,12 +14,15 @@ struct RunOptions {
   std::string output;                  ///< directory; empty: default_directory()
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
   bool restart = false;                ///< go on from the last checkpoint in the output directory
-  bool terminal = false;               ///< print a line per time step
+  bool prints_log = false;             ///< print the log to the standard output, as well as to log.txt
   bool reserved = false;               ///< the caller sees to it that no other run writes into the directory
   bool strict = false;                 ///< warnings of the scene are errors, and what Accuracy asks for must be reached
   /// If not empty: asked on every rank in each Newton iteration and after each step; true on any ends the run.
   std::function<bool()> should_stop;
 };
+
+/// The version of Sprekk, as "0.1.0".
+std::string version();
 
 /// output/NAME of the scene, under the current directory, followed by the overrides, so that each variant has its own:
 /// -PATH=VALUE for each, with _ for all but letters, digits and .=+-; and, where that is long or loses more than
@@ -34,10 +37,11 @@ enum class Ending {
 };
 
 /// Runs the scene, from its beginning or from a checkpoint, and writes its results; with the section Accuracy again and
-/// again, on finer and finer meshes, each time in place of the results before. A step that did not converge is
-/// reported, and what was computed before is kept. An interrupted run goes back to the end of its last whole step, and
-/// writes a checkpoint there if the scene asks for any. Throws an Error for bad input, and where another run writes
-/// into the directory, before anything there is touched; the same on every rank. Collective.
+/// again, on finer and finer meshes, each time in place of the results before. The log is written to log.txt line by
+/// line, warnings also to the standard error. A step that did not converge is reported, and what was computed before is
+/// kept. An interrupted run goes back to the end of its last whole step, and writes a checkpoint there if the scene
+/// asks for any. Throws an Error for bad input, for a file that cannot be written, and where another run writes into
+/// the directory, before anything there is touched; the same on every rank. Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().

@@ -128,7 +128,7 @@ def missing_program(command):
 
 def run(command, folder, time_limit=600):
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                   "OMP_NUM_THREADS": "1", "SPREKK_TERMINAL": "1"}
+                   "OMP_NUM_THREADS": "1"}
     return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=environment,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           timeout=time_limit)

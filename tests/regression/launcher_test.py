@@ -68,7 +68,7 @@ class Launcher(ProgramTest):
             with self.subTest(ranks=ranks, cells=cells):
                 run = subprocess.Popen(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set",
                                         "Time.steps=2000", "--set", "Output.vtu=false", "--set", "Mesh.cells=" + cells],
-                                       stderr=subprocess.PIPE, start_new_session=True, **self.surroundings)
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True, **self.surroundings)
                 while not (self.folder / "out/results.json").exists():
                     self.assertIsNone(run.poll())
                     time.sleep(0.01)
@@ -147,6 +147,19 @@ class Launcher(ProgramTest):
             self.assertIn("waiting for another build", run.stderr.readline())
         with run:
             self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
+
+    def test_log_and_quiet(self):
+        for ranks in ("1", "2"):
+            for words, n in (([], 1), (["--quiet"], 0)):
+                out, _ = self.launch("run", PUSH, "--ranks", ranks, "--output", "out", *words)
+                self.assertEqual(out.count("results in out"), n)
+        for command in ("check", "point"):
+            self.assertIn(f'{command} has no option "--quiet"', self.launch(command, PUSH, "--quiet", expect=2)[1])
+
+    def test_progress_of_the_build_in_a_pipe(self):
+        (self.folder / "stubs/ninja").write_text('#!/usr/bin/env bash\nfor i in {0..40}; do echo "[$i/40] Building"; done\n')
+        _, err = self.launch("check", PUSH)
+        self.assertEqual(re.findall("building (.*)", err), [f"{n} of 40" for n in (1, *range(4, 41, 4))])
 
     def test_build_that_fails(self):
         (self.folder / "broken").touch()

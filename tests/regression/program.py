@@ -23,13 +23,13 @@ class ProgramTest(unittest.TestCase):
     def scene(self, name):
         return ROOT / "xml" / name
 
-    def call(self, *arguments, ranks=1, expect=0, environment=None):
+    def call(self, *arguments, ranks=1, expect=0):
         """Standard output and error; a call that takes too long or ends with another status fails."""
         command = [str(PROGRAM), *map(str, arguments)]
         if ranks > 1:
             command = [MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
         done = subprocess.run(["timeout", str(TIME_LIMIT), *command], cwd=self.folder, capture_output=True, text=True,
-                              stdin=subprocess.DEVNULL, env={**os.environ, **(ALONE if ranks == 1 else {}), **(environment or {})})
+                              stdin=subprocess.DEVNULL, env={**os.environ, **(ALONE if ranks == 1 else {})})
         self.assertEqual(done.returncode, expect, f"{command}\n{done.stdout}{done.stderr}")
         return done.stdout, done.stderr
 

@@ -1,11 +1,9 @@
 #!/usr/bin/env python3
 """What a run leaves behind: results_test.py PROGRAM ROOT MPIEXEC"""
-import os
 import re
 import struct
 import subprocess
 import sys
-import unittest.mock
 import xml.etree.ElementTree
 import zlib
 
@@ -238,8 +236,7 @@ class Results(ProgramTest):
         scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"
         words = "a piece of rock around (0.5, 0.5) (128 cells) can move along"
         for ranks in (1, 2):
-            with unittest.mock.patch.dict(os.environ, {"SPREKK_TERMINAL": "1"}):
-                out, err = self.call("run", scene, "--output", "out", "--set", times, "--set", QUIET, ranks=ranks)
+            out, err = self.call("run", scene, "--output", "out", "--set", times, "--set", QUIET, ranks=ranks)
             self.assertEqual(re.findall("^warning: .*", err, re.MULTILINE), err.splitlines())
             lines = [line for line in err.splitlines() if "over knots" not in line]  # the first step goes over some
             self.assertEqual(len(lines), 1, err)

@@ -3,35 +3,59 @@
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+#include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "base/check.hpp"
 #include "base/timer.hpp"
 
 namespace sprekk::base {
 namespace {
 
-std::string output(Log::Level level, bool terminal) {
-  const auto comm = Tpetra::getDefaultComm();
-  std::ostringstream out, warnings;
-  Log log(*comm, level, out, warnings, terminal);
-  log.info("step {}", 1);
-  log.progress("iteration {}", 2);
-  log.progress("iteration {}", 3);
-  log.warning("odd");
-  EXPECT_EQ(warnings.str(), comm->getRank() == 0 ? "warning: odd\n" : "");
-  return out.str();
+std::string content(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(Log, prints_on_rank_0_and_shows_progress_on_terminals) {
-  if (Tpetra::getDefaultComm()->getRank() == 0) {
-    EXPECT_EQ(output(Log::Level::normal, false), "step 1\n");
-    EXPECT_EQ(output(Log::Level::normal, true), "step 1\niteration 2\r\x1b[Kiteration 3\r\x1b[K");
-    EXPECT_EQ(output(Log::Level::quiet, true), "");
-  } else {
-    EXPECT_EQ(output(Log::Level::normal, true), "");
+/// What another run adds to the file: a line before it is open, a warning and an error after.
+void add_lines(const std::string& path, bool append) {
+  const auto comm = Tpetra::getDefaultComm();
+  std::ostringstream out, warnings;
+  Log log(*comm, append ? nullptr : &out, warnings);
+  log.info("step {}", 1);
+  log.open(path, append);
+  log.warning("odd");
+  log.error("broken");
+  const bool writes = comm->getRank() == 0;
+  EXPECT_EQ(out.str(), writes && !append ? "step 1\n" : "");
+  EXPECT_EQ(warnings.str(), writes ? "warning: odd\n" : "");
+}
+
+TEST(Log, writes_streams_and_a_file_on_rank_0) {
+  const auto comm = Tpetra::getDefaultComm();
+  const std::string lines = "step 1\nwarning: odd\nerror: broken\n";
+  const auto path = fmt::format("log_test_{}.txt", comm->getSize());  // tests on other ranks run at the same time
+  add_lines(path, false);
+  add_lines(path, false);
+  if (comm->getRank() == 0) EXPECT_EQ(content(path), lines);
+  add_lines(path, true);
+  if (comm->getRank() == 0) {
+    EXPECT_EQ(content(path), lines + lines);
+    std::remove(path.c_str());
   }
+}
+
+TEST(Log, a_line_that_cannot_be_written_is_an_error_on_every_rank) {
+  std::ostringstream out;
+  Log log(*Tpetra::getDefaultComm(), nullptr, out);
+  log.open("/dev/full", true);
+  EXPECT_NO_THROW(log.check_file());
+  log.info("step 1");
+  log.info("step 2");
+  EXPECT_THROW(log.check_file(), Error);
 }
 
 TEST(Timers, add_up_phases_in_the_order_of_their_first_use) {

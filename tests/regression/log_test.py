@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""The log of a run, on standard output and in log.txt: log_test.py PROGRAM ROOT MPIEXEC"""
+import re
+import subprocess
+
+import program
+from program import ProgramTest, main
+
+CYCLIC = "verification/cyclic_2d.xml"  # 8 steps
+PUSH = "seed/push_2d.xml"
+STEP = re.compile(r"^ +(\d+) +1( +\d+){6} +\d+\.\ds +\d+\.\ds$", re.MULTILINE)  # time, length, counts, seconds
+QUIET = ["--set", "Output.vtu=false"]
+
+
+class Log(ProgramTest):
+    def log(self):
+        return (self.folder / "out/log.txt").read_text()
+
+    def test_parts(self):
+        for ranks in (1, 2):
+            out, err = self.call("run", self.scene(CYCLIC), "--output", "out", *QUIET, ranks=ranks)
+            self.assertEqual(err, "")
+            self.assertEqual(self.log(), out)
+            lines = out.splitlines()
+            self.assertRegex(lines[0], rf"^sprekk \d+\.\d+\.\d+: {self.scene(CYCLIC)} on {ranks} rank{'s' * (ranks > 1)}$")
+            self.assertEqual(lines[1], "mesh: 4 cells, 12 nodes, 2 fracture faces")
+            self.assertEqual(sum("24 unknowns" in line for line in lines), 1, out)
+            self.assertEqual([step[1] for step in STEP.finditer(out)], list("12345678"))
+            self.assertEqual(lines[-4:], ["open: 0 of 1 fractures", 'stick: 1 of 1 fractures: "fracture" (100 %)',
+                                          "slip: 0 of 1 fractures", "results in out"])
+            self.assertEqual(len(lines), len(set(lines)), out)
+
+    def test_quiet(self):
+        """Nothing on standard output; warnings are on standard error and in the file."""
+        for ranks in (1, 2):
+            out, err = self.call("run", self.scene(PUSH), "--output", "out", "--quiet", "--set",
+                                 "Materials.joint.friction coefficient=3", *QUIET, ranks=ranks)
+            self.assertEqual(out, "")
+            warnings = err.splitlines()
+            self.assertTrue(warnings)
+            self.assertEqual([line for line in self.log().splitlines() if line.startswith("warning: ")], warnings)
+            self.assertEqual(len(STEP.findall(self.log())), 1)
+            self.assertIn("\nresults in out\n", self.log())
+        self.assertEqual(self.call("safety", self.scene("slopes/plane_2d.xml"), "--tolerance", "0.5", "--quiet")[0], "")
+
+    def test_a_restart_appends_and_a_fresh_run_replaces(self):
+        words = ["run", self.scene(CYCLIC), "--output", "out", *QUIET, "--set", "Output.checkpoints.steps=1", "--set"]
+        (self.folder / "out").mkdir()
+        (self.folder / "out/log.txt").write_text("of an earlier run\n")
+        for ranks in (1, 2):
+            first, _ = self.call(*words, "Time.schedule={1, 2}", ranks=ranks)
+            self.assertEqual(self.log(), first)
+            second, _ = self.call(*words, "Time.schedule={1, 2, 3}", "--restart", ranks=ranks)
+            self.assertIn("going on from t = 2\n", second)
+            self.assertEqual(self.log(), first + second)
+
+    def test_file_that_cannot_be_written(self):
+        path = self.folder / "out/log.txt"
+        path.mkdir(parents=True)
+        for ranks in (1, 2):
+            _, err = self.call("run", self.scene(PUSH), "--output", "out", *QUIET, ranks=ranks, expect=1)
+            self.assertEqual(err, "sprekk: out/log.txt: cannot be written: Is a directory\n")
+        path.rmdir()
+        path.symlink_to("/dev/full")
+        for words in ([], ["--quiet"]):
+            _, err = self.call("run", self.scene(PUSH), "--output", "out", *QUIET, *words, expect=1)
+            self.assertEqual(err, "sprekk: out/log.txt: cannot be written: No space left on device\n")
+
+    def test_errors_are_in_the_file(self):
+        """Of a run whose directory is there."""
+        for ranks in (1, 2):
+            _, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Boundary conditions.moved.displacement={0, -sqrt(2.5-t)}",
+                               "--set", "Time.end=4", "--set", "Time.steps=4", *QUIET, ranks=ranks, expect=1)
+            self.assertTrue(self.log().endswith(err.replace("sprekk: ", "\nerror: ", 1)), self.log())
+            self.assertEqual(len(STEP.findall(self.log())), 2)
+            out, err = self.call("run", "absent.xml", "--output", "out", ranks=ranks, expect=1)
+            self.assertEqual(self.log(), out + err.replace("sprekk: ", "error: "))
+            self.call("run", "absent.xml", "--output", "new", ranks=ranks, expect=1)
+            self.assertFalse((self.folder / "new").exists())
+
+    def test_lines_arrive_while_the_run_goes_on(self):
+        """And not when a buffer is full, which takes some 40 steps."""
+        words = [program.PROGRAM, "run", self.scene(PUSH), "--output", "out", *QUIET, "--set", "Mesh.cells={60, 60}", "--set",
+                 "Time.end=1000", "--set", "Time.steps=1000"]
+        for launcher in ([], [program.MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", "2"]):
+            with subprocess.Popen([*launcher, *words], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                  stderr=subprocess.DEVNULL, text=True) as run:
+                self.addCleanup(run.kill)
+                line = next(line for line in run.stdout if STEP.match(line))
+                log = self.log()
+                self.assertIn("\n" + line, log)
+                self.assertLess(len(STEP.findall(log)), 20)
+                self.assertIsNone(run.poll())
+                run.terminate()
+
+
+if __name__ == "__main__":
+    main()
