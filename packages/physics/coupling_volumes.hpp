@@ -1,133 +1,30 @@
 // How displacements change the room for a fluid: what its pressure works on.
 #pragma once
 
-#include "assembly/geometry.hpp"
-#include "assembly/loop.hpp"
-#include "assembly/reference_cell.hpp"
-#include "assembly/tip_cell.hpp"
+#include "base/view.hpp"
+#include "mesh/mesh.hpp"
 
-#include <memory>
-#include <vector>
+#include <functional>
 
 namespace sprekk::physics {
 
 /// Below, V_K = integral of biot div u over a cell and W_f = |f| n . mean([[u]]) of a fracture face, n from minus to
-/// plus; biot(cell) is Biot's coefficient of a local cell. All are m^2 (2D: m).
+/// plus; biot(cell) is Biot's coefficient of a local cell. All are m^2 (2D: m), on the device.
+using OfCell = std::function<Real(LocalIndex cell)>;
 
 /// dV_K/du of the cells' nodes: [cell, node * dim + component].
-template <mesh::Shape shape, class Biot>
-View<Real**> cell_volumes(const mesh::Mesh& mesh, const Biot& biot) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const View<Real**> volume("volume", mesh.n_cells(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
-  Real X[n][dim], dN[n][dim], g[dim];
-  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-    assembly::gather_host<shape>(mesh, c, X);
-    assembly::for_each_cell_point<shape>(mesh, c, [&](const Real(&xi)[dim], Real part, const auto&) {
-      assembly::ReferenceCell<shape>::gradients(xi, dN);
-      const assembly::CellPoint<shape> point(X, dN);
-      for (int a = 0; a < n; ++a) {
-        point.gradient(dN[a], g);
-        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(c) * g[i];
-      }
-    });
-  }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
+View<Real**> cell_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
 /// dV_K/dbeta of the sides' bubbles: [entity of Loop::fracture_sides, component].
-template <mesh::Shape shape, class Biot>
-View<Real**> bubble_volumes(const mesh::Mesh& mesh, const Biot& biot) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  using Cell = assembly::ReferenceCell<shape>;
-  const auto sides = assembly::fracture_sides(mesh);
-  const View<Real**> volume("volume", sides.size(), dim);
-  const auto host = Kokkos::create_mirror_view(volume);
-  Real X[n][dim], dN[n][dim], db[dim], g[dim];
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const auto& face = mesh.fracture_faces[sides[s][0]];
-    const LocalIndex cell = face.cell[sides[s][1]];
-    assembly::gather_host<shape>(mesh, cell, X);
-    assembly::for_each_cell_point<shape>(mesh, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
-      Cell::gradients(xi, dN);
-      Cell::bubble(face.local_face[sides[s][1]], xi, db);
-      assembly::CellPoint<shape>(X, dN).gradient(db, g);
-      for (int i = 0; i < dim; ++i) host(s, i) += part * biot(cell) * g[i];
-    });
-  }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
+View<Real**> bubble_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
 /// This side's part of dW_f/d(u, beta): [entity of Loop::fracture_sides, node * dim + component; component].
-template <mesh::Shape shape>
-View<Real**> side_volumes(const mesh::Mesh& mesh) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const auto sides = assembly::fracture_sides(mesh);
-  const View<Real**> volume("volume", sides.size(), n * dim + dim);
-  const auto host = Kokkos::create_mirror_view(volume);
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const auto [f, side] = sides[s];
-    const auto& face = mesh.fracture_faces[f];
-    const LocalIndex cell = face.cell[side];
-    const int local_face = face.local_face[side];
-    const Real area = side == mesh::plus ? face.area : -face.area;
-    const auto shares = assembly::mean_shares(mesh, cell, local_face);
-    const Real mean = assembly::bubble_mean(mesh, cell, local_face);
-    for (int i = 0; i < dim; ++i) {
-      for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-        host(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
-      host(s, n * dim + i) = area * mean * face.frame[0][i];
-    }
-  }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
+View<Real**> side_volumes(const mesh::Mesh& mesh);
 
-/// dV_K of the tip functions: [entity of Loop::tip_cells, node * dim + component].
-template <mesh::Shape shape, class Biot>
-View<Real**> tip_cell_volumes(const mesh::Mesh& mesh, const Biot& biot) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const auto cells = assembly::tip_cells(mesh);
-  const View<Real**> volume("volume", cells.size(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
-  if constexpr (mesh::order(shape) == 1) {
-    const auto rules = std::make_shared<assembly::TipRules>();
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      assembly::TipCell<shape>(mesh, cells[c], rules)
-          .for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
-            for (int a = 0; a < n; ++a)
-              for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(cells[c]) * v.grad_psi[a][i];
-          });
-  }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
+/// dV_K of the tip functions: [entity of Loop::tip_cells, node * dim + component]; cells of order 1.
+View<Real**> tip_cell_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
-/// Part of dW_f of the tip functions on a side: [entity of Loop::tip_sides, node * dim + component].
-template <mesh::Shape shape>
-View<Real**> tip_side_volumes(const mesh::Mesh& mesh) {
-  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const auto all = assembly::fracture_sides(mesh);
-  const auto selected = assembly::tip_sides(mesh);
-  const View<Real**> volume("volume", selected.size(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
-  if constexpr (mesh::order(shape) == 1) {
-    using Tip = assembly::TipCell<shape>;
-    const auto rules = std::make_shared<assembly::TipRules>();
-    for (std::size_t s = 0; s < selected.size(); ++s) {
-      const auto [f, side] = all[selected[s]];
-      const auto& face = mesh.fracture_faces[f];
-      const auto means = Tip(mesh, face.cell[side], rules).face_means(face.local_face[side]);
-      for (int k = 0; k < Tip::n_face; ++k)
-        for (int i = 0; i < dim; ++i)
-          host(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
-              (side == mesh::plus ? face.area : -face.area) * means[k] * face.frame[0][i];
-    }
-  }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
+/// Part of dW_f of the tip functions on a side: [entity of Loop::tip_sides, node * dim + component]; cells of order 1.
+View<Real**> tip_side_volumes(const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

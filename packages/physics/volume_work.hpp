@@ -1,44 +1,33 @@
-// The work of a pressure on a volume that displacements change.
+// The work of a pressure on a volume that displacements change, as terms that are compiled once for all cells.
 #pragma once
 
-#include "assembly/assembler.hpp"
+#include "assembly/term.hpp"
+
+#include <optional>
 
 namespace sprekk::physics {
 
-/// A pressure p and displacements that change the volume V it works on.
+/// A pressure p, or what acts like one, and the volume V [entity, m] that displacements u change, m being the unknowns
+/// of u that an entity has.
 ///
-/// | symbol    | shape          | unit  |                                                        |
-/// | x         | displacements [m], p | m, Pa | unknowns                                         |
-/// | r         | forces [m], dV/dt    | N, m^3/s (2D: m^2/s) | -(p - p_0) dV/du, rate V          |
-/// | volume    | [entity, m]    | m^2   | dV/du                                                  |
-/// | reference | [entity]       | Pa    | p_0; empty: zero                                       |
-/// | rate      |                | 1/s   | of assembly::State                                     |
-template <class... Displacements>
-struct VolumeWork {
-  using Columns = assembly::Slots<Displacements..., assembly::Slot<1, 1>>;
-  using Rows = Columns;
-  static constexpr int m = Columns::size - 1, last = sizeof...(Displacements);
-  static constexpr bool couples(int row, int column) { return (row == last) != (column == last); }
+/// | symbol    | shape       | unit          |                          |
+/// | loop      |             |               | its entities             |
+/// | u         |             | m             | block of displacements   |
+/// | p         |             | Pa            | block of the pressure    |
+/// | volume    | [entity, m] | m^2           | dV/du                    |
+/// | reference | [entity]    | Pa            | p_0; empty: zero         |
+struct VolumeCoupling {
+  assembly::Loop loop;
+  int u, p;
   View<Real**> volume;
   ConstView<Real*> reference = {};
-  Real rate = 0;
-
-  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1], Real (&r)[m + 1]) const {
-    const Real p = x[m] - (reference.extent(0) > 0 ? reference(e) : 0);
-    r[m] = 0;
-    for (int k = 0; k < m; ++k) {
-      r[k] = -volume(e, k) * p;
-      r[m] += rate * volume(e, k) * x[k];
-    }
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[m + 1], Real (&J)[m + 1][m + 1]) const {
-    for (auto& row : J)
-      for (Real& value : row) value = 0;
-    for (int k = 0; k < m; ++k) {
-      J[k][m] = -volume(e, k);
-      J[m][k] = rate * volume(e, k);
-    }
-  }
 };
+
+/// Rows of u: -(p - p_0) dV/du, N; row of p: rate V, m^3/s (2D: m^2/s). `rate` is that of the state, unless given.
+assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& coupling, bool keep,
+                                std::optional<Real> rate = {});
+
+/// The rows of u alone.
+assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& coupling, bool keep);
 
 }  // namespace sprekk::physics

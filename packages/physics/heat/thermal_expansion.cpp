@@ -1,9 +1,11 @@
 #include "physics/heat/thermal_expansion.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "physics/coupling_volumes.hpp"
+#include "physics/volume_work.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,36 +15,11 @@ namespace sprekk::physics {
 
 using assembly::Loop;
 using assembly::Slot;
-using mesh::Shape;
 
 namespace {
 
-/// | symbol    | shape          | unit |                                                |
-/// | x         | 1              | K    | T of the cell                                  |
-/// | r         | m              | N    | -(T - T_0) dV/du                               |
-/// | volume    | [entity, m]    | N/K  | dV/du (2D: N/(m K))                            |
-/// | reference | [entity]       | K    | T_0                                            |
-template <class Displacements>
-struct ThermalLoad {
-  using Columns = assembly::Slots<Slot<1, 1>>;
-  using Rows = assembly::Slots<Displacements>;
-  static constexpr int m = Rows::size;
-  View<Real**> volume;
-  ConstView<Real*> reference;
-
-  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1], Real (&r)[m]) const {
-    for (int k = 0; k < m; ++k) r[k] = -volume(e, k) * (x[0] - reference(e));
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[1], Real (&J)[m][1]) const {
-    for (int k = 0; k < m; ++k) J[k][0] = -volume(e, k);
-  }
-};
-
-template <Shape shape>
 class ThermalStress final : public assembly::Module {
  public:
-  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-
   ThermalStress(const mesh::Mesh& mesh, ThermalStressParameters parameters)
       : parameters_(std::move(parameters)),
         fractures_(!mesh.fracture_names.empty()),
@@ -70,28 +47,34 @@ class ThermalStress final : public assembly::Module {
       reference.push_back(initial(c));
       largest_ = std::max(largest_, this->stiffness(c));
     }
-    cells_.bind(context, Loop::cells, "displacement", cell_volumes<shape>(*mesh_, stiffness), reference);
+    const auto load = [&](Loop loop, const char* displacement, const View<Real**>& volume,
+                          const std::vector<Real>& start) {
+      terms_.push_back(make_volume_load(context,
+                                        {loop, context.field(displacement), temperature_, volume,
+                                         assembly::to_device(start, "temperature at the start")},
+                                        false));
+    };
+    load(Loop::cells, "displacement", cell_volumes(*mesh_, stiffness), reference);
     if (fractures_) {
       std::vector<Real> of_side;
       for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
         of_side.push_back(reference[mesh_->fracture_faces[f].cell[side]]);
-      bubbles_.bind(context, Loop::fracture_sides, "side bubble", bubble_volumes<shape>(*mesh_, stiffness), of_side);
+      load(Loop::fracture_sides, "side bubble", bubble_volumes(*mesh_, stiffness), of_side);
     }
     if (tips_) {
       std::vector<Real> of_cell;
       for (const LocalIndex cell : assembly::tip_cells(*mesh_)) of_cell.push_back(reference[cell]);
-      tip_cells_.bind(context, Loop::tip_cells, "tip displacement", tip_cell_volumes<shape>(*mesh_, stiffness),
-                      of_cell);
+      load(Loop::tip_cells, "tip displacement", tip_cell_volumes(*mesh_, stiffness), of_cell);
     }
     reference_ = std::move(reference);
     find_sizes();
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    for_each_part([&](const auto& part) { part.assembler->add_residual(part.op, state, r); });
+    for (const auto& term : terms_) term.add_residual(state, r);
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    for_each_part([&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
+    for (const auto& term : terms_) term.add_jacobian(state, J);
   }
 
   /// What the largest change of temperature makes of a stress.
@@ -117,28 +100,6 @@ class ThermalStress final : public assembly::Module {
   }
 
  private:
-  template <class Displacements>
-  struct Part {
-    using Op = ThermalLoad<Displacements>;
-    Op op;
-    std::unique_ptr<assembly::Assembler<Op>> assembler;
-
-    void bind(const assembly::Context& context, Loop loop, const char* displacement, const View<Real**>& volume,
-              const std::vector<Real>& reference) {
-      op = {volume, assembly::to_device(reference, "temperature at the start")};
-      assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, std::vector{context.field(displacement)},
-                                                            std::vector{context.field("temperature")},
-                                                            assembly::Assembler<Op>::Positions::once);
-    }
-  };
-
-  template <class Visit>
-  void for_each_part(const Visit& visit) const {
-    visit(cells_);
-    if (fractures_) visit(bubbles_);
-    if (tips_) visit(tip_cells_);
-  }
-
   /// 3 K alpha_T, Pa/K
   Real stiffness(LocalIndex cell) const {
     const auto& law = parameters_.elasticity.of_cell(*mesh_, cell);
@@ -170,8 +131,7 @@ class ThermalStress final : public assembly::Module {
   std::vector<Real> reference_;  // [local cell] T_0, K
   Real largest_ = 0;             // 3 K alpha_T, Pa/K
   Real spread_ = 0;              // of T_0, K
-  Part<Slot<n, dim>> cells_, tip_cells_;
-  Part<Slot<1, dim>> bubbles_;
+  std::vector<assembly::Term> terms_;
 };
 
 /// | symbol | shape           | unit     |                                      |
@@ -260,9 +220,7 @@ class PoreExpansion final : public assembly::Module {
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    return std::make_unique<ThermalStress<s()>>(mesh, std::move(parameters));
-  });
+  return std::make_unique<ThermalStress>(mesh, std::move(parameters));
 }
 
 std::unique_ptr<assembly::Module> make_pore_expansion(PoreExpansionParameters parameters) {

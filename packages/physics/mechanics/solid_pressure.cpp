@@ -1,5 +1,6 @@
 #include "physics/mechanics/solid_pressure.hpp"
 
+#include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
@@ -54,11 +55,29 @@ struct BubbleBetween {
   }
 };
 
+/// Integrals over a cell of the normal bubble of a face: its outward volume, and its energy.
 template <Shape shape>
+std::array<Real, 2> bubble_of(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const laws::Elasticity& law) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  using Cell = assembly::ReferenceCell<shape>;
+  Real X[n][dim], dN[n][dim], db[dim], g[dim];
+  assembly::gather_host<shape>(mesh, cell, X);
+  const auto area = mesh::area_vector(mesh::face_corners(mesh, cell, local_face));
+  Real volume = 0, energy = 0;
+  assembly::for_each_cell_point<shape>(mesh, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
+    Cell::gradients(xi, dN);
+    Cell::bubble(local_face, xi, db);
+    assembly::CellPoint<shape>(X, dN).gradient(db, g);
+    for (int i = 0; i < dim; ++i) volume += part * g[i] * area[i] / mesh::norm(area);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        energy += part * law.stiffness(g, g, i, j) * area[i] * area[j] / mesh::dot(area, area);
+  });
+  return {volume, energy};
+}
+
 class SolidPressure final : public assembly::Module {
  public:
-  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape), n_faces = mesh::n_faces(shape);
-
   SolidPressure(const mesh::Mesh& mesh, SolidPressureParameters parameters)
       : parameters_(std::move(parameters)),
         fractures_(!mesh.fracture_names.empty()),
@@ -95,13 +114,12 @@ class SolidPressure final : public assembly::Module {
     const auto pressed = [this](LocalIndex cell) { return modulus(cell) > 0 ? 1 : 0; };
     add<PressedCell>(context, Loop::cells, {p_}, pressed_cells());
     add<BubbleBetween>(context, Loop::neighbours, {p_}, bubbles_between());
-    add<OfNodes>(context, Loop::cells, {u, p_}, work<OfNodes>(cell_volumes<shape>(*mesh_, pressed)));
-    if (fractures_)
-      add<OfBubble>(context, Loop::fracture_sides, {context.field("side bubble"), p_},
-                    work<OfBubble>(bubble_volumes<shape>(*mesh_, pressed)));
-    if (tips_)
-      add<OfNodes>(context, Loop::tip_cells, {context.field("tip displacement"), p_},
-                   work<OfNodes>(tip_cell_volumes<shape>(*mesh_, pressed)));
+    const auto work = [&](Loop loop, int block, const View<Real**>& volume) {
+      terms_.push_back(make_volume_work(context, {loop, block, p_, volume}, false, -1));  // symmetric
+    };
+    work(Loop::cells, u, cell_volumes(*mesh_, pressed));
+    if (fractures_) work(Loop::fracture_sides, context.field("side bubble"), bubble_volumes(*mesh_, pressed));
+    if (tips_) work(Loop::tip_cells, context.field("tip displacement"), tip_cell_volumes(*mesh_, pressed));
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -128,16 +146,6 @@ class SolidPressure final : public assembly::Module {
   }
 
  private:
-  using OfNodes = VolumeWork<Slot<n, dim>>;
-  using OfBubble = VolumeWork<Slot<1, dim>>;
-
-  template <class Op>
-  static Op work(const View<Real**>& volume) {
-    Op op;
-    op.volume = volume;
-    op.rate = -1;  // symmetric
-    return op;
-  }
   template <class Op>
   void add(const assembly::Context& context, Loop loop, const std::vector<int>& blocks, Op op) {
     terms_.emplace_back(context, loop, blocks, blocks, false, [op](const auto&) { return op; });
@@ -164,11 +172,13 @@ class SolidPressure final : public assembly::Module {
     std::vector<Real> give;
     for (const auto& pair : assembly::neighbours(*mesh_)) {
       const auto [a, b] = pair;
-      constexpr bool is_stiff = mesh::order(shape) == 1 && mesh::is_simplex(shape);  // without bubbles
-      constexpr Real weight = is_stiff ? 1.0 / n_faces : 1;
+      const bool is_stiff = mesh::order(mesh_->shape) == 1 && mesh::is_simplex(mesh_->shape);  // without bubbles
+      const Real weight = is_stiff ? 1.0 / mesh::n_faces(mesh_->shape) : 1;
       Real volume = 0, alpha = 0;
       for (const LocalIndex cell : pair) {
-        const auto [outward, energy] = bubble_of(cell, face_between(cell, pair));
+        const auto [outward, energy] = mesh::for_shape(mesh_->shape, [&](auto shape) {
+          return bubble_of<shape()>(*mesh_, cell, face_between(cell, pair), law(cell));
+        });
         volume = outward;
         alpha += weight * energy;
       }
@@ -180,30 +190,12 @@ class SolidPressure final : public assembly::Module {
 
   /// The number of the face that both have, in the first.
   int face_between(LocalIndex cell, const std::array<LocalIndex, 2>& pair) const {
+    const int n_faces = mesh::n_faces(mesh_->shape);
     const LocalIndex* const of[] = {&mesh_->facets->of_cell[pair[0] * n_faces],
                                     &mesh_->facets->of_cell[pair[1] * n_faces]};
     const int own = cell == pair[0] ? 0 : 1;
     return static_cast<int>(std::find_first_of(of[own], of[own] + n_faces, of[1 - own], of[1 - own] + n_faces) -
                             of[own]);
-  }
-
-  /// Integrals over a cell of the normal bubble of a face: its outward volume, and its energy.
-  std::array<Real, 2> bubble_of(LocalIndex cell, int local_face) const {
-    using Cell = assembly::ReferenceCell<shape>;
-    Real X[n][dim], dN[n][dim], db[dim], g[dim];
-    assembly::gather_host<shape>(*mesh_, cell, X);
-    const auto area = mesh::area_vector(mesh::face_corners(*mesh_, cell, local_face));
-    Real volume = 0, energy = 0;
-    assembly::for_each_cell_point<shape>(*mesh_, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
-      Cell::gradients(xi, dN);
-      Cell::bubble(local_face, xi, db);
-      assembly::CellPoint<shape>(X, dN).gradient(db, g);
-      for (int i = 0; i < dim; ++i) volume += part * g[i] * area[i] / mesh::norm(area);
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j)
-          energy += part * law(cell).stiffness(g, g, i, j) * area[i] * area[j] / mesh::dot(area, area);
-    });
-    return {volume, energy};
   }
 
   SolidPressureParameters parameters_;
@@ -225,9 +217,7 @@ VolumetricSplit::VolumetricSplit(const laws::Elasticity& law, int order) : elast
 }
 
 std::unique_ptr<assembly::Module> make_solid_pressure(const mesh::Mesh& mesh, SolidPressureParameters parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    return std::make_unique<SolidPressure<s()>>(mesh, std::move(parameters));
-  });
+  return std::make_unique<SolidPressure>(mesh, std::move(parameters));
 }
 
 }  // namespace sprekk::physics

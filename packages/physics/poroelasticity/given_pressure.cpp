@@ -12,7 +12,6 @@ namespace sprekk::physics {
 
 using assembly::Loop;
 using assembly::Slot;
-using mesh::Shape;
 
 namespace {
 
@@ -38,34 +37,48 @@ struct Push {
   }
 };
 
-/// One operator over one loop.
-template <class Op>
-struct Part {
-  Op op;
-  std::unique_ptr<assembly::Assembler<Op>> assembler;
+/// The push of the pressures of rock, or of fractures, over one loop.
+class Part {
+ public:
+  explicit Part(bool is_of_rock) : is_of_rock(is_of_rock) {}
+  virtual ~Part() = default;
+  const bool is_of_rock;
 
-  void bind(const assembly::Context& context, Loop loop, const std::vector<int>& fields, const View<Real**>& volume,
-            const std::vector<LocalIndex>& of) {
-    op.volume = volume;
-    op.of = assembly::to_device(of, "number of the pressure");
-    assembler = std::make_unique<assembly::Assembler<Op>>(context, loop, fields, fields,
-                                                          assembly::Assembler<Op>::Positions::once);
+  virtual void set(const ConstView<Real*>& pressure) = 0;
+  virtual void add_residual(const assembly::State& state, const assembly::Rows& r) const = 0;
+  /// [number of the pressure] m^3 (2D: m^2)
+  virtual void add_volumes(const assembly::State& state, const View<Real*>& volumes) const = 0;
+};
+
+template <class Op>
+class PartOf final : public Part {
+ public:
+  PartOf(bool is_of_rock, const assembly::Context& context, Loop loop, const std::vector<int>& fields,
+         const View<Real**>& volume, const std::vector<LocalIndex>& of)
+      : Part(is_of_rock),
+        op_{volume, assembly::to_device(of, "number of the pressure"), {}},
+        assembler_(context, loop, fields, fields, assembly::Assembler<Op>::Positions::once) {}
+
+  void set(const ConstView<Real*>& pressure) override { op_.pressure = pressure; }
+  void add_residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_.add_residual(op_, state, r);
   }
-  void add_volumes(const assembly::State& state, const View<Real*>& volumes) const {
-    const auto volume = op.volume;
-    const auto of = op.of;
-    assembler->for_each(
-        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::m]) {
+  void add_volumes(const assembly::State& state, const View<Real*>& volumes) const override {
+    const auto volume = op_.volume;
+    const auto of = op_.of;
+    assembler_.for_each(
+        op_, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::m]) {
           for (int k = 0; k < Op::m; ++k) Kokkos::atomic_add(&volumes(of(e)), volume(e, k) * x[k]);
         });
   }
+
+ private:
+  Op op_;
+  assembly::Assembler<Op> assembler_;
 };
 
-template <Shape shape>
 class Given final : public GivenPressure {
  public:
-  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-
   Given(const mesh::Mesh& mesh, GivenPressureParameters parameters)
       : parameters_(std::move(parameters)),
         fractures_(!mesh.fracture_names.empty()),
@@ -73,12 +86,12 @@ class Given final : public GivenPressure {
 
   std::string name() const override { return "given pressure"; }
 
-  assembly::Declaration declare(const mesh::Mesh&) const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
     if (fractures_) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
     if (tips_) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
-    d.outputs = {{{"gained pore volume", dim == 2 ? "m^2" : "m^3", fields::Entity::cell, 1},
+    d.outputs = {{{"gained pore volume", mesh.dim() == 2 ? "m^2" : "m^3", fields::Entity::cell, 1},
                   [this](const auto& state) { return volumes(state, true); }}};
     if (fractures_)
       d.outputs.push_back({{"widening", "m", fields::Entity::fracture_face, 1}, [this](const auto& state) {
@@ -103,18 +116,22 @@ class Given final : public GivenPressure {
     }
     for (const LocalIndex s : assembly::tip_sides(*mesh_)) faces_of_tips.push_back(faces[s]);
     const int u = context.field("displacement");
-    cells_.bind(context, Loop::cells, {u}, cell_volumes<shape>(*mesh_, biot), cells);
-    if (fractures_) {
-      const int beta = context.field("side bubble");
-      bubbles_.bind(context, Loop::fracture_sides, {beta}, bubble_volumes<shape>(*mesh_, biot), cells_of_sides);
-      sides_.bind(context, Loop::fracture_sides, {u, beta}, side_volumes<shape>(*mesh_), faces);
-    }
-    if (tips_) {
-      const int q = context.field("tip displacement");
-      tip_cells_.bind(context, Loop::tip_cells, {q}, tip_cell_volumes<shape>(*mesh_, biot),
-                      assembly::tip_cells(*mesh_));
-      tip_sides_.bind(context, Loop::tip_sides, {q}, tip_side_volumes<shape>(*mesh_), faces_of_tips);
-    }
+    mesh::for_shape(mesh_->shape, [&](auto shape) {
+      using Nodes = Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>;
+      using Bubble = Slot<1, mesh::dimension(shape())>;
+      add<Push<Nodes>>(true, context, Loop::cells, {u}, cell_volumes(*mesh_, biot), cells);
+      if (fractures_) {
+        const int beta = context.field("side bubble");
+        add<Push<Bubble>>(true, context, Loop::fracture_sides, {beta}, bubble_volumes(*mesh_, biot), cells_of_sides);
+        add<Push<Nodes, Bubble>>(false, context, Loop::fracture_sides, {u, beta}, side_volumes(*mesh_), faces);
+      }
+      if (tips_) {
+        const int q = context.field("tip displacement");
+        add<Push<Nodes>>(true, context, Loop::tip_cells, {q}, tip_cell_volumes(*mesh_, biot),
+                         assembly::tip_cells(*mesh_));
+        add<Push<Nodes>>(false, context, Loop::tip_sides, {q}, tip_side_volumes(*mesh_), faces_of_tips);
+      }
+    });
     set(std::vector<Real>(mesh_->n_cells(), 0), std::vector<Real>(mesh_->n_fracture_faces(), 0));
   }
 
@@ -127,11 +144,11 @@ class Given final : public GivenPressure {
       for (const Real p : *all) largest_ = std::max(largest_, std::abs(p));
     const auto in_rock = assembly::to_device(rock, "pressure"),
                in_fractures = assembly::to_device(fractures, "pressure");
-    for_each(*this, [&](auto& part, bool of_rock) { part.op.pressure = of_rock ? in_rock : in_fractures; });
+    for (const auto& part : parts_) part->set(part->is_of_rock ? in_rock : in_fractures);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    for_each(*this, [&](const auto& part, bool) { part.assembler->add_residual(part.op, state, r); });
+    for (const auto& part : parts_) part->add_residual(state, r);
   }
   void jacobian(const assembly::State&, fields::BlockMatrix&) const override {}
   bool constant_load() const override { return false; }
@@ -141,44 +158,29 @@ class Given final : public GivenPressure {
   /// V_K of owned cells, or W_f of owned fracture faces.
   std::vector<Real> volumes(const assembly::State& state, bool of_rock) const {
     const View<Real*> sums("volumes", of_rock ? mesh_->n_cells() : mesh_->n_fracture_faces());
-    for_each(*this, [&](const auto& part, bool is_of_rock) {
-      if (is_of_rock == of_rock) part.add_volumes(state, sums);
-    });
+    for (const auto& part : parts_)
+      if (part->is_of_rock == of_rock) part->add_volumes(state, sums);
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), sums);
     return {host.data(), host.data() + (of_rock ? mesh_->n_owned_cells : mesh_->n_owned_fracture_faces)};
   }
 
-  using Nodes = Slot<n, dim>;
-  using Bubble = Slot<1, dim>;
-  /// Calls visit(part, it is of the rock) for all parts that there are.
-  template <class Self, class Visit>
-  static void for_each(Self& self, const Visit& visit) {
-    visit(self.cells_, true);
-    if (self.fractures_) {
-      visit(self.bubbles_, true);
-      visit(self.sides_, false);
-    }
-    if (self.tips_) {
-      visit(self.tip_cells_, true);
-      visit(self.tip_sides_, false);
-    }
+  template <class Op>
+  void add(bool is_of_rock, const assembly::Context& context, Loop loop, const std::vector<int>& fields,
+           const View<Real**>& volume, const std::vector<LocalIndex>& of) {
+    parts_.push_back(std::make_unique<PartOf<Op>>(is_of_rock, context, loop, fields, volume, of));
   }
 
   GivenPressureParameters parameters_;
   bool fractures_, tips_;  // the mesh has some; enriched ones
   RCP<const mesh::Mesh> mesh_;
   Real largest_ = 0;  // on this rank, Pa
-  Part<Push<Nodes>> cells_, tip_cells_, tip_sides_;
-  Part<Push<Bubble>> bubbles_;
-  Part<Push<Nodes, Bubble>> sides_;
+  std::vector<std::unique_ptr<Part>> parts_;
 };
 
 }  // namespace
 
 std::unique_ptr<GivenPressure> make_given_pressure(const mesh::Mesh& mesh, GivenPressureParameters parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<GivenPressure> {
-    return std::make_unique<Given<s()>>(mesh, std::move(parameters));
-  });
+  return std::make_unique<Given>(mesh, std::move(parameters));
 }
 
 void set_fluid_pressure(assembly::System& system, const std::vector<Real>& rock, const std::vector<Real>& fractures) {

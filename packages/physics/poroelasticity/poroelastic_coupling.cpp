@@ -1,11 +1,12 @@
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 
-#include "assembly/assembler.hpp"
+#include "assembly/geometry.hpp"
+#include "assembly/term.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/coupling_volumes.hpp"
 #include "physics/hybrid_diffusion.hpp"
 #include "physics/volume_work.hpp"
-#include "physics/coupling_volumes.hpp"
 
 #include <algorithm>
 
@@ -49,14 +50,11 @@ struct Opening {
 
 /// The flow of a pressure's rate of change against oscillation: T(beta)/dt (p - p_j - (p_0 - p_0j)), see make_. T is of
 /// beta, zero in rows of fractures.
-template <Shape shape>
-using StabilisedCell = KeptFlow<mesh::n_faces(shape), assembly::Slots<Slot<1, 1>, Slot<mesh::n_faces(shape), 1>>>;
+template <int n_faces>
+using StabilisedCell = KeptFlow<n_faces, assembly::Slots<Slot<1, 1>, Slot<n_faces, 1>>>;
 
-template <Shape shape>
 class PoroelasticCoupling final : public assembly::Module {
  public:
-  static constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape), n_faces = mesh::n_faces(shape);
-
   PoroelasticCoupling(const mesh::Mesh& mesh, PoroelasticCouplingParameters parameters)
       : parameters_(std::move(parameters)),
         fractures_(!mesh.fracture_names.empty()),
@@ -103,8 +101,8 @@ class PoroelasticCoupling final : public assembly::Module {
 
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    add_rates(state, r, state.rate);
-    for_each_opening(*this, [&](const auto& part) { part.assembler->add_residual(part.op, state, r); });
+    for (const auto& term : rates_) term.add_residual(state, r);
+    for (const auto& term : openings_) term.add_residual(state, r);
     for (int k = 0; k < 2; ++k) {
       const auto rows = r[pressures_[k]];
       const auto old = state.history[k];
@@ -116,7 +114,7 @@ class PoroelasticCoupling final : public assembly::Module {
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override;
   void artificial(const assembly::State& state, const assembly::Rows& rows) const override {
-    stabilised_.assembler->add_residual(stabilised_.at(1), state, rows);
+    stabilisation_.add_residual(with_rate(state, 1), rows);
   }
   void add_schur(const assembly::State& state, const assembly::Rows& diagonal) const override {
     const auto rows = diagonal[pressures_[0]];
@@ -138,7 +136,7 @@ class PoroelasticCoupling final : public assembly::Module {
   void commit(assembly::State& state) const override {
     assembly::Rows volumes;
     for (const auto& x : state.x) volumes.emplace_back("volumes", x.extent(0));
-    add_rates(state, volumes, 1);
+    for (const auto& term : rates_) term.add_residual(with_rate(state, 1), volumes);
     for (int k = 0; k < 2; ++k) {
       const auto kept = state.history[k];
       const auto now = volumes[pressures_[k]];
@@ -148,45 +146,9 @@ class PoroelasticCoupling final : public assembly::Module {
   }
 
  private:
-  using Nodes = Slot<n, dim>;
-  using OfNodes = VolumeWork<Nodes>;
-  using OfBubble = VolumeWork<Slot<1, dim>>;
-  using OfSide = Opening<Nodes, Slot<1, dim>>;
-  using Stabilised = StabilisedCell<shape>;
-  template <class Op>
-  struct Part {
-    Op op;
-    std::unique_ptr<assembly::Assembler<Op>> assembler;
-
-    void bind(const assembly::Context& context, Loop loop, const std::vector<int>& rows,
-              const std::vector<int>& columns) {
-      using Assembler = assembly::Assembler<Op>;
-      assembler = std::make_unique<Assembler>(context, loop, rows, columns, Assembler::Positions::keep);
-    }
-    Op at(Real rate) const {
-      Op moved = op;
-      moved.rate = rate;
-      return moved;
-    }
-  };
-
-  /// Calls visit(part) for all parts with rates that there are.
-  template <class Self, class Visit>
-  static void for_each_rate(Self& self, const Visit& visit) {
-    visit(self.cells_);
-    visit(self.stabilised_);
-    if (self.fractures_) visit(self.bubbles_);
-    if (self.tips_) visit(self.tip_cells_);
-  }
-  /// The same for those of fractures.
-  template <class Self, class Visit>
-  static void for_each_opening(Self& self, const Visit& visit) {
-    if (self.fractures_) visit(self.sides_);
-    if (self.tips_) visit(self.tip_sides_);
-  }
-
-  void add_rates(const assembly::State& state, const assembly::Rows& r, Real rate) const {
-    for_each_rate(*this, [&](const auto& part) { part.assembler->add_residual(part.at(rate), state, r); });
+  static assembly::State with_rate(assembly::State state, Real rate) {
+    state.rate = rate;
+    return state;
   }
 
   Real initial(const mesh::Vector& x) const { return parameters_.initial(x, 0); }
@@ -200,67 +162,75 @@ class PoroelasticCoupling final : public assembly::Module {
     return biot(cell) * biot(cell) / (law.lambda + 2 * law.G);
   }
 
-  void build_cells();
-  void build_stabilisation();
-  void build_sides();
-  void build_tips();
+  void add_cells(const assembly::Context& context);
+  void add_work(const assembly::Context& context, Loop loop, const char* displacement, const View<Real**>& volume,
+                const std::vector<Real>& reference);
+  void add_stabilisation(const assembly::Context& context);
+  void add_sides(const assembly::Context& context);
+  void add_tips(const assembly::Context& context);
+  template <Shape shape>
+  StabilisedCell<mesh::n_faces(shape)> stabilised() const;
 
   PoroelasticCouplingParameters parameters_;
   bool fractures_, tips_;  // the mesh has some; enriched ones
   RCP<const mesh::Mesh> mesh_;
   std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
   ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: what fixes the stress, of V_K
-  Part<OfNodes> cells_, tip_cells_;
-  Part<Opening<Nodes>> tip_sides_;
-  Part<OfBubble> bubbles_;
-  Part<OfSide> sides_;
-  Part<Stabilised> stabilised_;
+  std::vector<assembly::Term> rates_, openings_;  // the former in proportion to the rate of the state
+  assembly::Term stabilisation_;                  // one of them
 };
 
-template <Shape shape>
-void PoroelasticCoupling<shape>::bind(const assembly::Context& context) {
+void PoroelasticCoupling::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
-  const int u = context.field("displacement");
-  const auto [p, trace] = pressures_ = {context.field("pressure"), context.field("face pressure")};
-  cells_.bind(context, Loop::cells, {u, p}, {u, p});
-  stabilised_.bind(context, Loop::cells, {p, trace}, {p, trace});
-  build_cells();
-  build_stabilisation();
-  if (!fractures_) return;
-  const int beta = context.field("side bubble"), b = context.field("widening");
-  bubbles_.bind(context, Loop::fracture_sides, {beta, p}, {beta, p});
-  sides_.bind(context, Loop::fracture_sides, {u, beta, b}, {u, beta, trace, b});
-  build_sides();
-  if (!tips_) return;
-  const int q = context.field("tip displacement");
-  tip_cells_.bind(context, Loop::tip_cells, {q, p}, {q, p});
-  tip_sides_.bind(context, Loop::tip_sides, {q, b}, {q, trace, b});
-  build_tips();
+  pressures_ = {context.field("pressure"), context.field("face pressure")};
+  add_cells(context);
+  add_stabilisation(context);
+  if (fractures_) add_sides(context);
+  if (tips_) add_tips(context);
 }
 
-template <Shape shape>
-void PoroelasticCoupling<shape>::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
-  for_each_rate(*this, [&](const auto& part) { part.assembler->add_jacobian(part.at(state.rate), state, J); });
-  for_each_opening(*this, [&](const auto& part) { part.assembler->add_jacobian(part.op, state, J); });
+void PoroelasticCoupling::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
+  for (const auto& term : rates_) term.add_jacobian(state, J);
+  for (const auto& term : openings_) term.add_jacobian(state, J);
 }
 
-template <Shape shape>
-void PoroelasticCoupling<shape>::build_cells() {
-  cells_.op.volume = cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+void PoroelasticCoupling::add_cells(const assembly::Context& context) {
   std::vector<Real> reference, schur;
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     const auto [volume, mean] = assembly::cell_mean(*mesh_, c, [&](const auto& x) { return initial(x); });
     reference.push_back(mean);
     if (c < mesh_->n_owned_cells) schur.push_back(softness(c) * volume);
   }
-  cells_.op.reference = assembly::to_device(reference, "initial pressure");
   schur_ = assembly::to_device(schur, "schur");
+  const auto volume = cell_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  add_work(context, Loop::cells, "displacement", volume, reference);
 }
 
-/// Faces of fractures get no share: what would flow through them is spread over the others.
+void PoroelasticCoupling::add_work(const assembly::Context& context, Loop loop, const char* displacement,
+                                   const View<Real**>& volume, const std::vector<Real>& reference) {
+  rates_.push_back(make_volume_work(
+      context,
+      {loop, context.field(displacement), pressures_[0], volume, assembly::to_device(reference, "initial pressure")},
+      true));
+}
+
+void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
+  const std::vector<int> blocks(pressures_.begin(), pressures_.end());
+  stabilisation_ = mesh::for_corners(mesh_->shape, [&](auto shape) {
+    return assembly::Term(context, Loop::cells, blocks, blocks, true,
+                          [op = stabilised<shape()>()](const assembly::State& state) {
+                            auto at = op;
+                            at.rate = state.rate;
+                            return at;
+                          });
+  });
+  rates_.push_back(stabilisation_);
+}
+
+/// Faces of fractures get no share: the flow through them is spread over the others.
 template <Shape shape>
-void PoroelasticCoupling<shape>::build_stabilisation() {
-  constexpr int n_corners = mesh::n_corners(shape);
+StabilisedCell<mesh::n_faces(shape)> PoroelasticCoupling::stabilised() const {
+  constexpr int dim = mesh::dimension(shape), n_corners = mesh::n_corners(shape), n_faces = mesh::n_faces(shape);
   std::vector<int> closed(mesh_->n_cells() * n_faces, 0);
   for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
     const auto& face = mesh_->fracture_faces[f];
@@ -270,7 +240,7 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
   const View<Real**> T_device("T", mesh_->n_cells(), n_faces * n_faces),
       lift_device("lift", falls ? mesh_->n_cells() : 0, n_faces);
   const auto T = Kokkos::create_mirror_view(T_device), lift = Kokkos::create_mirror_view(lift_device);
-  Real X[n][dim];
+  Real X[n_corners][dim];
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     assembly::gather_host<shape>(*mesh_, c, X);
     const CellFaces<shape> faces(X);
@@ -286,45 +256,52 @@ void PoroelasticCoupling<shape>::build_stabilisation() {
     for (int i = 0; i < n_faces; ++i)
       for (int j = 0; j < n_faces; ++j) T(c, i * n_faces + j) = matrix.T[i][j];
     const Real mean = falls ? mean_initial(c) : 0;
-    for (int j = 0; j < n_faces && falls; ++j) {
+    for (int j = 0; j < n_faces && falls; ++j)
       lift(c, j) = assembly::face_mean(*mesh_, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
-    }
   }
   Kokkos::deep_copy(T_device, T);
   Kokkos::deep_copy(lift_device, lift);
-  stabilised_.op = {.T = T_device, .lift = lift_device};
+  return {.T = T_device, .lift = lift_device};
 }
 
-template <Shape shape>
-void PoroelasticCoupling<shape>::build_sides() {
-  bubbles_.op.volume = bubble_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
-  sides_.op.volume = side_volumes<shape>(*mesh_);
+void PoroelasticCoupling::add_sides(const assembly::Context& context) {
+  const int u = context.field("displacement"), beta = context.field("side bubble"), b = context.field("widening");
   std::vector<Real> reference, halves;
   for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
     reference.push_back(mean_initial(mesh_->fracture_faces[f].cell[side]));
     halves.push_back(mesh_->fracture_faces[f].area / 2);
   }
-  bubbles_.op.reference = assembly::to_device(reference, "initial pressure");
-  sides_.op.part = assembly::to_device(halves, "half of the area");
+  const auto volume = bubble_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  add_work(context, Loop::fracture_sides, "side bubble", volume, reference);
+  openings_.push_back(mesh::for_shape(mesh_->shape, [&](auto shape) {
+    constexpr int dim = mesh::dimension(shape());
+    const Opening<Slot<mesh::n_nodes(shape()), dim>, Slot<1, dim>> op{side_volumes(*mesh_),
+                                                                      assembly::to_device(halves, "half of the area")};
+    return assembly::Term(context, Loop::fracture_sides, {u, beta, b}, {u, beta, pressures_[1], b}, true,
+                          [op](const assembly::State&) { return op; });
+  }));
 }
 
-template <Shape shape>
-void PoroelasticCoupling<shape>::build_tips() {
-  tip_cells_.op.volume = tip_cell_volumes<shape>(*mesh_, [&](LocalIndex cell) { return biot(cell); });
-  tip_sides_.op.volume = tip_side_volumes<shape>(*mesh_);
+void PoroelasticCoupling::add_tips(const assembly::Context& context) {
+  const int q = context.field("tip displacement"), b = context.field("widening");
   std::vector<Real> reference;
   for (const LocalIndex cell : assembly::tip_cells(*mesh_)) reference.push_back(mean_initial(cell));
-  tip_cells_.op.reference = assembly::to_device(reference, "initial pressure");
-  tip_sides_.op.part = assembly::to_device(std::vector<Real>(tip_sides_.op.volume.extent(0), 0), "none of the area");
+  const auto volume = tip_cell_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  add_work(context, Loop::tip_cells, "tip displacement", volume, reference);
+  const auto of_sides = tip_side_volumes(*mesh_);
+  const auto part = assembly::to_device(std::vector<Real>(of_sides.extent(0), 0), "none of the area");
+  openings_.push_back(mesh::for_corners(mesh_->shape, [&](auto shape) {
+    const Opening<Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>> op{of_sides, part};
+    return assembly::Term(context, Loop::tip_sides, {q, b}, {q, pressures_[1], b}, true,
+                          [op](const assembly::State&) { return op; });
+  }));
 }
 
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
                                                             PoroelasticCouplingParameters parameters) {
-  return mesh::for_shape(mesh.shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    return std::make_unique<PoroelasticCoupling<s()>>(mesh, std::move(parameters));
-  });
+  return std::make_unique<PoroelasticCoupling>(mesh, std::move(parameters));
 }
 
 }  // namespace sprekk::physics
