@@ -8,6 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
+from matplotlib.transforms import Bbox
 
 INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
 LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
@@ -209,6 +210,13 @@ def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
 
 
 def save(figure, picture, dpi):
-    """Writes a PNG of what is drawn, with the labels in 3D, which matplotlib leaves out of the size of axes."""
-    labels = [axis.label for ax in figure.axes if ax.name == "3d" for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]
-    figure.savefig(picture, dpi=dpi, bbox_extra_artists=figure.get_default_bbox_extra_artists() + labels)
+    """Writes a PNG of what is drawn, with the labels in 3D, which matplotlib leaves out of the size of axes. Given as its
+    bbox_extra_artists, these would be measured with all else for every one of the axes."""
+    figure.set_dpi(dpi)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # all has its place
+    renderer = figure.canvas.get_renderer()
+    labels = [axis.label.get_window_extent(renderer).transformed(figure.dpi_scale_trans.inverted())
+              for ax in figure.axes if ax.name == "3d" for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]
+    drawn = Bbox.union([figure.get_tightbbox(renderer), *labels])
+    figure.savefig(picture, dpi=dpi, bbox_inches=drawn.padded(plt.rcParams["savefig.pad_inches"]))
