@@ -8,8 +8,8 @@
                                            every command in a ```sh or ```console block of the pages ends with status 0,
                                            or N if "# exit N" follows; the lines below a command in a ```console block
                                            are lines of what it prints. Blocks after <!-- not run: REASON --> are left
-                                           out, as are the commands that build. Pages share a folder, and a scene
-                                           that several run in the same way is run once
+                                           out, as are the commands that build. Pages share a folder, and a scene that
+                                           several run or plot in the same way is run and plotted once
     check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
     check_docs.py change ROOT PAGE TARGETS...
                                            the page's ```diff block applies to a copy of the sources, the targets build
@@ -85,6 +85,7 @@ if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/a
 if [[ ${{words[0]}} == fit ]]; then exec {python} -B {root}/apps/fit --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
+REPEATED = re.compile(r"\./sprekk (run xml/\S+|plot output/\S+ --dpi \d+)")
 BUILDS = re.compile(r"\./sprekk (build|test|fuzz)\b")
 PLOT_PYTHON = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "python3"
 
@@ -168,13 +169,13 @@ def check_change(root, page, *targets):
 
 
 def check_block(page, block, folder, runs=None):
-    """Runs the commands of a block in the folder and compares what they print; `runs` keeps those of scenes in xml/."""
+    """Runs the commands of a block in the folder and compares what they print; `runs` has those that other blocks may repeat."""
     for command, expected in commands(block):
         if missing := missing_program(command):
             yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")
             continue
         done = (runs or {}).get(command) or run(command, folder)
-        if runs is not None and re.fullmatch(r"\./sprekk run xml/\S+", command):
+        if runs is not None and REPEATED.fullmatch(command):
             runs[command] = done
         status = re.search(r"# exit (\d)", command)
         if done.returncode != (int(status[1]) if status else 0):
