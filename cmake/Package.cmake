@@ -68,9 +68,13 @@ function(sprekk_package name)
 endfunction()
 
 # What tests find around them. Open MPI may run as root; it uses the memory of this machine at once instead of looking for
-# networks, ranks that wait leave the processor to others, and a single rank starts without a daemon.
+# networks, and a single rank starts without a daemon. mpirun counts one processor, so that several ranks leave it to others
+# while they wait; a single rank waits for none, but MUMPS looks for messages all the time.
 set(SPREKK_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-  OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_ess_singleton_isolated=1)
+  OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_orte_set_default_slots=1 OMPI_MCA_ess_singleton_isolated=1)
+if(CMAKE_SYSTEM_NAME STREQUAL Linux AND NOT SPREKK_SANITIZE)
+  list(APPEND SPREKK_TEST_ENVIRONMENT LD_PRELOAD=$<TARGET_FILE:sprekk_patience>)  # several ranks run beside other tests
+endif()
 
 # sprekk_test(NAME COMMAND words... [PROPERTIES name value...])
 # Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, or perf.
@@ -106,13 +110,8 @@ function(sprekk_tests name)
     target_compile_options(test_${name} PRIVATE ${SPREKK_PRECOMPILED})
   endif()
   foreach(ranks ${ARG_RANKS})
-    set(yields 1)
-    if(ranks EQUAL 1)
-      set(yields 0)  # it waits for none, but MUMPS looks for messages all the time
-    endif()
     sprekk_test(${name}.${ranks}
-      COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe --bind-to none --mca mpi_yield_when_idle ${yields} -np ${ranks}
-              $<TARGET_FILE:test_${name}>
+      COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe --bind-to none -np ${ranks} $<TARGET_FILE:test_${name}>
       PROPERTIES PROCESSORS ${ranks})
   endforeach()
 endfunction()

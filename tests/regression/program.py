@@ -9,8 +9,7 @@ from pathlib import Path
 
 # Given on the command line: the program, the folder that holds xml/, mpiexec.
 PROGRAM, ROOT, MPIEXEC = (Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]) if len(sys.argv) > 3 else (None, None, None)
-ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0",  # one rank needs no daemon of
-         "OMPI_MCA_mpi_yield_when_idle": "0"}  # Open MPI, and waits for none
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # without a daemon of Open MPI
 TIME_LIMIT = 600  # seconds; ends what hangs, on a busy machine nothing else: the call has status 124
 
 
