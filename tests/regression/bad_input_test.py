@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What is wrong with the input is told: bad_input_test.py PROGRAM ROOT MPIEXEC [all]
+"""What is wrong with the input is told: bad_input_test.py PROGRAM ROOT MPIEXEC COMMANDS
 
 Every bad input gives one message, which names the file, the place, the value and what is allowed, and an exit status; nothing
-hangs or crashes. On 3 ranks it is the same message and status: asked of each test's first, of what fails at points of a mesh
-and of what `run` refuses, with `all` of every one."""
+hangs or crashes. On 3 ranks it is the same message and status. The first of each test is also asked of the program itself;
+COMMANDS is commands/commands.cpp, which takes many of them without a new start."""
 import os
 import random
 import re
@@ -12,12 +12,12 @@ import shutil
 import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import unittest
 
 import program
 from program import ALONE, TIME_LIMIT, ProgramTest, main
+from session import Session
 
-ALL = sys.argv[4:] == ["all"]
 PUSH = "seed/push_2d.xml"
 FRACTURE = '<ParameterList name="fractures"><ParameterList name="f1"/></ParameterList>'
 SQUARES = """$MeshFormat
@@ -78,20 +78,29 @@ def replaced(text, *changes):
     return text
 
 
+SESSIONS = []
+
+
+def setUpModule():
+    for ranks in (1, 3):
+        SESSIONS.append(Session(sys.argv[4], ranks))
+        unittest.addModuleCleanup(SESSIONS[-1].close)
+
+
 class BadInput(ProgramTest):
     def refuse(self, words, *arguments, status=1, any_point=False):
         """The message of `sprekk ARGUMENTS`, which is one, and has all of these words.
         `any_point`: of several points at which an expression fails, each number of ranks may name another."""
-        first, self.seen = not getattr(self, "seen", False), True
-        ranks = (1, 3) if ALL or first or any_point or "run" in arguments else (1,)
-        with ThreadPoolExecutor(1 if "run" in arguments else 2) as pool:  # of two runs into one directory one is refused
-            calls = list(pool.map(lambda n: self.call(*arguments, ranks=n, expect=status), ranks))
-        if arguments[0] != "run":  # which prints its log
-            self.assertEqual({out for out, _ in calls}, {""})
-        err, *others = [err for _, err in calls]
+        answers = [session.call(self.folder, *arguments) for session in SESSIONS]
+        if not hasattr(self, "asked"):
+            self.asked = True
+            answers.append((status, *self.call(*arguments, expect=status)))
+        err = answers[0][2]
         hidden = (lambda text: re.sub(r"x = \(.*?\)", "", text)) if any_point else str
-        for other in others:
-            self.assertEqual(hidden(other), hidden(err))
+        for answer in answers:
+            self.assertEqual((answer[0], hidden(answer[2])), (status, hidden(err)), arguments)
+            if arguments[0] != "run":  # which prints its log
+                self.assertEqual(answer[1], "", arguments)
         self.assertEqual(err.count("sprekk: "), 1, err)
         self.assertTrue(err.startswith("sprekk: "), err)
         for word in words:
