@@ -23,6 +23,7 @@ namespace sprekk::physics {
 template <int dimension, int n_nodes, bool tips>
 struct JointFace {
   static constexpr int dim = dimension, n = n_nodes;
+  using Point = JointPoint<dim>;
   template <class... More>
   using Slots =
       assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>, More...>;
@@ -51,8 +52,8 @@ struct JointFace {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION JointPoint<dim> point(int f, const Real (&x)[Columns::size]) const {
-    JointPoint<dim> p;
+  KOKKOS_INLINE_FUNCTION Point point(int f, const Real (&x)[Columns::size]) const {
+    Point p;
     jump(f, x, p.w);
     traction(x, p.traction);
     for (int i = 0; i < dim - 1; ++i) p.p_old[i] = points.p_old(f, i);

@@ -1,4 +1,4 @@
-// The program, for many commands in one process: session.py starts it.
+// The program, for many commands in one process: many_commands.py starts it.
 //
 //   commands FOLDER
 //

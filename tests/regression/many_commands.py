@@ -8,7 +8,7 @@ from pathlib import Path
 from program import ALONE, MPIEXEC, TIME_LIMIT
 
 
-class Session:
+class ManyCommands:
     def __init__(self, commands, ranks):
         self.scratch = tempfile.TemporaryDirectory()
         self.folder = Path(self.scratch.name)
