@@ -96,7 +96,7 @@ class BadInput(ProgramTest):
             self.asked = True
             answers.append((status, *self.call(*arguments, expect=status)))
         err = answers[0][2]
-        hidden = (lambda text: re.sub(r"(x =|is \S+ at) \(.*?\)", "", text)) if any_point else str
+        hidden = (lambda text: re.sub(r"(is \S+ at )?\([-+.\de]+(, [-+.\de]+)+\)", "", text)) if any_point else str
         for answer in answers:
             self.assertEqual((answer[0], hidden(answer[2])), (status, hidden(err)), arguments)
             if arguments[0] != "run":  # which prints its log

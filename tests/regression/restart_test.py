@@ -226,7 +226,7 @@ class Restart(ProgramTest):
         for ranks in (1, 3):
             for restart in (False, True):
                 words = self.go(CYCLIC, "Materials.joint.friction coefficient=0.1", ranks=ranks, restart=restart, expect=1)
-                self.assertRegex(words, f"^sprekk: out: another run \\(process {run.pid} on .*\\) is writing its results here; wait until it "
+                self.assertRegex(words, f"(?m)^sprekk: out: another run \\(process {run.pid} on .*\\) is writing its results here; wait until it "
                                         "has ended, or name another directory by --output\n$")
         self.go(CYCLIC, "Time.steps=1", "Materials.joint.friction coefficient=-1", expect=1)
         self.assertNotIn("0.1", [word for word in (self.folder / "out/effective_input.xml").read_text().split('"')])
@@ -365,7 +365,7 @@ class Restart(ProgramTest):
                 path = self.folder / "out/checkpoints" / name
                 damage(path, path.read_bytes())
                 words = self.go(*scene, restart=True)
-                self.assertRegex(words, f"^warning: out/checkpoints/{name}: (is damaged|cannot be read); its other copy is whole, and taken\n$")
+                self.assertRegex(words, f"(?m)^warning: out/checkpoints/{name}: (is damaged|cannot be read); its other copy is whole, and taken\n$")
                 self.expect_same_bits("whole", "out")
                 for copy in ("journal", "journal_copy"):
                     self.assertEqual((self.folder / "out/checkpoints" / copy).read_bytes(), (self.folder / "whole/checkpoints/journal").read_bytes())
