@@ -389,6 +389,7 @@ class PointDriver {
   /// The contact with all that has been slipped, and no slip since.
   laws::Contact<Real> at_rest() const {
     laws::Contact<Real> at;
+    at.dim = dim;
     at.history = {kept_.data()};
     at.plastic_slip = laws::norm(p_old_);
     for (int i = 0; i < dim - 1; ++i) at.plastic_jump[i] = at.last_plastic_jump[i] = p_old_[i];

@@ -518,7 +518,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
     const auto& [law, aperture, plastic] = parameters.joints[joint_of(parameters, mesh, f)];
     const Real pressed = jumps[f][0];
     const Real zero = 0;  // all that laws have kept of faces
-    laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .history = {&zero, 0}};
+    laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .dim = mesh.dim(), .history = {&zero, 0}};
     const Real compliance = law.compliance(at);
     at.plastic_slip = std::hypot(plastic[0], plastic[1]);
     for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = plastic[k];

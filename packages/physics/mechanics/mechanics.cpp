@@ -261,7 +261,7 @@ std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
     for (LocalIndex f = 0; f < setting.mesh.n_owned_fracture_faces; ++f) {
       const auto& joint = parameters.joints[parameters.joint_of_face.empty() ? setting.mesh.fracture_faces[f].fracture
                                                                              : parameters.joint_of_face[f]];
-      laws::Contact<Real> at{.lambda_n = tractions[f][0], .history = {&zero, 0}};
+      laws::Contact<Real> at{.lambda_n = tractions[f][0], .dim = setting.mesh.dim(), .history = {&zero, 0}};
       at.plastic_slip = std::hypot(joint.plastic_jump[0], joint.plastic_jump[1]);
       for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = joint.plastic_jump[k];
       starts.push_back({tractions[f], joint.law.bound(at)});
