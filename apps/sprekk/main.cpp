@@ -48,6 +48,15 @@ struct Arguments {
   model::SafetyOptions safety;
 };
 
+/// Numbers from `low` to `high`. CLI::Range accepts nan.
+auto between(double low, double high) {
+  return [low, high](const std::string& text) {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+    return fmt::format("is {}, must be a number from {:g} to {:g}", text, low, high);
+  };
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   auto& options = arguments.options;
   app.set_version_flag("--version", "sprekk " + model::version());
@@ -65,14 +74,14 @@ void declare(CLI::App& app, Arguments& arguments) {
   auto* network = app.add_subcommand("network", "print a scene's fracture network, checked and with all defaults");
   auto* safety = app.add_subcommand("safety", "reduce the strength of joints until a scene has no equilibrium");
   safety->add_option("--tolerance", arguments.safety.tolerance, "of the factor, relative; default 1e-3")
-      ->check(CLI::Range(1e-12, 1.0));
+      ->check(between(1e-12, 1));
   safety
       ->add_option("--first", arguments.safety.first,
                    "factor that the scene is run with; default 1, less for joints too "
                    "weak for it")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(between(1e-6, 1e6));
   safety->add_option("--most", arguments.safety.most, "factor that is of interest; default 100")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(between(1, 1e6));
   auto* directory = app.add_subcommand("directory", "print the directory that run writes to without --output");
   for (auto* command : {run, check, point, network, safety, directory}) {
     command->add_option("scene", options.scene, "XML file")->required();
@@ -82,8 +91,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   for (auto* command : {run, check})
     command->add_flag("--strict", options.strict,
                       "take warnings of the scene as errors; and end with status 3 where Accuracy is not reached");
-  for (auto* command : {run, safety})
-    command->add_flag("--quiet", arguments.quiet, "print nothing on standard output");
+  for (auto* command : {run, safety}) command->add_flag("--quiet", arguments.quiet, "print nothing on standard output");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
@@ -202,6 +210,7 @@ int run_command(int argc, char** argv, RCP<const Comm> comm) {
 int main(int argc, char** argv) {
   base::keep_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
+  std::signal(SIGPIPE, SIG_IGN);  // a run goes on, with log.txt, when the reader of its log ends
   int n_libraries_may_read = 1;   // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
   const int status = run_command(argc, argv, Tpetra::getDefaultComm());

@@ -198,6 +198,15 @@ class Commands(ProgramTest):
                 self.call(*arguments, expect=2)
         self.call("walk", ranks=2, expect=2)
 
+    def test_numbers_of_safety(self):
+        slope = self.scene("slopes/plane_2d.xml")
+        for option, allowed in (("--tolerance", "1e-12 to 1"), ("--first", "1e-06 to 1e+06"), ("--most", "1 to 1e+06")):
+            for value in ("nan", "-1", "inf", "x", "1e9"):
+                _, err = self.call("safety", slope, option, value, expect=2)
+                self.assertEqual(err.count("\n"), 1, err)
+                for word in (option, value, allowed):
+                    self.assertIn(word, err)
+
     def test_reference_lists_all_parameters(self):
         out, _ = self.call("reference")
         for word in ("Sprekk > Mesh", "Sprekk > Solver > Linear solver", "friction coefficient", "tangential stiffness",

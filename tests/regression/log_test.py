@@ -78,6 +78,15 @@ class Log(ProgramTest):
             self.call("run", "absent.xml", "--output", "new", ranks=ranks, expect=1)
             self.assertFalse((self.folder / "new").exists())
 
+    def test_run_goes_on_when_its_reader_ends(self):
+        words = [program.PROGRAM, "run", self.scene(PUSH), "--output", "out", *QUIET, "--set", "Time.end=50", "--set", "Time.steps=50"]
+        with subprocess.Popen(words, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True) as run:
+            run.stdout.readline()
+            run.stdout.close()
+            self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
+        self.assertEqual(len(STEP.findall(self.log())), 50)
+        self.assertIn("results in out", self.log())
+
     def test_lines_arrive_while_the_run_goes_on(self):
         """And not when a buffer is full, which takes some 40 steps."""
         words = [program.PROGRAM, "run", self.scene(PUSH), "--output", "out", *QUIET, "--set", "Mesh.cells={60, 60}", "--set",
