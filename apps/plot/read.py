@@ -102,7 +102,7 @@ def blocks(file):
     tree, found = output(vtkXMLMultiBlockDataReader(), file), {}
     for k in range(tree.GetNumberOfBlocks()):
         block = tree.GetBlock(k)
-        parts = [block.GetPartition(i) for i in range(block.GetNumberOfPartitions())] if hasattr(block, "GetPartition") else [block]
+        parts = [block.GetBlock(i) for i in range(block.GetNumberOfBlocks())] if hasattr(block, "GetBlock") else [block]
         found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts)
     return found
 

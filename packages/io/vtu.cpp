@@ -287,10 +287,10 @@ void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
   const auto has_cells = base::max_over_ranks(*comm_, here);
   std::string content;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    content += fmt::format("    <Piece index=\"{}\" name=\"{}\">\n", b, base::xml_escaped(blocks[b].name));
+    content += fmt::format("    <Block index=\"{}\" name=\"{}\">\n", b, base::xml_escaped(blocks[b].name));
     for (int r = 0, n = 0; r < n_ranks; ++r)
       if (has_cells[b * n_ranks + r]) content += data_set(n++, "", piece_file(b, r));
-    content += "    </Piece>\n";
+    content += "    </Block>\n";
   }
   for (std::size_t k = 0; k < kept_.size(); ++k)
     content +=

@@ -10,7 +10,6 @@
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
-#include <vtkMultiPieceDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -262,9 +261,9 @@ TEST(Vtu, BlocksReadBackByTheirNames) {
     EXPECT_EQ(name(0) + name(1) + name(2) + name(3), "even" + odd_name + "nonemeeting");
     int n_faces = 0;
     for (int k : {0, 1, 2}) {
-      auto* pieces = vtkMultiPieceDataSet::SafeDownCast(blocks->GetBlock(k));
-      for (unsigned i = 0; i < pieces->GetNumberOfPieces(); ++i) {
-        auto* grid = vtkUnstructuredGrid::SafeDownCast(pieces->GetPiece(i));
+      auto* pieces = vtkMultiBlockDataSet::SafeDownCast(blocks->GetBlock(k));
+      for (unsigned i = 0; i < pieces->GetNumberOfBlocks(); ++i) {
+        auto* grid = vtkUnstructuredGrid::SafeDownCast(pieces->GetBlock(i));
         ASSERT_GT(grid->GetNumberOfCells(), 0);
         EXPECT_LE(grid->GetNumberOfPoints(), grid->GetNumberOfCells() * mesh::n_face_nodes(shape));
         const bool tetrahedra = shape == mesh::Shape::tetrahedron;  // see FractureFacesReadBack
