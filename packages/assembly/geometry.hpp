@@ -25,8 +25,8 @@ inline ConstView<int*> material_numbers(const Geometry& geometry, const std::vec
   return of_cell.empty() ? geometry.region : to_device(of_cell, "material of cells");
 }
 
-/// The coordinates of a cell's first nodes, which begin with its corners, on the host: all, or of a cell of order 2 the
-/// corners.
+/// Coordinates of the first n nodes of a cell on the host, n being that of `shape`: of a mesh of order 2 and a shape of
+/// order 1 the corners.
 template <Shape shape>
 void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)]) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);

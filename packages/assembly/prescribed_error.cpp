@@ -9,8 +9,6 @@ namespace sprekk::assembly {
 
 namespace {
 
-using mesh::Shape;
-
 LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, int k) {
   return mesh.cells[face.cell * mesh.nodes_per_cell() + mesh::face_nodes(mesh.shape)[face.local_face][k]];
 }

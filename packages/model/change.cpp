@@ -91,6 +91,7 @@ void compare_places(const std::string& what, const std::map<std::string, Place>&
                                   place.n_components, fields::name_of(place.entity), old->second.n_components,
                                   fields::name_of(old->second.entity)));
 }
+
 /// The values of a field, [owned entity, component], from one part of a mesh to another one. Entities that only the
 /// latter has keep theirs.
 void carry(const fields::Field& field, const mesh::Mesh& whole, const mesh::Mesh& from, const View<Real**>& values,

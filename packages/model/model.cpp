@@ -33,6 +33,7 @@ T& named(std::vector<T>& all, const std::string& name, const Name& name_of, cons
 
 /// The name of a block's unknowns in a checkpoint.
 std::string key_of(const fields::Block& block) { return "unknowns: " + block.name; }
+
 void redistribute(const fields::Vector& from, fields::Vector& to) {
   to.doImport(from, fields::Import(from.getMap(), to.getMap()), Tpetra::REPLACE);
 }

@@ -6,7 +6,6 @@
 #include "assembly/tip_cell.hpp"
 
 #include <memory>
-#include <vector>
 
 namespace sprekk::physics {
 

@@ -74,12 +74,11 @@ assembly::Term with_slot(const assembly::Context& context, int block, const Use&
 
 }  // namespace
 
-assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& coupling, bool keep,
+assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& of, bool keep,
                                 std::optional<Real> rate) {
-  const auto& [loop, u, p, volume, reference] = coupling;
-  return with_slot(context, u, [&](auto slot) {
-    const VolumeWork<decltype(slot)> op{volume, reference, 0};
-    return assembly::Term(context, loop, {u, p}, {u, p}, keep, [op, rate](const assembly::State& state) {
+  return with_slot(context, of.u, [&](auto slot) {
+    const VolumeWork<decltype(slot)> op{of.volume, of.reference, 0};
+    return assembly::Term(context, of.loop, {of.u, of.p}, {of.u, of.p}, keep, [op, rate](const assembly::State& state) {
       auto at = op;
       at.rate = rate.value_or(state.rate);
       return at;
@@ -87,11 +86,10 @@ assembly::Term make_volume_work(const assembly::Context& context, const VolumeCo
   });
 }
 
-assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& coupling, bool keep) {
-  const auto& [loop, u, p, volume, reference] = coupling;
-  return with_slot(context, u, [&](auto slot) {
-    const VolumeLoad<decltype(slot)> op{volume, reference};
-    return assembly::Term(context, loop, {u}, {p}, keep, [op](const assembly::State&) { return op; });
+assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& of, bool keep) {
+  return with_slot(context, of.u, [&](auto slot) {
+    const VolumeLoad<decltype(slot)> op{of.volume, of.reference};
+    return assembly::Term(context, of.loop, {of.u}, {of.p}, keep, [op](const assembly::State&) { return op; });
   });
 }
 

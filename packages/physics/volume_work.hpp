@@ -7,8 +7,8 @@
 
 namespace sprekk::physics {
 
-/// A pressure p, or what acts like one, and the volume V [entity, m] that displacements u change, m being the unknowns
-/// of u that an entity has.
+/// A pressure p, or an unknown that acts like one, and the volume V [entity, m] that displacements u change, m being
+/// the unknowns of u that an entity has.
 ///
 /// | symbol    | shape       | unit          |                          |
 /// | loop      |             |               | its entities             |
@@ -24,10 +24,10 @@ struct VolumeCoupling {
 };
 
 /// Rows of u: -(p - p_0) dV/du, N; row of p: rate V, m^3/s (2D: m^2/s). `rate` is that of the state, unless given.
-assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& coupling, bool keep,
+assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& of, bool keep,
                                 std::optional<Real> rate = {});
 
 /// The rows of u alone.
-assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& coupling, bool keep);
+assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& of, bool keep);
 
 }  // namespace sprekk::physics

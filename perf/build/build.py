@@ -4,7 +4,7 @@
 Copies the sources to OUTPUT/source and builds them there without a compiler cache. Each compilation is timed, and its
 lines are counted: lines that the compiler reads after preprocessing, without empty ones, precompiled headers as well.
 The law is that of docs/how_to_add_a_law.md. Figures are CPU time of all processes of a build, which other work on the
-machine raises a little; wall time is printed beside it.
+machine raises a little; Wall time is printed as well.
 
     build.py [--only program|tests|law] [--jobs N] [--output DIR]"""
 import argparse
@@ -93,19 +93,19 @@ def count_lines(build, objects):
     commands = json.loads(subprocess.run(["ninja", "-C", str(build.tree), "-t", "compdb"], check=True,
                                          stdout=subprocess.PIPE, text=True).stdout)
     of = {entry["output"]: entry["command"] for entry in commands}
+    plain = {}  # copies of headers that are precompiled, without the compiled form beside them
+    for k, header in enumerate(build.tree.rglob("cmake_pch.hxx")):
+        plain[str(header)] = str(build.tree / f"plain_{k}.hpp")
+        shutil.copy(header, plain[str(header)])
 
     def lines(name):
         words = shlex.split(of[name].split("&&")[0])
         words = words[words.index(LAUNCHER) + 2:]
         drop = {i + k for i, word in enumerate(words) for k in (0, 1) if word in ("-o", "-MF", "-MT")}
         words = [word for i, word in enumerate(words) if i not in drop and word not in ("-c", "-MD", "-fpch-preprocess")]
-        begin = words.index("-include") if "-include" in words else -1
-        if begin >= 0:  # the header itself, not its precompiled form
-            header = Path(words[begin + 1])
-            copy = build.tree / f"counted_{abs(hash(str(header)))}.hpp"
-            if header.exists():
-                copy.write_text(header.read_text())
-                words[begin + 1] = str(copy)
+        if "-include" in words:
+            at = words.index("-include") + 1
+            words[at] = plain.get(words[at], words[at])
         done = subprocess.run([*words, "-E", "-P"], cwd=build.tree, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         return sum(1 for line in done.stdout.splitlines() if line.strip())
 

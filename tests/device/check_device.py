@@ -26,7 +26,7 @@ import tempfile
 from pathlib import Path
 
 TRILINOS = Path(os.environ.get("SPREKK_TRILINOS_INCLUDE", "/usr/include/trilinos"))
-HAS_KERNELS = re.compile(r"\bKOKKOS_LAMBDA\b|\bAssembler<|\bKernelModule\b|\bmake_kernel_module\b|\bparallel_\w+")
+HAS_KERNELS = re.compile(r"\bKOKKOS_LAMBDA\b|\bAssembler<|\bKernelModule\b|\bmake_kernel_module\b|\bTerm\b|\bparallel_\w+")
 BACK_ENDS = {  # name in folders, what Kokkos and Tpetra have on
     "hip": ("HIP", "HIP", ["HIP", "ARCH_VEGA906"]),
     "cuda": ("CUDA", "Cuda", ["CUDA", "CUDA_LAMBDA", "CUDA_UVM", "CUDA_CONSTEXPR", "ARCH_AMPERE", "ARCH_AMPERE80"]),

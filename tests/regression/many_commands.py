@@ -43,8 +43,9 @@ class ManyCommands:
         for pipe in self.inputs + self.statuses:
             pipe.close()
         try:
-            self.process.wait(timeout=20)
+            status = self.process.wait(timeout=20)
         except subprocess.TimeoutExpired:
             self.process.kill()
-            self.process.wait()
+            status = self.process.wait()
         self.scratch.cleanup()
+        assert status == 0, f"the process of many commands ended with status {status}"

@@ -109,7 +109,7 @@ class OperatorsOf final : public JointOperators<Face::dim> {
   Face face_;
   Faces faces_;
   std::unique_ptr<Sliding> sliding_;  // where the power of friction is stored
-  ConstView<Real*> area_;             // [owned face] m^2, there
+  ConstView<Real*> area_;             // [local face] m^2, there
 };
 
 }  // namespace

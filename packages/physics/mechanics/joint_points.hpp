@@ -73,7 +73,7 @@ struct JointPoints {
 
   /// Energy that plastic slip dissipates in the step, J/m^2, and its derivatives in w, then in lambda:
   ///   lambda_t . (p_t - p_old) + lambda_n (p_n - p_n,old),   p_t = w_t - lambda_t/K_t
-  /// with p_n the dilation by p_t: the work of friction less that which lifts the sides. It is zero where the face
+  /// with p_n the dilation by p_t: the work of friction minus the work that lifts the sides. It is zero where the face
   /// sticks or is open.
   KOKKOS_FUNCTION Real work(int f, const Real (&w)[dim], const Real (&lambda)[dim]) const;
   KOKKOS_FUNCTION void dwork(int f, const Real (&w)[dim], const Real (&lambda)[dim],

@@ -316,9 +316,7 @@ std::unique_ptr<assembly::Module> make_tip_enrichment(Shape shape, BulkMomentumP
                                                       FluidPressure fluid_pressure) {
   SPREKK_CHECK(mesh::order(shape) == 1, "tip enrichment: needs cells of order 1");
   return mesh::for_corners(shape, [&](auto s) -> std::unique_ptr<assembly::Module> {
-    if constexpr (mesh::order(s()) == 1)
-      return std::make_unique<TipEnrichment<s()>>(std::move(parameters), std::move(fluid_pressure));
-    return nullptr;
+    return std::make_unique<TipEnrichment<s()>>(std::move(parameters), std::move(fluid_pressure));
   });
 }
 

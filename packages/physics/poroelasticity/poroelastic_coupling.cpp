@@ -136,7 +136,8 @@ class PoroelasticCoupling final : public assembly::Module {
   void commit(assembly::State& state) const override {
     assembly::Rows volumes;
     for (const auto& x : state.x) volumes.emplace_back("volumes", x.extent(0));
-    for (const auto& term : rates_) term.add_residual(with_rate(state, 1), volumes);
+    const auto at_rate_1 = with_rate(state, 1);
+    for (const auto& term : rates_) term.add_residual(at_rate_1, volumes);
     for (int k = 0; k < 2; ++k) {
       const auto kept = state.history[k];
       const auto now = volumes[pressures_[k]];

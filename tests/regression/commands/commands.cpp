@@ -16,7 +16,7 @@
 
 namespace {
 
-/// What goes to standard output (1) or error (2) goes to this file, and replaces its content.
+/// Redirects standard output (1) or error (2) to a new file.
 void redirect(int stream, const std::string& path) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   ::dup2(file, stream);

@@ -1,6 +1,6 @@
 // What a run says of its own error, against the error: of stress and jump, where both are known.
-#include "base/over_ranks.hpp"
 #include "assembly/geometry.hpp"
+#include "base/over_ranks.hpp"
 #include "model/results.hpp"
 #include "verification/scenes.hpp"
 

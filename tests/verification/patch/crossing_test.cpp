@@ -4,9 +4,6 @@
 namespace sprekk::tests {
 namespace {
 
-// A slipping joint stands exactly on its friction bound, but it slides by a given
-// amount that is far from 0, and rounding mu moves its traction no more than by rounding mu N.
-
 struct Line {
   Real degrees, K_t, zeta;  ///< slides by zeta lambda_t
 };

@@ -12,8 +12,9 @@ constexpr Real G = 1, lame_lambda = 1;  // of the rock in all patch tests
 
 inline Vector3 scaled(Real factor, const Vector3& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
 
-/// Round-off (1e-16) times the condition of the matrix: moduli, sides, displacements and stresses are of the order
-/// of 1.
+/// Round-off (1e-16) times the condition of the matrix: moduli, sides, displacements and stresses are of the order of
+/// 1. A slipping joint is exactly at its friction bound, but it slides by a given amount far from 0, and rounding mu
+/// moves its traction no more than by rounding mu N.
 inline constexpr Real tolerance = 1e-11;
 
 /// The law of a joint, and its exact state for sides that are ordered along n.
