@@ -58,6 +58,7 @@ class Build:
         launcher = [sys.executable, str(Path(__file__).resolve()), LAUNCHER, str(self.log)]
         self.run("cmake", "-S", self.source, "-B", self.tree, "-G", "Ninja",
                  f"-DCMAKE_CXX_COMPILER_LAUNCHER={';'.join(launcher)}")
+        self.log.unlink(missing_ok=True)  # checks of the compiler
 
     def run(self, *command):
         """CPU and wall seconds of a command."""

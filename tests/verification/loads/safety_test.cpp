@@ -28,28 +28,34 @@ void expect_between(const model::FactorOfSafety& found, Real exact) {
   }
 }
 
+/// Exact factors of a block that slides do not depend on the mesh.
+const std::string coarse = "Mesh.cells={5, 2}";
+
 Real tan_of(Real degrees) { return std::tan(degrees * M_PI / 180); }
 
 TEST(FactorOfSafety, OfABlockOnAPlane) {
   expect_between(safety("plane_2d.xml"), tan_of(40) / tan_of(30));
-  expect_between(safety("plane_2d.xml", {"Mesh.cell=triangle", "Materials.joint.friction angle=32"}),
+  expect_between(safety("plane_2d.xml", {coarse, "Mesh.cell=triangle", "Materials.joint.friction angle=32"}),
                  tan_of(32) / tan_of(30));
 }
 
 /// c A and W cos(30) tan(phi) over W sin(30).
 TEST(FactorOfSafety, OfABlockWithCohesion) {
   const Real cohesion = 10e3, weight = 2700 * 9.81 * 10 * 2;
-  expect_between(safety("plane_2d.xml", {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=10 kPa"}),
-                 (cohesion * 10 + weight * std::cos(M_PI / 6) * tan_of(40)) / (weight / 2));
+  expect_between(
+      safety("plane_2d.xml", {coarse, "Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=10 kPa"}),
+      (cohesion * 10 + weight * std::cos(M_PI / 6) * tan_of(40)) / (weight / 2));
 }
 
 /// Of the wedge behind a slope of 45 degrees: its crest opens, and cohesion there is lost: in proportion to 1 mm little
-/// of it, so that the factor is less than that of limit equilibrium by some 1e-4.
+/// of it, so that the factor is less than that of limit equilibrium by some 1e-4. On several ranks the coarsest mesh.
 TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
   const auto scene = model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/slopes/slope_2d.xml", {});
   const Real weight = scene.material_of("bulk").density_at({}) * 9.81 * 32, length = std::hypot(8, 8);
   const Real exact = 50e3 * length / (weight * std::sqrt(0.5)) + tan_of(40);
-  for (const char* mesh : {"slope1", "slope2", "slope3"}) {
+  std::vector<std::string> meshes = {"slope1", "slope2", "slope3"};
+  if (Tpetra::getDefaultComm()->getSize() > 1) meshes.resize(1);
+  for (const auto& mesh : meshes) {
     const auto found =
         safety("slope_2d.xml", {fmt::format("Mesh file.path={}/tests/data/meshes/{}.msh", source_dir(), mesh)}, 1e-4);
     ASSERT_TRUE(found.lost) << mesh;
@@ -62,16 +68,17 @@ TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
 /// With twice its strength a block stands that does not with its own.
 TEST(FactorOfSafety, BelowOne) {
   const std::string path = source_dir() + "/xml/slopes/plane_2d.xml";
-  expect_between(
-      model::factor_of_safety(
-          {.scene = path, .overrides = {"Materials.joint.friction angle=20"}, .tolerance = tolerance, .first = 0.5},
-          Tpetra::getDefaultComm()),
-      tan_of(20) / tan_of(30));
+  expect_between(model::factor_of_safety({.scene = path,
+                                          .overrides = {coarse, "Materials.joint.friction angle=20"},
+                                          .tolerance = tolerance,
+                                          .first = 0.5},
+                                         Tpetra::getDefaultComm()),
+                 tan_of(20) / tan_of(30));
 }
 
 /// Of the joint that a stage leaves.
 TEST(FactorOfSafety, AfterStages) {
-  expect_between(safety("plane_2d.xml", {"Stages.s.time=0.5", "Stages.s.Materials.joint.friction angle=50",
+  expect_between(safety("plane_2d.xml", {coarse, "Stages.s.time=0.5", "Stages.s.Materials.joint.friction angle=50",
                                          "Time.end=1", "Time.steps=1"}),
                  tan_of(50) / tan_of(30));
 }
