@@ -2,29 +2,48 @@
 import csv
 import json
 import xml.etree.ElementTree as xml
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
-from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPUnstructuredGridReader
+from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLPUnstructuredGridReader,
+                                 vtkXMLUnstructuredGridReader)
 
 
 class PlotError(Exception):
     """What is wrong with the input, in one line that names the file."""
 
 
+def csv_rows(path):
+    """The rows of a CSV with a line of titles; refuses two columns of one title and rows of another length."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = [(k, row) for k, row in enumerate(csv.reader(file), 1) if row]
+    except (UnicodeDecodeError, csv.Error):
+        raise PlotError(f"{path}: is no CSV in UTF-8") from None
+    titles = rows[0][1] if rows else []
+    for k, title in enumerate(titles):
+        if title in titles[:k]:
+            raise PlotError(f'{path}: line {rows[0][0]}: two columns have the title "{title}"')
+    for k, row in rows[1:]:
+        if len(row) != len(titles):
+            raise PlotError(f"{path}: line {k}: is not complete: it has {len(row)} columns, the titles are {len(titles)}")
+    return [row for _, row in rows]
+
+
 def point_csv(path):
     """Columns of a CSV of `sprekk point` by name, and the tangential axes: ["t"] or ["t1", "t2"]."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    if len(rows) < 2 or rows[0][:2] != ["t", "state"]:
+    rows = csv_rows(path)
+    if len(rows) < 2 or not {"t", "state", "jump_n"} <= set(rows[0]):
         raise PlotError(f'{path}: is no CSV of "sprekk point"; such a file starts with "t,state,jump_n"')
     try:
         columns = dict(zip(rows[0], np.array(rows[1:], dtype=float).T))
     except ValueError as error:
-        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
     return columns, [name[len("jump_"):] for name in columns if name.startswith("jump_t")]
 
 
@@ -34,12 +53,34 @@ def results(directory):
     if not path.is_file():
         raise PlotError(f'{directory}: holds no results.json; "sprekk run" writes one into its output directory')
     try:
-        content = json.loads(path.read_text())
-    except json.JSONDecodeError as error:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:  # of json, or of text that is no UTF-8
         raise PlotError(f"{path}: is no JSON ({error})") from None
+    check_results(path, content)
     if not content.get("steps"):
         raise PlotError(f"{path}: no step of the run has been completed")
     return content
+
+
+STEP = {"time": (int, float), "fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict}
+
+
+def check_results(path, content):
+    """Refuses results that "sprekk run" does not write."""
+    def refuse(place, value, expected):
+        raise PlotError(f"{path}: {place} is {json.dumps(value)[:40]}, expected {expected}; run the scene again")
+
+    if not isinstance(content, dict):
+        refuse("the content", content, 'an object with "status" and "steps"')
+    steps = content.get("steps", [])
+    if not isinstance(steps, list):
+        refuse('"steps"', steps, "a list")
+    for k, step in enumerate(steps, 1):
+        if not isinstance(step, dict) or "time" not in step:
+            refuse(f"step {k}", step, 'an object with a "time"')
+        for name, kind in STEP.items():
+            if name in step and not isinstance(step[name], kind):
+                refuse(f'"{name}" of step {k}', step[name], "an object" if kind is dict else "a number")
 
 
 def scene(directory):
@@ -64,26 +105,63 @@ def entries(section, name):
 
 def written_steps(directory, kind):
     """(time, file) of each step that DIRECTORY/KIND.pvd lists; none if there is no such file."""
-    return [(float(entry.get("timestep")), file) for entry, file in listed(Path(directory) / f"{kind}.pvd")]
+    path = Path(directory) / f"{kind}.pvd"
+    try:
+        return [(float(entry.get("timestep")), file) for entry, file in listed(path)]
+    except (TypeError, ValueError):
+        raise PlotError(f'{path}: a file has no "timestep" that is a number') from None
 
 
-def listed(path):
-    """(entry, file) of each file that a .pvd or .vtm lists; none if there is no such list."""
+def listed(path, tag="DataSet", attribute="file"):
+    """(entry, file) of each file that a .pvd, .vtm or .pvtu lists; none if there is no such list."""
     if not path.is_file():
         return []
     try:
-        entries = xml.parse(path).getroot().findall(".//DataSet")
+        entries = xml.parse(path).getroot().findall(f".//{tag}")
     except xml.ParseError as error:
         raise PlotError(f"{path}: is no XML ({error})") from None
-    return [(entry, path.parent / entry.get("file")) for entry in entries]
+    if any(entry.get(attribute) is None for entry in entries):
+        raise PlotError(f'{path}: a {tag} has no "{attribute}"')
+    return [(entry, path.parent / entry.get(attribute)) for entry in entries]
+
+
+@contextmanager
+def messages():
+    """Collects the messages of VTK, which prints them and goes on without a part that it cannot read."""
+    window, shown, level = vtkStringOutputWindow(), vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield window
+    finally:
+        vtkOutputWindow.SetInstance(shown)
+        vtkLogger.SetStderrVerbosity(level)
 
 
 def output(reader, file):
+    """The content of a file by a reader of VTK; refuses a file that is missing, empty or damaged."""
     if not Path(file).is_file():
         raise PlotError(f"{file}: no such file")
-    reader.SetFileName(str(file))
-    reader.Update()
-    return reader.GetOutput()
+    with messages() as said:
+        reader.SetFileName(str(file))
+        reader.Update()
+        content = reader.GetOutput()
+    if "ERROR" in said.GetOutput():
+        raise PlotError(f"{file}: is damaged or not complete; run the scene again")
+    return content
+
+
+def whole(reader, file, pieces):
+    """The content of a file that lists others; an error names the one at fault."""
+    for piece in pieces:
+        if not piece.is_file():
+            raise PlotError(f"{piece}: no such file")
+    try:
+        return output(reader, file)
+    except PlotError:
+        for piece in pieces:
+            output(vtkXMLUnstructuredGridReader(), piece)
+        raise
 
 
 def joined(grids):
@@ -96,10 +174,7 @@ def joined(grids):
 
 def blocks(file):
     """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
-    for _, piece in listed(Path(file)):
-        if not piece.is_file():  # VTK would go on
-            raise PlotError(f"{piece}: no such file")
-    tree, found = output(vtkXMLMultiBlockDataReader(), file), {}
+    tree, found = whole(vtkXMLMultiBlockDataReader(), file, [piece for _, piece in listed(Path(file))]), {}
     for k in range(tree.GetNumberOfBlocks()):
         block = tree.GetBlock(k)
         parts = [block.GetBlock(i) for i in range(block.GetNumberOfBlocks())] if hasattr(block, "GetBlock") else [block]
@@ -111,7 +186,7 @@ def grid(file):
     """The pieces of a .pvtu, or those of all fractures in a .vtm, as one grid of VTK."""
     if Path(file).suffix == ".vtm":
         return joined(block for block in blocks(file).values() if block.GetCellData().HasArray("fracture"))
-    return output(vtkXMLPUnstructuredGridReader(), file)
+    return whole(vtkXMLPUnstructuredGridReader(), file, [piece for _, piece in listed(Path(file), "Piece", "Source")])
 
 
 @dataclass

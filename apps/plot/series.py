@@ -1,9 +1,8 @@
 """Over time: slip and opening of fractures, pressures and rates of wells, injected volume; and what probes wrote."""
-import csv
 import re
 
 import numpy as np
-from read import PlotError
+from read import PlotError, csv_rows
 from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
 
 MOST_LINES = 6  # in one panel
@@ -100,8 +99,7 @@ TITLE = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*$")
 
 def probe(path):
     """The columns of a probe's CSV: [(name, unit, values)], the first of them the time."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
+    rows = csv_rows(path)
     titles = [TITLE.match(title) for title in rows[0]] if rows else []
     if not titles or None in titles or titles[0]["name"] != "time":
         raise PlotError(f'{path}: is no CSV of a probe; such a file starts with "time [s],"')
@@ -110,7 +108,7 @@ def probe(path):
             -1, len(titles)
         )
     except ValueError as error:
-        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
     return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
 
 

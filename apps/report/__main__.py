@@ -51,6 +51,9 @@ def report(options):
     directory = options.directory
     if not directory.is_dir():
         raise PlotError(f"{directory}: no such directory")
+    file = options.output or directory / "report.html"
+    if not file.parent.is_dir():
+        raise PlotError(f"{file}: cannot be written: there is no folder {file.parent}")
     content = read.results(directory)
     entries = scene.Scene(directory, ROOT / "docs" / "reference.md")
     drawn, left_out = pictures(directory, options.dpi)
@@ -66,8 +69,6 @@ def report(options):
         view.of_run(directory) if viewer else None,
         viewer,
     )
-    file = options.output or directory / "report.html"
-    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(html, encoding="utf-8")
     return file
 

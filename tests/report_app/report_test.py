@@ -98,6 +98,21 @@ class Pages(ReportTest):
         self.assertIn("no such directory", self.write(expect=1))
         (self.folder / "out").mkdir()
         self.assertIn("holds no results.json", self.write(expect=1))
+        self.run_scene("seed/push_2d.xml")
+        said = self.write("--output", self.folder / "absent/report.html", expect=1)
+        self.assertIn("report.html: cannot be written: there is no folder", said)
+        self.assertFalse((self.folder / "absent").exists())
+
+    def test_damaged_files(self):
+        """One error that names the file, and no report."""
+        self.run_scene("seed/push_2d.xml")
+        piece = self.folder / "out/fractures/fractures_0000_0_0.vtu"
+        piece.write_bytes(piece.read_bytes()[:1000])
+        said = f"sprekk report: {piece}: is damaged or not complete; run the scene again\n"
+        self.assertEqual(self.write(expect=1), said)
+        (self.folder / "out/results.json").write_text("[]")
+        self.assertIn("results.json: the content is [], expected an object", self.write(expect=1))
+        self.assertFalse((self.folder / "out/report.html").exists())
 
 
 class Checks(ReportTest):
