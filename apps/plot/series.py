@@ -19,7 +19,7 @@ def injected(times, rates, start=0.0):
     return np.cumsum(np.diff(np.concatenate([[start], times])) * rates)
 
 
-def panels(steps, start=0.0):
+def panels(steps, start=0.0, dim=3):
     """(label, unit, {name: values over the steps}) of what a run's steps hold."""
     times = np.array([step["time"] for step in steps])
     fractures = steps[-1].get("fractures", {})
@@ -46,7 +46,8 @@ def panels(steps, start=0.0):
 
     if wells:
         yield "pressure in wells", "Pa", of_wells("pressure")
-        yield "injected volume", "m³", {n: injected(times, v, start) for n, v in of_wells("rate").items()}
+        base = "m²" if dim == 2 else "m³"  # per depth in 2D
+        yield "injected volume", base, {n: injected(times, v, start) for n, v in of_wells("rate").items()}
         if any("temperature" in well for well in steps[-1]["wells"].values()):
             yield "temperature in wells", "K", of_wells("temperature")
 
@@ -80,9 +81,9 @@ def figure_of(title, times, name, content):
     return figure
 
 
-def of_run(steps, title, wanted=None, start=0.0):
+def of_run(steps, title, wanted=None, start=0.0, dim=3):
     """Of at least two steps; None if there is nothing to draw."""
-    content = list(panels(steps, start)) if len(steps) > 1 else []
+    content = list(panels(steps, start, dim)) if len(steps) > 1 else []
     content = [
         (label, base, curves)
         for label, base, curves in content

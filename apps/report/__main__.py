@@ -55,7 +55,8 @@ def report(options):
     if not file.parent.is_dir():
         raise PlotError(f"{file}: cannot be written: there is no folder {file.parent}")
     content = read.results(directory)
-    entries = scene.Scene(directory, ROOT / "docs" / "reference.md")
+    dim = content.get("mesh", {}).get("dimension", 3)
+    entries = scene.Scene(directory, ROOT / "docs" / "reference.md", dim)
     drawn, left_out = pictures(directory, options.dpi)
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     html = page.of_run(
