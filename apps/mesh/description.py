@@ -6,6 +6,7 @@ import xml.etree.ElementTree as xml
 import exchange
 import numpy as np
 from domain import Body, rows
+from fab import read_fab
 from generator import at_random
 from shapes import Errors, Feature, NetworkError, ellipse
 from tables import Table, read_table
@@ -75,7 +76,7 @@ class Network:
         if exchange.is_exchange(path) and "format" not in content:
             return Table(exchange.read(path, 2 if of_domain == "lines" else 3))
         kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
-        return read_table(path, kind)
+        return read_fab(path) if kind == "fab" else read_table(path, kind)
 
     def domain_entries(self):
         if "domain" in self.entries:
