@@ -7,7 +7,7 @@ import stat
 from dataclasses import dataclass, field
 
 import numpy as np
-from shapes import Errors, NetworkError, ellipse
+from shapes import MOST, Errors, NetworkError, ellipse
 
 MOST_CHARACTERS = 2 * 10**8  # of a file; some million fractures
 SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # that are none
@@ -45,6 +45,9 @@ def numbers(words, place, table, columns):
             return None
         if not math.isfinite(found[-1]):
             table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no finite number")
+            return None
+        if abs(found[-1]) > MOST:
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is beyond {MOST:g}, the largest allowed")
             return None
     return np.array(found)
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
+import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -124,6 +125,81 @@ class Files(MeshTest):
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5")
         told = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
         self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', told)
+
+    def test_parts_of_one_fracture(self):
+        """Rows of one name or number are one fracture where they meet at their ends or along their sides, and the report
+        says so; others are refused with both places."""
+        rows = "7,0.2,0.5,0.4,0.5", "8,0.5,0.2,0.5,0.4", "7,0.6,0.6,0.8,0.6", "7,0.4,0.5,0.6,0.6"
+        self.write("net.csv", *rows)
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual([name for name, _ in self.singles()], ["set 7", "set 8"])
+        self.assertEqual(self.report()["sets"]["set"]["fractures"], 2)
+        net = self.folder / "net.csv"
+        self.assertIn(f'one fracture, "set 7", of 3 parts: fracture 7 ({net}: line 1), fracture 7 ({net}: line 3) and 1 more',
+                      self.report()["repairs"])
+        apart = f'fracture 7 ({net}: line 3): has the name "set 7", as fracture 7 ({net}: line 1), and does not meet it; ' \
+                "parts of one fracture meet at their ends"
+        self.write("net.csv", *rows[:3])
+        self.refused(net, apart)
+        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # which crosses it
+        self.refused(net, apart)
+        self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5", "A,0.6,0.6,0.8,0.6")
+        self.refused(net, f'fracture A ({net}: line 3): has the name "A", as fracture A ({net}: line 2), and does not meet it')
+        self.write("net.csv", "7,0.2,0.5,1.2,0.5", "7,1.2,0.5,0.2,0.2")  # outside of the domain
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        triangles = "A,0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5", "A,0.2,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.7"
+        titles = "name,x0,y0,z0,x1,y1,z1,x2,y2,z2"
+        self.write("net.csv", titles, *triangles)
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}, **self.CUBE))
+        self.assertEqual(self.singles(), [("A", {})])
+        self.write("net.csv", titles, *triangles, "A,0.5,0.2,0.2,0.5,0.8,0.2,0.5,0.5,0.8")
+        self.refused(net, f'line 4): has the name "A", as fracture A ({net}: line 2), and does not meet it; parts of one '
+                          "fracture meet along their sides", dim=3, **self.CUBE)
+
+    def test_numbers_of_several_sources(self):
+        """Fractures at random have numbers that the file does not have; lines of a section need other names."""
+        self.write("net.csv", "1,0.2,0.5,0.4,0.5", "3,0.5,0.2,0.5,0.4")
+        random = {"number": 2, "seed": 1, "shortest": 0.1, "longest": 0.1, "exponent": 0.0, "strike": 0.0, "dip": 90.0,
+                  "concentration": 0.0, "corners": 8}
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv", "random": random}}))
+        self.assertEqual([name for name, _ in self.singles()], ["set 1", "set 3", "set 2", "set 4"])
+        lines = {"1": {"points": [0.4, 0.5, 0.6, 0.6]}}
+        net, told = self.folder / "net.csv", self.mesh(self.scene(fractures={"set": {"file": "net.csv", "lines": lines}}), expect=1)
+        self.assertIn(f'fracture "1" of "set": has the name "set 1", as fracture 1 ({net}: line 1) of another file or section', told)
+
+    def test_remarks_in_quotes(self):
+        """What is no entry of a joint may hold anything; the program passes it over."""
+        self.write("net.csv", 'name,x0,y0,x1,y1,Remark,"the ""note"""', 'A,0.2,0.5,0.4,0.5,"along the ""long"" joint",b')
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual(self.singles(), [("A", {"Remark": "along the 'long' joint", "the 'note'": "b"})])
+        net = self.write("net.csv", "name,x0,y0,x1,y1", '"the ""A""",0.2,0.5,0.4,0.5')
+        self.refused(net, "the name 'the \"A\"' has a quotation mark")
+
+    def test_places_far_from_the_origin(self):
+        """Coordinates as in UTM: a place is told to a hundredth of a metre; of a small domain better than that."""
+        utm = {"lower corner": [466000.0, 6691580.0], "upper corner": [466060.0, 6691640.0]}
+        net = self.write("net.csv", "1,466010,6691590,466050,6691600", "2,466020,6691630,466030.001,6691595.0043")
+        self.refused(net, "apart at (466030.002, 6691595) without meeting", domain=utm)
+        small = {"lower corner": [466000.0, 1e-3], "upper corner": [466000.01, 0.011]}
+        net = self.write("net.csv", "1,466000.002,0.005,466000.008,0.005", "2,466000.005004,0.009,466000.005004,0.0050004")
+        self.refused(net, "apart at (466000.005004, 0.005) without meeting", domain=small)
+        net = self.write("net.csv", "6691580.25,0,0,6691581.25,1,1", "6691580.5,0.2,0.5,6691580.8,0.2,0.5,6691580.8,0.8,0.5")
+        self.refused(net, "a domain from (6691580.25, 0, 0) to (6691581.25, 1, 1), the scene's is (0, 0, 0)", dim=3, **self.CUBE)
+
+    def test_huge_coordinates(self):
+        """One error with the place, and no warnings of numpy."""
+        net = self.write("net.csv", "1,0.2,0.5,0.4,0.5", "2,0.5,0.2,1e300,0.4")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.refused(net, f'{net}: line 2: "1e300" in column 4 is beyond 1e+12, the largest allowed')
+            net = self.write("net.csv", "1,0.2,0.5,0.4,0.5", "2,0.5,0.2,1e9,0.4")
+            self.refused(net, f"fracture 2 ({net}: line 2): has the coordinate 1e+09 m, more than 1e+06 diagonals of the domain")
+            lines = {"line": {"points": [0.4, 0.5, 1e300, 0.6]}}
+            self.write("net.csv", "1,0.2,0.5,0.4,0.5")
+            self.assertIn('fracture "line" of "other": has the coordinate 1e+300 m', self.mesh(
+                self.scene(fractures={"other": {"file": "net.csv", "lines": lines}}), expect=1))
+            huge = {"lower corner": [0.0, 0.0], "upper corner": [1e300, 1.0]}
+            self.refused(net, "has the coordinate 1e+300 m; at most 1e+12 m are meshed", domain=huge)
 
     def test_polygons_and_their_domain(self):
         self.write("net.csv", "0,0,0,2,1,1", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5", "1,0.2,0.2,1,0.8,0.2,1,0.5,0.8")
