@@ -176,8 +176,10 @@ class TitledColumns(Columns):
         if missing:
             listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
             order = SHAPE[self.kind] if self.kind != "lines" else ["id", *SHAPE["lines"]]
-            self.refuse(f"the titles of {self.kind} lack {listed}; columns may have any order where titles name all of "
-                        f"them, and without titles are {','.join(order)}{',...' if self.kind == 'polygons' else ''}")
+            meant = next((f"; these are titles of {kind}, which \"format\" names" for kind, titles in SHAPE.items()
+                          if set(titles) <= set(self.titles)), "")
+            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name all "
+                        f"of them, and without titles are {','.join(order)}{',...' if self.kind == 'polygons' else ''}")
         return needed
 
     def check_unit(self, title, unit):

@@ -315,6 +315,8 @@ class Files(MeshTest):
         self.refused(net, f"{net}: line 1: has tabs")
         net = self.write("net.csv", "x,y,z,dip,dip direction,radius,aperture [mm],number", "0.5,0.5,0.5,70,60,0.1,0.2,1")
         self.refused(net, f'{net}: line 1: the titles of ellipses lack "cx", "cy"', dim=3, kind="ellipses", **self.CUBE)
+        net = self.write("net.csv", ",".join(("cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip")), "0.5,0.5,0.5,0.1,0.1,0,0,0")
+        self.refused(net, '; these are titles of ellipses, which "format" names; columns', dim=3, **self.CUBE)
         net = self.write("net.csv", "x0,y0,z0,x1,y1,z1,x3,y3,z3", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
         self.refused(net, f'{net}: line 1: the titles of polygons lack "x2", "y2", "z2"', dim=3, **self.CUBE)
 
