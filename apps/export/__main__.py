@@ -57,7 +57,7 @@ def metric_system(path, crs):
         raise PlotError(f"--crs {crs}: is unknown to GDAL, expected a system with metres, such as EPSG:25832") from None
     if not system.IsProjected() or abs(system.GetLinearUnits() - 1) > 1e-12:
         unit = "degrees" if system.IsGeographic() else system.GetLinearUnitsName()
-        raise PlotError(f"--crs {crs}: {system.GetName()} is in {unit}, expected a system with metres, such as EPSG:25832")
+        raise PlotError(f"--crs {crs}: {system.GetName()} is in {unit}, expected one with metres, such as EPSG:25832")
     return system
 
 

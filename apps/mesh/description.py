@@ -109,8 +109,9 @@ class Network:
         for name, content in self.entries.get(section, {}).items():
             path, n = self.place(f"{section} > {name}"), 2 if self.dim == 2 else 3
             if (section, name) in self.tables:
+                rows_read = self.tables[section, name].fractures
                 found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}",
-                                  content["file"], printable(row.properties)) for row in self.tables[section, name].fractures]
+                                  content["file"], printable(row.properties)) for row in rows_read]
             for of, least in (("lines", 2), ("polygons", 3)):
                 for one, points in content.get(of, {}).items():
                     if (of == "lines") != (self.dim == 2):
@@ -166,8 +167,8 @@ class Network:
             elif one.group != feature.group:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another set; choose another")
             elif one.source != feature.source:
-                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another file or section; "
-                                    "choose another")
+                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another file or "
+                                    "section; choose another")
             elif one.properties != feature.properties:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, and other values in further columns")
         errors.throw(self.files)
@@ -187,7 +188,8 @@ class Network:
             x = feature.points.ravel()[abs(feature.points).argmax()]
             with errors.of_one():
                 if abs(x) > MOST or abs(feature.points - centre).max() > most:
-                    refuse(feature, f"has the coordinate {x:g} m, more than {MOST_DIAGONALS:g} diagonals of the domain away")
+                    refuse(feature, f"has the coordinate {x:g} m, more than {MOST_DIAGONALS:g} diagonals of the domain "
+                                    "away")
         errors.throw(self.files)
 
     def set_sizes(self):

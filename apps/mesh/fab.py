@@ -5,7 +5,7 @@ from tables import Row, Table, complete, numbers, read_lines
 
 METRES = ("m", "meter", "meters", "metre", "metres")
 ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # what the header may say
-COUNTS = {"FRACTURE": "no_fractures", "TESSFRACTURE": "no_tessfractures"}
+COUNTS = {"FRACTURE": "No_Fractures", "TESSFRACTURE": "No_TessFractures"}
 HEAD = {"FRACTURE": "the number of a fracture and that of its corners",
         "TESSFRACTURE": "the numbers of a fracture, its nodes, its facets and its set"}
 
@@ -49,8 +49,8 @@ def points(section, k, number, n, what, table):
     """The n corners or nodes after the head of a fracture, in lines `number x y z` that count from 1 or 0 on."""
     begin, found = section.at, section.take(n)
     first = 0 if found and found[0][:1] == ["0"] else 1
-    expected = [[str(first + row)] for row in range(n)]
-    if [words[:1] for words in found] != expected or any(len(words) < 4 for words in found):
+    counted = [words[:1] == [str(first + row)] and len(words) > 3 for row, words in enumerate(found)]
+    if len(found) < n or n < 3 or not all(counted):
         section.refuse(k, f"fracture {number} has {n} {what}; their lines, number x y z, do not follow")
     return [numbers(words[1:4], section.place(begin + row), table, range(2, 5)) for row, words in enumerate(found)]
 
@@ -68,15 +68,14 @@ def facets(section, k, words, table):
     """The triangles of a tessellated fracture."""
     n_nodes, n_facets = int(words[1]), int(words[2])
     nodes, begin = points(section, k, words[0], n_nodes, "nodes", table), section.at
-    first = 0 if section.lines[begin - n_nodes].split()[:1] == ["0"] else 1
-    known = {str(first + row): x for row, x in enumerate(nodes)}
+    known = {section.lines[begin - n_nodes + row].split()[0]: x for row, x in enumerate(nodes)}
     found = section.take(n_facets)
     if len(found) < n_facets or not n_facets:
         section.refuse(k, f"fracture {words[0]} has {n_facets} facets, expected at least one and a line for each")
     for row, corners in enumerate(found):
         if len(corners) != 3 or not set(corners) <= set(known):
             section.refuse(begin + row, f"a facet of a TESSFRACTURE is \"{' '.join(corners)[:40]}\", expected the "
-                                        f"numbers of three nodes of {first} to {first + n_nodes - 1}")
+                                        f"numbers of three nodes, {next(iter(known))} to {next(reversed(known))}")
         yield [known[corner] for corner in corners]
 
 
@@ -114,7 +113,7 @@ def header(path, lines):
 def check_counts(path, said, counts):
     """The header says how many fractures there are."""
     for name, entry in COUNTS.items():
-        k, text = said.get(entry, (0, None))
+        k, text = said.get(entry.lower(), (0, None))
         if text is not None and text != str(counts[name]):
             raise NetworkError(f"{path}: line {k}: {entry} is {text}, the section {name} has {counts[name]} fractures",
                                [path])

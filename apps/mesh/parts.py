@@ -72,8 +72,8 @@ def joined_parts(fractures, dim, tolerance):
             more = f" and {len(places) - 2} more" if len(places) > 2 else ""
             found.append(f"one fracture, \"{name}\", of {len(places)} parts: {places[0]}, {places[1]}{more}")
             continue
-        errors.lines.append(f"{apart.name}: has the name \"{name}\", as {parts[0].name}, and does not meet it; parts of "
-                            f"one fracture meet {HOW[dim]}; choose another name or number, or join them")
+        errors.lines.append(f"{apart.name}: has the name \"{name}\", as {parts[0].name}, and does not meet it; parts "
+                            f"of one fracture meet {HOW[dim]}; choose another name or number, or join them")
         errors.features.append((apart.name, parts[0].name))
     errors.throw()
     return found

@@ -178,8 +178,9 @@ class TitledColumns(Columns):
             order = SHAPE[self.kind] if self.kind != "lines" else ["id", *SHAPE["lines"]]
             meant = next((f"; these are titles of {kind}, which \"format\" names" for kind, titles in SHAPE.items()
                           if set(titles) <= set(self.titles)), "")
-            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name all "
-                        f"of them, and without titles are {','.join(order)}{',...' if self.kind == 'polygons' else ''}")
+            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
+                        f"all of them, and without titles are {','.join(order)}"
+                        f"{',...' if self.kind == 'polygons' else ''}")
         return needed
 
     def check_unit(self, title, unit):

@@ -102,7 +102,8 @@ def of_run(directory, options):
         left_out("loops.png", directory, "it holds one step, a loop needs two")
     start = float(scene.get("Time", {}).get("start", 0))
     dim = content.get("mesh", {}).get("dimension", 3)
-    made = [("series", series.of_run(states, name, clock, start, dim)), ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
+    made = [("series", series.of_run(states, name, clock, start, dim)),
+            ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
     yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)

@@ -31,7 +31,7 @@ def csv_rows(path):
             raise PlotError(f'{path}: line {rows[0][0]}: two columns have the title "{title}"')
     for k, row in rows[1:]:
         if len(row) != len(titles):
-            raise PlotError(f"{path}: line {k}: is not complete: it has {len(row)} columns, the titles are {len(titles)}")
+            raise PlotError(f"{path}: line {k}: is not complete: has {len(row)} columns, the titles are {len(titles)}")
     return [row for _, row in rows]
 
 

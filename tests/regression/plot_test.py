@@ -548,8 +548,9 @@ class Errors(PlotTest):
         self.assertEqual(list(found), list(known))
         for name, curve in known.items():
             self.assertTrue(all(np.array_equal(found[name][title], values) for title, values in curve.items()))
-        self.expect_error(self.write("a.csv", "t,state,jump_n,t\n1,1,1,1\n"), ['line 1: two columns have the title "t"'])
-        self.expect_error(self.write("a.csv", "t,state,jump_n\n1,1,1,1\n"), ["line 2: is not complete: it has 4 columns"])
+        for titles, why in (("t,state,jump_n,t", 'line 1: two columns have the title "t"'),
+                            ("t,state,jump_n", "line 2: is not complete: has 4 columns")):
+            self.expect_error(self.write("a.csv", titles + "\n1,1,1,1\n"), [why])
 
 
 class Numbers(ProgramTest):

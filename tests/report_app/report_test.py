@@ -135,14 +135,17 @@ class Checks(ReportTest):
         for wrong in ("m³/s", "m^3/s"):
             self.assertNotIn(wrong, page)
         step = {"inflows": {"west": 1.0}, "heat_inflows": {"west": 1.0}, "wells": {"w": {"rate": 2.0, "heat": 3.0}}}
-        for dim, units in ((2, ("3 m²/s, is stored", "3 W/m through wells")), (3, ("3 m³/s, is stored", "3 W through wells"))):
+        for dim, units in (
+            (2, ("3 m²/s, is stored", "3 W/m through wells")),
+            (3, ("3 m³/s, is stored", "3 W through wells")),
+        ):
             for check, unit in zip(checks.fluid([step], dim), units):
                 self.assertIn(unit, check.words)
             (table,) = figures.of_wells(step, dim)
             self.assertEqual(table.columns[1], f"rate ({numbers_in_words.RATES['fluid'][dim == 2]})")
 
     def test_stages(self):
-        """Faces are excavated and joints weaken: a report is written, and the laws are not judged by those of the start."""
+        """Faces are excavated and joints weaken: a report is written, laws are not judged by those of the start."""
         content = self.run_scene("stages/gallery_2d.xml")
         self.assertEqual(content["status"], "completed")
         self.assertIn("not judged: the scene has stages", Path(self.write()).read_text())
