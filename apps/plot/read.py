@@ -62,25 +62,37 @@ def results(directory):
     return content
 
 
-STEP = {"time": (int, float), "fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict}
+NUMBER = int, float
+KINDS = {dict: "an object", list: "a list", NUMBER: "a number", bool: "true or false", str: "a text"}
+WHOLE = {"status": str, "steps": list, "mesh": dict, "time_unit": dict, "single_fractures": list, "timing": dict}
+STEP = {"time": NUMBER, "converged": bool, "cuts": NUMBER, "newton_iterations": NUMBER, "linear_iterations": NUMBER,
+        "measures": dict}  # in each step
+OF_STEP = {"fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict, "inflows": dict}  # in some
+MEMBERS = {"fractures": dict, "wells": dict, "reactions": list}  # each of them
 
 
 def check_results(path, content):
     """Refuses results that "sprekk run" does not write."""
-    def refuse(place, value, expected):
-        raise PlotError(f"{path}: {place} is {json.dumps(value)[:40]}, expected {expected}; run the scene again")
+    def check(place, value, kind):
+        if not isinstance(value, kind):
+            text = json.dumps(value)[:40]
+            raise PlotError(f"{path}: {place} is {text}, expected {KINDS[kind]}; run the scene again")
 
-    if not isinstance(content, dict):
-        refuse("the content", content, 'an object with "status" and "steps"')
-    steps = content.get("steps", [])
-    if not isinstance(steps, list):
-        refuse('"steps"', steps, "a list")
-    for k, step in enumerate(steps, 1):
-        if not isinstance(step, dict) or "time" not in step:
-            refuse(f"step {k}", step, 'an object with a "time"')
-        for name, kind in STEP.items():
-            if name in step and not isinstance(step[name], kind):
-                refuse(f'"{name}" of step {k}', step[name], "an object" if kind is dict else "a number")
+    def check_members(place, value, kinds):
+        for name, kind in kinds.items():
+            if name in value:
+                check(f'"{name}"{place}', value[name], kind)
+                for one in value[name].values() if kind is dict and name in MEMBERS else ():
+                    check(f'a member of "{name}"{place}', one, MEMBERS[name])
+
+    check("the content", content, dict)
+    check_members("", content, WHOLE)
+    for k, step in enumerate(content.get("steps", []), 1):
+        check(f"step {k}", step, dict)
+        missing = [name for name in STEP if name not in step]
+        if missing:
+            raise PlotError(f'{path}: step {k} has no "{missing[0]}"; run the scene again')
+        check_members(f" of step {k}", step, {**STEP, **OF_STEP})
 
 
 def scene(directory):

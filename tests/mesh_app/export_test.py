@@ -111,7 +111,7 @@ class ExportTest(ProgramTest):
         self.assertIn("net.geojson: cannot be written: there is no folder", said)
         self.assertFalse((self.folder / "absent").exists())
         (self.folder / "out/results.json").write_text("[]")
-        self.assertIn("results.json: the content is [], expected an object", self.export("net.geojson", expect=1))
+        self.assertIn("results.json: the content is [], expected an object;", self.export("net.geojson", expect=1))
 
     def test_damaged_files(self):
         """A fracture whose file is empty, cut or missing is one error with its name, without lines of VTK; an earlier

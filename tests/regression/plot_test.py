@@ -6,6 +6,7 @@ import contextlib
 import csv
 import importlib.util
 import io
+import json
 import runpy
 import subprocess
 import sys
@@ -526,8 +527,15 @@ class Errors(PlotTest):
         self.draw(self.folder / "out", "--dpi", 20)
 
     def test_results_of_another_kind(self):
-        for content in ("[]", "null", '{"steps": 3}', '{"steps": [1]}', '{"steps": [{"time": 0, "fractures": []}]}'):
+        for content in ("[]", "null", '{"steps": 3}', '{"steps": [1]}', '{"mesh": 2, "steps": []}'):
             self.expect_error(self.write("run/results.json", content).parent, ["results.json: ", "expected "])
+        self.expect_error(self.write("run/results.json", '{"steps": [{}]}').parent, ['step 1 has no "time"'])
+        self.run_scene("seed/push_2d.xml")
+        known = self.results()
+        for name, value in (("fractures", []), ("fractures", {"fracture": 1}), ("time", "0"), ("cuts", None)):
+            step = {**known["steps"][-1], name: value}
+            self.write("run/results.json", json.dumps({**known, "steps": [step]}))
+            self.expect_error(self.folder / "run", [f'"{name}" of step 1 is ', "expected "])
         (self.folder / "run/results.json").write_bytes(b'{"reason": "\xff"}')
         self.expect_error(self.folder / "run", ["results.json: is no JSON"])
 

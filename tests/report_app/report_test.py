@@ -111,7 +111,7 @@ class Pages(ReportTest):
         said = f"sprekk report: {piece}: is damaged or not complete; run the scene again\n"
         self.assertEqual(self.write(expect=1), said)
         (self.folder / "out/results.json").write_text("[]")
-        self.assertIn("results.json: the content is [], expected an object", self.write(expect=1))
+        self.assertIn("results.json: the content is [], expected an object;", self.write(expect=1))
         self.assertFalse((self.folder / "out/report.html").exists())
 
 
