@@ -58,7 +58,7 @@ def reason(error, path):
 
 
 def geojson(path):
-    """The members of the file, whose features are checked as GDAL does not do it."""
+    """The members of the file, with a check of its features that GDAL does not make."""
     try:
         members = json.loads(Path(path).read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
@@ -83,7 +83,7 @@ GEOMETRIES = ("Point", "LineString", "Polygon", "MultiPoint", "MultiLineString",
 
 
 def wrong_geometry(geometry):
-    """What is wrong with a geometry of GeoJSON, or None."""
+    """The fault of a geometry of GeoJSON, or None."""
     if geometry is None:
         return None
     if not isinstance(geometry, dict):
@@ -98,7 +98,7 @@ def wrong_geometry(geometry):
 
 
 def wrong_coordinates(x):
-    """What is wrong with a list of points, or lists of those; a point is a list of numbers."""
+    """The fault of a list of points, or lists of those, or None; a point is a list of numbers."""
     if not isinstance(x, list):
         return f"has the coordinates {json.dumps(x)[:40]}, expected a list"
     if x and not isinstance(x[0], list):

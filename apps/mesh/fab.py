@@ -4,14 +4,14 @@ from shapes import NetworkError
 from tables import Row, Table, complete, numbers, read_lines
 
 METRES = ("m", "meter", "meters", "metre", "metres")
-ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # what the header may say
+ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # allowed in the header
 COUNTS = {"FRACTURE": "No_Fractures", "TESSFRACTURE": "No_TessFractures"}
 HEAD = {"FRACTURE": "the number of a fracture and that of its corners",
         "TESSFRACTURE": "the numbers of a fracture, its nodes, its facets and its set"}
 
 
 class Section:
-    """What lies between BEGIN NAME and END NAME of a file; line numbers are from 0 on."""
+    """The lines between BEGIN NAME and END NAME of a file; line numbers are from 0 on."""
 
     def __init__(self, path, lines, name, begin):
         self.path, self.lines, self.name, self.at = path, lines, name, begin + 1
@@ -45,13 +45,13 @@ class Section:
         return found
 
 
-def points(section, k, number, n, what, table):
+def points(section, k, number, n, kind, table):
     """The n corners or nodes after the head of a fracture, in lines `number x y z` that count from 1 or 0 on."""
     begin, found = section.at, section.take(n)
     first = 0 if found and found[0][:1] == ["0"] else 1
     counted = [words[:1] == [str(first + row)] and len(words) > 3 for row, words in enumerate(found)]
     if len(found) < n or n < 3 or not all(counted):
-        section.refuse(k, f"fracture {number} has {n} {what}; their lines, number x y z, do not follow")
+        section.refuse(k, f"fracture {number} has {n} {kind}; their lines, number x y z, do not follow")
     return [numbers(words[1:4], section.place(begin + row), table, range(2, 5)) for row, words in enumerate(found)]
 
 
@@ -95,7 +95,7 @@ def read_section(section, table, first):
 
 
 def header(path, lines):
-    """{entry: (line, text)} of lines `entry = text`; refuses what is not in metres along these axes."""
+    """{entry: (line, text)} of lines `entry = text`; refuses other units than metres and other axes."""
     found = {}
     for k, line in enumerate(lines, 1):
         entry, equals, text = (word.strip().lower() for word in line.partition("="))
@@ -104,9 +104,9 @@ def header(path, lines):
     for entry, allowed in ENTRIES.items():
         k, text = found.get(entry, (0, allowed[0]))
         if text not in allowed:
-            what = {"length_unit": "lengths are in", "xaxis": "the x axis points"}.get(entry, "the format is")
+            subject = {"length_unit": "lengths are in", "xaxis": "the x axis points"}.get(entry, "the format is")
             expected = "metres" if allowed is METRES else allowed[0]
-            raise NetworkError(f"{path}: line {k}: {what} {text}, expected {expected}", [path])
+            raise NetworkError(f"{path}: line {k}: {subject} {text}, expected {expected}", [path])
     return found
 
 
@@ -120,8 +120,7 @@ def check_counts(path, said, counts):
 
 
 def read_fab(path):
-    """The fractures between BEGIN FRACTURE and END FRACTURE, which are plane, and between BEGIN TESSFRACTURE and END
-    TESSFRACTURE, which are made of triangles."""
+    """The plane fractures of the sections FRACTURE, and those of triangles of the sections TESSFRACTURE."""
     table, lines = Table(), read_lines(path)
     words = [(k, line.split()[:2]) for k, line in enumerate(lines) if "BEGIN" in line and "FRACTURE" in line]
     begins = [(k, two[1]) for k, two in words if two[0] == "BEGIN"]

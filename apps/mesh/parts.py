@@ -1,4 +1,4 @@
-"""Fractures of several lines or polygons, which have one name or one number: their parts must meet."""
+"""Fractures of several lines or polygons of one name or number: these parts must meet."""
 from itertools import product
 
 import numpy as np
@@ -25,7 +25,7 @@ class Pieces:
 
 
 def ends_meet(parts, tolerance):
-    """Pairs of lines of which two ends are at one place."""
+    """Pairs of lines with two ends at one place."""
     ends = np.concatenate([part.points[[0, -1]] for part in parts])
     for i, j in zip(*near_pairs(ends, ends, 2 * tolerance)):
         if np.linalg.norm(ends[i] - ends[j]) <= tolerance:
@@ -48,8 +48,8 @@ def sides_meet(parts, tolerance, pieces):
 
 
 def lone(parts, dim, tolerance):
-    """The first part that does not meet the first of all, on the way over others, or None. What is of one row or
-    feature belongs together."""
+    """The first part that does not meet the first of all, on the way over others, or None. Parts of one row or
+    feature belong together."""
     pieces, first = Pieces(len(parts)), {}
     for k, part in enumerate(parts):
         pieces.join(k, first.setdefault(part.name, k))

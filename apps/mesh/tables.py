@@ -89,7 +89,7 @@ def columns(line):
 
 
 def other_separator(line, words):
-    """What separates columns where commas do not, in words, or None. A name may come before the numbers."""
+    """The separator of columns where commas are none, in words, or None. A name may come before the numbers."""
     line = line.partition("#")[0].strip()
     if ";" in line:
         return SEPARATORS[";"]
@@ -113,8 +113,8 @@ GOES_ON = "..."  # the last title of polygons with any number of corners
 
 
 class Columns:
-    """What the columns of a table are, from 0 on: `shape` in the order of SHAPE, the number, and others as (column,
-    title, unit). `count` is that of columns; None: any, of which the rest are further corners."""
+    """The columns of a table, from 0 on: `shape` in the order of SHAPE, the number, and others as (column, title,
+    unit). `count` is that of columns; None: any, the rest being further corners."""
 
     def __init__(self, kind):
         """Without titles."""
@@ -136,8 +136,8 @@ class Columns:
 
 
 class TitledColumns(Columns):
-    """By the titles in the first line, which decide: those of the shape, `id`, `fid` or `number`, `name`, and entries
-    of a joint with a unit or without, as `initial aperture [mm]`."""
+    """By the titles in the first line: those of the shape, `id`, `fid` or `number`, `name`, and entries of a joint with
+    a unit or without, as `initial aperture [mm]`."""
 
     def __init__(self, kind, words, path, line):
         super().__init__(kind)
@@ -176,7 +176,7 @@ class TitledColumns(Columns):
         if missing:
             listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
             order = SHAPE[self.kind] if self.kind != "lines" else ["id", *SHAPE["lines"]]
-            meant = next((f"; these are titles of {kind}, which \"format\" names" for kind, titles in SHAPE.items()
+            meant = next((f"; these are titles of {kind}, to be named by \"format\"" for kind, titles in SHAPE.items()
                           if set(titles) <= set(self.titles)), "")
             self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
                         f"all of them, and without titles are {','.join(order)}"
@@ -189,7 +189,7 @@ class TitledColumns(Columns):
             self.refuse(f"the column \"{title}\" is in {unit}, expected {expected}")
 
     def missing(self, words):
-        """The first column of the shape, from 0 on, in which a row of lines or ellipses is empty."""
+        """The first empty column of the shape, from 0 on, of a row of lines or ellipses; None if all have a text."""
         return next((k for k in self.shape if not self.text(words, k)), None)
 
 
@@ -223,7 +223,7 @@ ROWS = {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
 
 
 def wrong_columns(words, columns, of, table):
-    """What is wrong with the columns of a row, or None."""
+    """The fault of the columns of a row, or None."""
     kind, n = columns.kind, len(words)
     if columns.titles and columns.count is not None and n > columns.count:
         return f"has {n} columns, the titles are {columns.count}"
@@ -267,7 +267,7 @@ def are_titles(words):
 
 
 def rows_of(path):
-    """(line, words) of the rows of a CSV. Empty lines, rows of commas and what follows a # are passed over."""
+    """(line, words) of the rows of a CSV. Empty lines, rows of commas and comments after # are passed over."""
     for k, line in enumerate(read_lines(path), 1):
         words = columns(line)
         if words is None or not any(word.strip() for word in words):
@@ -280,7 +280,7 @@ def rows_of(path):
 
 
 def read_csv(path, kind):
-    """A table of fractures, a row each. A first line without numbers has titles, which say what the columns are."""
+    """A table of fractures, a row each. A first line without numbers has the titles of the columns."""
     table, known = Table(), None
     for k, words in rows_of(path):
         place = f"{path}: line {k}"

@@ -139,7 +139,7 @@ def listed(path, tag="DataSet", attribute="file"):
 
 @contextmanager
 def messages():
-    """Collects the messages of VTK, which prints them and goes on without a part that it cannot read."""
+    """Collects the messages of VTK. By itself it prints them, and goes on without a part that it cannot read."""
     window, shown, level = vtkStringOutputWindow(), vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
     vtkOutputWindow.SetInstance(window)
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)

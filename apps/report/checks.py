@@ -57,7 +57,7 @@ def contact(directory, content, scene):
     import violation
 
     name = "laws of contact and friction"
-    if scene.entries.get("Stages"):  # which change laws, and excavate faces
+    if scene.entries.get("Stages"):  # they change laws and excavate faces
         return Check(name, "noted", "not judged: the scene has stages")
     written = read.written_steps(directory, "fractures")
     if not written or not all("mean_slip" in f for f in content["steps"][-1].get("fractures", {}).values()):
@@ -105,16 +105,16 @@ def forces(steps, scene):
 def fluid(steps, dim):
     last = steps[-1]
     wells = last.get("wells", {}).values()
-    for key, what, of_wells in (("inflows", "fluid", "rate"), ("heat_inflows", "heat", "heat")):
+    for key, kind, of_wells in (("inflows", "fluid", "rate"), ("heat_inflows", "heat", "heat")):
         through_wells = [well[of_wells] for well in wells if of_wells in well]
         if key not in last and not through_wells:
             continue
-        unit = RATES[what][dim == 2]
+        unit = RATES[kind][dim == 2]
         through = sum(np.sum(value) for value in last.get(key, {}).values())
         by_wells = sum(through_wells)
-        carried = what == "heat" and ("inflows" in last or through_wells)  # boundaries' part of that is not known here
+        carried = kind == "heat" and ("inflows" in last or through_wells)  # boundaries' part of that is not known here
         yield Check(
-            f"balance of {what}",
+            f"balance of {kind}",
             "noted",
             f"at the end {quantity(through)} {unit} come in through boundaries"
             + (" beyond what the fluid carries at their temperatures" if carried else "")

@@ -140,7 +140,7 @@ class Files(MeshTest):
         apart = f'{other}: has the name "set 7", as {one}, and does not meet it; parts of one fracture meet at'
         self.write("net.csv", *rows[:3])
         self.refused(net, apart)
-        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # which crosses it
+        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # crosses it
         self.refused(net, apart)
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5", "A,0.6,0.6,0.8,0.6")
         one, other = (f"fracture A ({net}: line {k})" for k in (2, 3))
@@ -169,7 +169,7 @@ class Files(MeshTest):
         self.assertIn(f'fracture "1" of "set": has the name "set 1", as {one} of another file or section', told)
 
     def test_remarks_in_quotes(self):
-        """What is no entry of a joint may hold anything; the program passes it over."""
+        """Columns that are no entries of a joint may hold anything; the program passes them over."""
         titles = 'name,x0,y0,x1,y1,Remark,"the ""note"""'
         self.write("net.csv", titles, 'A,0.2,0.5,0.4,0.5,"along the ""long"" joint",b')
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
@@ -178,7 +178,7 @@ class Files(MeshTest):
         self.refused(net, "the name 'the \"A\"' has a quotation mark")
 
     def test_places_far_from_the_origin(self):
-        """Coordinates as in UTM: a place is told to a hundredth of a metre; of a small domain better than that."""
+        """Coordinates as in UTM: a place is exact to a hundredth of a metre; in a small domain, better than that."""
         utm = {"lower corner": [466000.0, 6691580.0], "upper corner": [466060.0, 6691640.0]}
         net = self.write("net.csv", "1,466010,6691590,466050,6691600", "2,466020,6691630,466030.001,6691595.0043")
         self.refused(net, "apart at (466030.002, 6691595) without meeting", domain=utm)
@@ -331,7 +331,7 @@ class Files(MeshTest):
         why = f'{net}: line 1: the titles of ellipses lack "cx", "cy"'
         self.refused(net, why, dim=3, kind="ellipses", **self.CUBE)
         net = self.write("net.csv", "cx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.1,0.1,0,0,0")
-        self.refused(net, '; these are titles of ellipses, which "format" names; columns', dim=3, **self.CUBE)
+        self.refused(net, '; these are titles of ellipses, to be named by "format"; columns', dim=3, **self.CUBE)
         net = self.write("net.csv", "x0,y0,z0,x1,y1,z1,x3,y3,z3", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
         self.refused(net, f'{net}: line 1: the titles of polygons lack "x2", "y2", "z2"', dim=3, **self.CUBE)
 
