@@ -188,10 +188,17 @@ def blocks(file):
     """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
     tree, found = whole(vtkXMLMultiBlockDataReader(), file, [piece for _, piece in listed(Path(file))]), {}
     for k in range(tree.GetNumberOfBlocks()):
-        block = tree.GetBlock(k)
-        parts = [block.GetBlock(i) for i in range(block.GetNumberOfBlocks())] if hasattr(block, "GetBlock") else [block]
-        found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts)
+        found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts(tree.GetBlock(k)))
     return found
+
+
+def parts(block):
+    """The grids in a block: a nested one, or one of several pieces, as earlier versions wrote them."""
+    if hasattr(block, "GetBlock"):
+        return [block.GetBlock(k) for k in range(block.GetNumberOfBlocks())]
+    if hasattr(block, "GetPartition"):
+        return [block.GetPartition(k) for k in range(block.GetNumberOfPartitions())]
+    return [block]
 
 
 def grid(file):

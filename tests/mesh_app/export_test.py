@@ -130,6 +130,14 @@ class ExportTest(ProgramTest):
             self.assertEqual(made.read_text(), "earlier")
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["net.geojson", "out"])
 
+    def test_blocks_of_earlier_versions(self):
+        """Pieces in place of nested blocks."""
+        self.run_scene("verification/crossing_2d.xml")
+        names = [feature["properties"]["name"] for feature in self.export("net.geojson")]
+        for file in (self.folder / "out").glob("fractures_*.vtm"):
+            file.write_text(file.read_text().replace("<Block ", "<Piece ").replace("</Block>", "</Piece>"))
+        self.assertEqual([feature["properties"]["name"] for feature in self.export("net.geojson")], names)
+
     def test_shapefiles_are_replaced(self):
         """With all the files that belong to them."""
         self.run_scene("verification/crossing_2d.xml")
