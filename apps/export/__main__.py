@@ -5,6 +5,7 @@ fracture a polygon, or a polygon of each face where it is not plane. All is in m
 import argparse
 import re
 import sys
+import tempfile
 from pathlib import Path
 
 sys.path.insert(1, str(Path(__file__).resolve().parents[1] / "plot"))
@@ -33,20 +34,37 @@ def write_geojson(path, found, plane, crs):
     path.write_text(as_geojson(found, plane, crs), encoding="utf-8")
 
 
-def write_shapefile(path, found, plane, crs):
+def geographic_library(path):
+    """GDAL's modules ogr and osr."""
     try:
         from osgeo import ogr, osr
     except ImportError:
         raise PlotError(f"{path}: writing this needs GDAL for Python: apt-get install python3-gdal") from None
     ogr.UseExceptions()
     osr.UseExceptions()
-    system = None
-    if crs:
-        system = osr.SpatialReference()
+    return ogr, osr
+
+
+def metric_system(path, crs):
+    """The coordinate system of EPSG:N; refuses one that is unknown or not in metres."""
+    if not re.fullmatch(r"EPSG:\d{4,6}", crs):
+        raise PlotError(f"--crs {crs}: is no coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
+    _, osr = geographic_library(path)
+    system = osr.SpatialReference()
+    try:
         system.ImportFromEPSG(int(crs[5:]))
+    except RuntimeError:
+        raise PlotError(f"--crs {crs}: is unknown to GDAL, expected a system with metres, such as EPSG:25832") from None
+    if not system.IsProjected() or abs(system.GetLinearUnits() - 1) > 1e-12:
+        unit = "degrees" if system.IsGeographic() else system.GetLinearUnitsName()
+        raise PlotError(f"--crs {crs}: {system.GetName()} is in {unit}, expected one with metres, such as EPSG:25832")
+    return system
+
+
+def write_shapefile(path, found, plane, crs):
+    ogr, _ = geographic_library(path)
+    system = metric_system(path, crs) if crs else None
     driver = ogr.GetDriverByName("ESRI Shapefile")
-    if path.exists():
-        driver.DeleteDataSource(str(path))
     source = driver.CreateDataSource(str(path))
     layer = source.CreateLayer(
         path.stem, system, ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D, ["ENCODING=UTF-8"]
@@ -88,6 +106,7 @@ def geometry(ogr, shapes, plane):
     return whole
 
 
+BESIDE = (".shx", ".dbf", ".prj", ".cpg")  # files of an earlier shapefile
 WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shapefile}
 
 
@@ -97,12 +116,27 @@ def export(options):
     write = WRITERS.get(options.output.suffix.lower())
     if write is None:
         raise PlotError(f"{options.output}: ends in none of {', '.join(WRITERS)}")
-    if options.crs and not re.fullmatch(r"EPSG:\d{4,6}", options.crs):
-        raise PlotError(f"--crs {options.crs}: is no coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
+    folder = options.output.parent
+    if not folder.is_dir():
+        raise PlotError(f"{options.output}: cannot be written: there is no folder {folder}")
+    if options.crs:
+        metric_system(options.output, options.crs)
     found, plane = features.of_run(options.directory, options.time)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    write(options.output, found, plane, options.crs)
+    try:
+        put(write, options.output, found, plane, options.crs)
+    except OSError as error:
+        raise PlotError(f"{options.output}: cannot be written: {error.strerror or error}") from None
     return options.output
+
+
+def put(write, path, *content):
+    """Writes all files in a scratch folder and moves them to their place: an error leaves no part behind."""
+    with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
+        write(Path(scratch) / path.name, *content)
+        for ending in BESIDE if write is write_shapefile else ():
+            path.with_suffix(ending).unlink(missing_ok=True)
+        for file in sorted(Path(scratch).iterdir()):
+            file.replace(path.parent / file.name)
 
 
 def main(words=None):

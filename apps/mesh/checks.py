@@ -2,7 +2,7 @@
 import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
-from shapes import Errors
+from shapes import Errors, at
 
 
 def names(plan, one, other):
@@ -24,8 +24,9 @@ def both(pair):
 def too_close(plan, pair, gap, where):
     allowed, tolerance = plan.network.minimum_distance, plan.network.tolerance
     advice = f"move one, or join them by a larger \"tolerance\" (now {tolerance:.3g} m)" if gap > tolerance else "move one"
-    place = ", ".join(f"{x:.6g}" for x in where[:plan.dim])
-    return (f"{both(pair)} are {gap:.3g} m apart at ({place}) without meeting; the \"minimum distance\" is {allowed:.3g} m; {advice}")
+    place = at(where[:plan.dim], plan.network.domain.size)
+    return (f"{both(pair)} are {gap:.3g} m apart at {place} without meeting; "
+            f"the \"minimum distance\" is {allowed:.3g} m; {advice}")
 
 
 def close_edges(plan):

@@ -2,15 +2,19 @@
 import csv
 import os
 import xml.etree.ElementTree as xml
+from itertools import count
 
 import exchange
 import numpy as np
 from domain import Body, rows
+from fab import read_fab
 from generator import at_random
-from shapes import Errors, Feature, NetworkError, ellipse
+from parts import joined_parts
+from shapes import MOST, Errors, Feature, NetworkError, at, ellipse, refuse
 from tables import Table, read_table
 
 MOST_FRACTURES = 10**5
+MOST_DIAGONALS = 1e6  # of the domain, from its centre to a point of a fracture
 
 READ = {"int": int, "double": float, "bool": lambda text: text == "true", "string": str}
 
@@ -39,6 +43,19 @@ def opened(ring):
     return ring[:-1] if len(ring) > 3 and (ring[0] == ring[-1]).all() else ring
 
 
+def printable(properties):
+    """Texts as files of gmsh have them, in quotation marks. Whether one is an entry of a joint, the program says."""
+    def clean(text):
+        return "".join(c if c.isprintable() else " " for c in text.replace('"', "'"))
+    return {clean(title): clean(text) for title, text in properties.items()}
+
+
+def free_names(name, features):
+    """`name` with the numbers from 1 on that no feature has."""
+    taken = {feature.single for feature in features}
+    return (one for one in (f"{name} {k}" for k in count(1)) if one not in taken)
+
+
 class Network:
     """What a mesh is to be made of."""
 
@@ -59,7 +76,9 @@ class Network:
         self.check_singles()
         self.check_boxes()
         self.check_dimensions()
+        self.check_reach()
         self.set_sizes()
+        self.joined = joined_parts(self.fractures, self.dim, self.tolerance)  # lines for the report
 
     def place(self, path):
         return f"Sprekk > Mesh file > network > {path}"
@@ -75,7 +94,7 @@ class Network:
         if exchange.is_exchange(path) and "format" not in content:
             return Table(exchange.read(path, 2 if of_domain == "lines" else 3))
         kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
-        return read_table(path, kind)
+        return read_fab(path) if kind == "fab" else read_table(path, kind)
 
     def domain_entries(self):
         if "domain" in self.entries:
@@ -90,25 +109,27 @@ class Network:
         for name, content in self.entries.get(section, {}).items():
             path, n = self.place(f"{section} > {name}"), 2 if self.dim == 2 else 3
             if (section, name) in self.tables:
-                found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}", row.properties)
-                          for row in self.tables[section, name].fractures]
+                rows_read = self.tables[section, name].fractures
+                found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}",
+                                  content["file"], printable(row.properties)) for row in rows_read]
             for of, least in (("lines", 2), ("polygons", 3)):
                 for one, points in content.get(of, {}).items():
                     if (of == "lines") != (self.dim == 2):
                         raise NetworkError(f"{path} > {of} > {one}: the domain has dimension {self.dim}; give {'lines' if n == 2 else 'polygons'}")
                     found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"', rows(points["points"], n, f"{path} > {of} > {one}", least),
-                                         f"{name} {one}"))
+                                         f"{name} {one}", of))
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
-                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"]), f"{name} {one}"))
+                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"]),
+                                     f"{name} {one}", "ellipses"))
             number = len(found) + content.get("random", {}).get("number", 0)
             if number > MOST_FRACTURES:
                 raise NetworkError(f"{path}: brings the network to {number} {kind}s, at most {MOST_FRACTURES} are meshed")
             if "random" in content:
                 names = [f'{kind} {k + 1} at random of "{name}"' for k in range(content["random"]["number"])]
                 again = {k: self.again[one] for k, one in enumerate(names) if one in self.again}
-                found += [Feature(kind, name, one, x, f"{name} {k + 1}")
-                          for k, (one, x) in enumerate(zip(names, at_random(content["random"], self.domain, again)))]
+                drawn = zip(names, free_names(name, found), at_random(content["random"], self.domain, again))
+                found += [Feature(kind, name, one, x, single, "random") for one, single, x in drawn]
                 self.at_random += names
         for feature in found if self.dim == 3 else ():
             feature.points = opened(feature.points)
@@ -120,7 +141,7 @@ class Network:
             other = table.box and abs(np.array(table.box) - (self.domain.low, self.domain.high)).max() > 1e-9 * self.domain.size
             if other:
                 path = self.entries[section][name]["file"]
-                said, known = (" to ".join(f"({', '.join(f'{x:g}' for x in corner)})" for corner in box)
+                said, known = (" to ".join(at(corner, self.domain.size) for corner in box)
                                for box in (table.box, (self.domain.low, self.domain.high)))
                 raise NetworkError(f"{as_known(path)}: tells of a domain from {said}, the scene's is {known}; leave one out", [as_known(path)])
 
@@ -145,11 +166,11 @@ class Network:
                 errors.lines.append(f"{feature.name}: the name {name!r} has a quotation mark or what cannot be printed; choose another")
             elif one.group != feature.group:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another set; choose another")
+            elif one.source != feature.source:
+                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another file or "
+                                    "section; choose another")
             elif one.properties != feature.properties:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, and other values in further columns")
-            for entry, value in feature.properties.items():
-                if any('"' in text or not text.isprintable() for text in (entry, value)):
-                    errors.lines.append(f"{feature.name}: {entry} = {value!r} has a quotation mark or what cannot be printed")
         errors.throw(self.files)
 
     def check_dimensions(self):
@@ -159,6 +180,17 @@ class Network:
         for feature in self.fractures + self.constraints:
             if feature.points.shape[1] != self.dim:
                 raise NetworkError(f"{feature.name}: has dimension {feature.points.shape[1]}, the domain {self.dim}")
+
+    def check_reach(self):
+        """Coordinates far from the domain are mistakes, and beyond round-off."""
+        centre, most, errors = 0.5 * (self.domain.low + self.domain.high), MOST_DIAGONALS * self.domain.size, Errors()
+        for feature in self.fractures + self.constraints:
+            x = feature.points.ravel()[abs(feature.points).argmax()]
+            with errors.of_one():
+                if abs(x) > MOST or abs(feature.points - centre).max() > most:
+                    refuse(feature, f"has the coordinate {x:g} m, more than {MOST_DIAGONALS:g} diagonals of the domain "
+                                    "away")
+        errors.throw(self.files)
 
     def set_sizes(self):
         e, diagonal = self.entries, self.domain.size

@@ -2,7 +2,7 @@
 import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.ops import polygonize, unary_union
-from shapes import Feature, NetworkError, check_polygon, refuse
+from shapes import MOST, Feature, NetworkError, check_polygon, refuse
 from surfaces import Surface, are_level, chords, heights, lines_of, overlap, polygons_of
 
 BOX_SIDES = ["west", "east", "south", "north", "bottom", "top"]
@@ -54,6 +54,9 @@ class Body:
             sides = [rows(face["points"], 3, f"{place} > faces > {name}", 3) for name, face in description["faces"].items()]
         points = np.concatenate(list(sides)) if self.dim == 3 else sides
         self.low, self.high = points.min(axis=0), points.max(axis=0)
+        largest = points.ravel()[np.abs(points).argmax()]
+        if abs(largest) > MOST:
+            raise NetworkError(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are meshed")
         self.size = np.linalg.norm(self.high - self.low)
         if self.dim == 2:
             self.corners, self.shape = sides, Polygon(sides)

@@ -1,10 +1,11 @@
 """Fractures in files of geographic information systems and drawings, by GDAL: GeoJSON, shapefiles, GeoPackages, DXF."""
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from shapes import Errors, NetworkError
+from shapes import MOST, Errors, NetworkError
 
 DRIVERS = {".geojson": "GeoJSON", ".json": "GeoJSON", ".shp": "ESRI Shapefile", ".gpkg": "GPKG", ".dxf": "DXF"}
 COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # of a shapefile
@@ -36,21 +37,99 @@ def files_of(path):
 
 def library():
     try:
-        from osgeo import gdal, ogr
+        from osgeo import gdal, ogr, osr
     except ImportError:
         raise NetworkError("reading this needs GDAL for Python: apt-get install python3-gdal") from None
     gdal.UseExceptions()
     ogr.UseExceptions()
-    return gdal, ogr
+    osr.UseExceptions()
+    return gdal, ogr, osr
 
 
-def refuse_degrees(path, layer):
-    """Coordinates must be lengths in metres."""
-    system = layer.GetSpatialRef()
-    if Path(path).suffix.lower() in (".geojson", ".json"):
+def reason(error, path):
+    """Of an error of GDAL, without places in its source."""
+    text = " ".join(str(error).split())
+    at_line = re.search(r"error at line (\d+) of ", text)
+    if at_line:
+        return f"line {at_line[1]} is damaged, or the file ends there"
+    if "not recognized as" in text:
+        return f"is no {DRIVERS[Path(path).suffix.lower()]} file"
+    return re.sub(r"\S+\.(?:c|cpp|h), ?\d+: ", "", text) or "it is damaged, GDAL gives no reason"
+
+
+def geojson(path):
+    """The members of the file, with a check of its features that GDAL does not make."""
+    try:
         members = json.loads(Path(path).read_text(encoding="utf-8-sig"))
-        if members.get("crs", False) is None:  # a local system, as before RFC 7946
-            return
+    except UnicodeDecodeError:
+        raise NetworkError(f"{path}: cannot be read: is no text in UTF-8", [path]) from None
+    except ValueError as error:
+        raise NetworkError(f"{path}: cannot be read: is no JSON: {error}", [path]) from None
+    if not isinstance(members, dict) or not isinstance(members.get("features", []), list):
+        raise NetworkError(
+            f"{path}: cannot be read: is no GeoJSON, expected an object with a list of \"features\"", [path]
+        )
+    errors = []
+    for k, feature in enumerate(members.get("features", [members]), 1):
+        geometry = feature.get("geometry") if isinstance(feature, dict) else feature
+        wrong = wrong_geometry(geometry)
+        if wrong:
+            errors.append(f"{path}: feature {k}: {wrong}")
+    Errors(errors).throw([path])
+    return members
+
+
+GEOMETRIES = ("Point", "LineString", "Polygon", "MultiPoint", "MultiLineString", "MultiPolygon")
+
+
+def wrong_geometry(geometry):
+    """The fault of a geometry of GeoJSON, or None."""
+    if geometry is None:
+        return None
+    if not isinstance(geometry, dict):
+        return f"its geometry is {json.dumps(geometry)[:40]}, expected an object"
+    if geometry.get("type") == "GeometryCollection":
+        inner = geometry.get("geometries")
+        return next(filter(None, map(wrong_geometry, inner)), None) if isinstance(inner, list) else "has no geometries"
+    if geometry.get("type") not in GEOMETRIES:
+        kind = json.dumps(geometry.get("type"))[:40]
+        return f"has a geometry of the type {kind}, expected one of {', '.join(GEOMETRIES)}"
+    return wrong_coordinates(geometry.get("coordinates"))
+
+
+def wrong_coordinates(x):
+    """The fault of a list of points, or lists of those, or None; a point is a list of numbers."""
+    if not isinstance(x, list):
+        return f"has the coordinates {json.dumps(x)[:40]}, expected a list"
+    if x and not isinstance(x[0], list):
+        wrong = [one for one in x if isinstance(one, bool) or not isinstance(one, (int, float))]
+        if wrong:
+            return f"has the coordinate {json.dumps(wrong[0])[:40]}, expected a number"
+        return None if len(x) > 1 else f"has a point of {len(x)} coordinate, expected x and y"
+    return next(filter(None, (wrong_coordinates(inner) for inner in x)), None)
+
+
+def system_of(path, crs, osr):
+    """The coordinate system that GeoJSON names; GDAL takes one that it does not know for WGS 84."""
+    name = crs.get("properties", {}).get("name") if isinstance(crs, dict) and crs.get("type") == "name" else None
+    if not isinstance(name, str):
+        raise NetworkError(f"{path}: \"crs\" is {json.dumps(crs)[:60]}, expected null or "
+                           "{\"type\": \"name\", \"properties\": {\"name\": \"EPSG:NUMBER\"}}", [path])
+    system = osr.SpatialReference()
+    try:
+        if not re.match(r"(?i)epsg:|urn:|ogc:|esri:", name):
+            raise RuntimeError
+        system.SetFromUserInput(name)
+    except RuntimeError:
+        raise NetworkError(f"{path}: names the coordinate system \"{name}\", which GDAL does not know; expected one "
+                           "with metres, such as \"EPSG:25832\"", [path]) from None
+    return system
+
+
+def refuse_degrees(path, layer, members, osr):
+    """Coordinates must be lengths in metres; `members` are those of GeoJSON."""
+    system = layer.GetSpatialRef()
+    if members is not None:
         if "crs" not in members:
             raise NetworkError(
                 f"{path}: names no coordinate system (\"crs\"), which means longitude and latitude in degrees "
@@ -58,12 +137,21 @@ def refuse_degrees(path, layer):
                 "\"crs\": null for local coordinates in metres",
                 [path],
             )
+        if members["crs"] is None:  # a local system, as before RFC 7946
+            return
+        system = system_of(path, members["crs"], osr)
     if system is None:
         return
     if system.IsGeographic():
         raise NetworkError(
             f"{path}: has longitudes and latitudes in degrees ({system.GetName()}), and Sprekk needs metres; "
             "export it in a projected system such as UTM",
+            [path],
+        )
+    if system.IsGeocentric():
+        raise NetworkError(
+            f"{path}: has coordinates from the centre of the earth ({system.GetName()}); export it in a projected "
+            "system such as UTM",
             [path],
         )
     if abs(system.GetLinearUnits() - 1) > 1e-12:
@@ -111,6 +199,10 @@ def corners(part, is_polygon, dim, place, errors):
     if not np.isfinite(points).all():
         errors.append(f"{place}: has coordinates that are not finite")
         return None
+    if abs(points).max(initial=0) > MOST:
+        largest = points.ravel()[abs(points).argmax()]
+        errors.append(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are meshed")
+        return None
     if dim == 2:
         points = points[:, :2]
     elif not part.Is3D():
@@ -155,24 +247,24 @@ def outlines(feature, k, dim, path, ogr, errors):
 
 def read(path, dim):
     """The fractures in a file; refuses it with a line for each thing that is wrong."""
-    gdal, ogr = library()
+    gdal, ogr, osr = library()
     if not Path(path).is_file():
         raise NetworkError(
             f"{path}: cannot be read: " + ("is no file" if Path(path).exists() else "No such file or directory"), [path]
         )
-    found, errors = [], []
+    found, errors, k, ending = [], [], 0, Path(path).suffix.lower()
+    members = geojson(path) if DRIVERS[ending] == "GeoJSON" else None
     try:
-        source = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=[DRIVERS[Path(path).suffix.lower()]])
-        if Path(path).suffix.lower() == ".dxf":
+        source = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=[DRIVERS[ending]])
+        if ending == ".dxf":
             refuse_other_units(path)
-        k = 0
         for layer in (source.GetLayer(i) for i in range(source.GetLayerCount())):
-            refuse_degrees(path, layer)
+            refuse_degrees(path, layer, members, osr)
             for feature in layer:
                 k += 1
                 found += outlines(feature, k, dim, path, ogr, errors)
-    except (RuntimeError, ValueError) as error:  # by GDAL and json
-        raise NetworkError(f"{path}: cannot be read: {' '.join(str(error).split())}", [path]) from None
+    except RuntimeError as error:  # by GDAL
+        raise NetworkError(f"{path}: cannot be read: {reason(error, path)}", [path]) from None
     if not errors and not found:
         errors.append(f"{path}: has no fracture")
     Errors(errors).throw([path])

@@ -23,7 +23,7 @@ class Plan:
 
     def __init__(self, network):
         self.network, self.dim = network, network.dim
-        self.repairs, self.surfaces = [], None
+        self.repairs, self.surfaces = list(network.joined), None
         # What joins lines would bend surfaces, of which only corners are moved, in their planes; all else is exact.
         self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
         self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()

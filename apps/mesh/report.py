@@ -44,7 +44,7 @@ def of_sets(mesh, plan, sizes):
     for name, owners in sets.items():
         faces = mesh.faces[np.isin(mesh.face_owner, owners)]
         edges = measure(mesh.points, edges_of(faces))
-        found[name] = {"fractures": len({id(plan.owners[k]) if plan.dim == 3 else plan.owners[k].name for k in owners}),
+        found[name] = {"fractures": len({plan.owners[k].single for k in owners}),
                        "length" if plan.dim == 2 else "area": float(measure(mesh.points, faces).sum()), "faces": len(faces),
                        "median edge": float(np.median(edges)), "shortest edge": float(edges.min()),
                        "median size asked for": float(np.median([sizes.of_owner[k] for k in owners]))}

@@ -7,6 +7,9 @@ from shapely.geometry import LineString, Polygon
 from shapely.validation import explain_validity
 
 
+MOST = 1e12  # m; the largest coordinate
+
+
 class NetworkError(Exception):
     """What is wrong with a network: a line for each thing; `files` open lines about themselves. `features` has the names of those
     that stand in each other's way, a tuple for each line; empty where the fault is not theirs."""
@@ -46,7 +49,15 @@ class Feature:
     name: str  # in messages
     points: np.ndarray = field(repr=False)  # (n, 2) or (n, 3), m
     single: str = ""  # of a fracture: how results call it; several of one name are one
+    source: str = ""  # of a fracture: the file or the section that it is from
     properties: dict = field(default_factory=dict)  # entries of its joint that it has of its own, as texts
+
+
+def at(point, extent):
+    """A place in words, to a hundredth of a metre and to 1e-4 of the extent or better."""
+    finest, largest = min(0.01, 1e-4 * extent), np.abs(point).max()
+    digits = max(6, int(np.floor(np.log10(max(largest, finest) / finest))) + 1)
+    return f"({', '.join(f'{x:.{digits}g}' for x in point)})"
 
 
 def refuse(feature, what):

@@ -1,4 +1,4 @@
-"""Files of fractures as they are exchanged: CSV of lines, polygons and ellipses, and .fab of FracMan."""
+"""Tables of fractures: CSV of lines, polygons and ellipses."""
 import csv
 import math
 import os
@@ -7,7 +7,7 @@ import stat
 from dataclasses import dataclass, field
 
 import numpy as np
-from shapes import Errors, NetworkError, ellipse
+from shapes import MOST, Errors, NetworkError, ellipse
 
 MOST_CHARACTERS = 2 * 10**8  # of a file; some million fractures
 SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # that are none
@@ -26,19 +26,18 @@ class Row:
 @dataclass
 class Table:
     fractures: list = field(default_factory=list)  # rows
-    n_columns: int = 5  # of lines, those of the shape; 4 without a number
-    box: tuple = None  # lowest and highest corner of the domain, if the file tells
+    box: tuple = None  # lowest and highest corner of the domain, if the file has them
     errors: list = field(default_factory=list)
 
-    def add(self, place, points):
-        number = str(len(self.fractures) + 1)
+    def add(self, place, points, number=""):
+        number = number or str(len(self.fractures) + 1)
         self.fractures.append(Row(f"{number} ({place})", points, number))
 
 
-def numbers(words, place, table, first=1):
-    """The words, from column `first` on, as finite numbers, or None and an error."""
+def numbers(words, place, table, columns):
+    """The words as finite numbers, or None and an error with the column of the file."""
     found = []
-    for k, word in enumerate(words, first):
+    for k, word in zip(columns, words):
         try:
             found.append(number(word))
         except ValueError:
@@ -46,6 +45,9 @@ def numbers(words, place, table, first=1):
             return None
         if not math.isfinite(found[-1]):
             table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no finite number")
+            return None
+        if abs(found[-1]) > MOST:
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is beyond {MOST:g}, the largest allowed")
             return None
     return np.array(found)
 
@@ -87,12 +89,14 @@ def columns(line):
 
 
 def other_separator(line, words):
-    """What separates the numbers of a row where commas do not, in words, or None. A name may come before the numbers."""
+    """The separator of columns where commas are none, in words, or None. A name may come before the numbers."""
     line = line.partition("#")[0].strip()
     if ";" in line:
         return SEPARATORS[";"]
     if len(words) > 1 and all(map(is_number, words[1:])):
         return None
+    if len(words) == 1 and "\t" in line:
+        return SEPARATORS["\t"]
     for separator, name in SEPARATORS.items():
         parts = [part.strip().replace(",", ".") for part in line.split(separator)]  # decimal commas, perhaps
         if len(parts) > 2 and all(map(is_number, parts[1:])):
@@ -100,148 +104,213 @@ def other_separator(line, words):
     return None
 
 
-def lines_row(words, place, table):
-    if len(words) != table.n_columns:
-        needed = "5: id,x0,y0,x1,y1" if table.n_columns == 5 else "4: x0,y0,x1,y1"
-        table.errors.append(f"{place}: has {len(words)} columns, needs {needed}")
-        return
-    x = numbers(words[-4:], place, table, len(words) - 3)
-    if x is not None:
-        number = words[0].strip() if len(words) == 5 else str(len(table.fractures) + 1)
-        table.fractures.append(Row(f"{number} ({place})", x.reshape(2, 2), number))
+SHAPE = {"lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2"],
+         "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}  # titles of columns
+NUMBER = ("id", "fid", "number")  # titles of the number of a fracture; the first of these counts
+UNITS = {"rake": "deg", "strike": "deg", "dip": "deg"}  # others are in m
+SPELLINGS = {"m": ("", "m", "meter", "meters", "metre", "metres"), "deg": ("", "deg", "degree", "degrees", "°")}
+GOES_ON = "..."  # the last title of polygons with any number of corners
 
 
-def polygons_row(words, place, table):
-    if len(words) == 6 and not table.fractures and table.box is None:
-        x = numbers(words, place, table)
-        if x is not None and not (x[3:] > x[:3]).all():
-            table.errors.append(f"{place}: the domain xmin,ymin,zmin,xmax,ymax,zmax has a maximum that is not above its minimum")
-        elif x is not None:
-            table.box = x[:3], x[3:]
-        return
-    if len(words) % 3 or len(words) < 9:
-        table.errors.append(f"{place}: has {len(words)} columns, needs 3 for each of at least 3 corners: x0,y0,z0,x1,y1,z1,...")
-        return
-    x = numbers(words, place, table)
-    if x is not None:
-        table.add(place, x.reshape(-1, 3))
+class Columns:
+    """The columns of a table, from 0 on: `shape` in the order of SHAPE, the number, and others as (column, title,
+    unit). `count` is that of columns; None: any, the rest being further corners."""
+
+    def __init__(self, kind):
+        """Without titles."""
+        self.kind, self.titles, self.named = kind, [], []
+        self.number = 0 if kind == "lines" else None
+        self.shape = {"lines": range(1, 5), "polygons": range(0), "ellipses": range(8)}[kind]
+        self.count = {"lines": 5, "polygons": None, "ellipses": 8}[kind]
+
+    def of(self, words):
+        """The columns of the shape in a row, as long as it is."""
+        return [*self.shape, *(range(len(self.titles), len(words)) if self.count is None else ())]
+
+    def text(self, words, k):
+        return words[k].strip() if k is not None and k < len(words) else ""
+
+    def properties(self, words):
+        texts = {title: (self.text(words, k), unit) for k, title, unit in self.named}
+        return {title: f"{text} {unit}".strip() for title, (text, unit) in texts.items() if text}
 
 
-def ellipses_row(words, place, table):
-    if len(words) != 8:
-        table.errors.append(f"{place}: has {len(words)} columns, needs 8: cx,cy,cz,r1,r2,rake,strike,dip")
-        return
-    x = numbers(words, place, table)
-    if x is None:
-        return
+class TitledColumns(Columns):
+    """By the titles in the first line: those of the shape, `id`, `fid` or `number`, `name`, and entries of a joint with
+    a unit or without, as `initial aperture [mm]`."""
+
+    def __init__(self, kind, words, path, line):
+        super().__init__(kind)
+        self.path, self.line = path, line
+        parted = [parted_title(word) for word in words]
+        self.titles, units = [title.lower() for title, _ in parted], [unit for _, unit in parted]
+        self.refuse_doubled()
+        self.count = len(words)
+        if kind == "polygons" and self.titles[-1:] == [GOES_ON]:
+            self.count = None
+            self.titles.pop()
+        shape = self.shape_titles()
+        self.shape = [self.titles.index(title) for title in shape]
+        for title, k in zip(shape, self.shape):
+            self.check_unit(title, units[k])
+        self.number = next((self.titles.index(title) for title in NUMBER if title in self.titles), None)
+        self.named = [(k, "name" if title == "name" else parted[k][0], units[k])
+                      for k, title in enumerate(self.titles) if title and title not in (*shape, *NUMBER)]
+
+    def refuse(self, why):
+        raise NetworkError(f"{self.path}: line {self.line}: {why}", [self.path])
+
+    def refuse_doubled(self):
+        for k, title in enumerate(self.titles):
+            if title and title in self.titles[:k]:
+                self.refuse(f"columns {self.titles.index(title) + 1} and {k + 1} have the same title, \"{title}\"")
+
+    def shape_titles(self):
+        """Those of the shape; of polygons with as many corners as there are titles."""
+        needed = SHAPE[self.kind]
+        if self.kind == "polygons":
+            of_corners = (re.fullmatch(r"[xyz](\d{1,6})", title) for title in self.titles)
+            last = max((int(found[1]) for found in of_corners if found), default=0)
+            needed = [f"{axis}{k}" for k in range(max(last + 1, 1 if self.count is None else 3)) for axis in "xyz"]
+        missing = [f'"{title}"' for title in needed if title not in self.titles]
+        if missing:
+            listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
+            order = SHAPE[self.kind] if self.kind != "lines" else ["id", *SHAPE["lines"]]
+            meant = next((f"; these are titles of {kind}, to be named by \"format\"" for kind, titles in SHAPE.items()
+                          if set(titles) <= set(self.titles)), "")
+            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
+                        f"all of them, and without titles are {','.join(order)}"
+                        f"{',...' if self.kind == 'polygons' else ''}")
+        return needed
+
+    def check_unit(self, title, unit):
+        expected = UNITS.get(title, "m")
+        if unit.lower() not in SPELLINGS[expected]:
+            self.refuse(f"the column \"{title}\" is in {unit}, expected {expected}")
+
+    def missing(self, words):
+        """The first empty column of the shape, from 0 on, of a row of lines or ellipses; None if all have a text."""
+        return next((k for k in self.shape if not self.text(words, k)), None)
+
+
+def parted_title(word):
+    """The title and the unit in brackets."""
+    return re.fullmatch(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", word, re.DOTALL).groups("")
+
+
+def lines_row(x, place, table, number):
+    table.add(place, x.reshape(2, 2), number)
+
+
+def ellipses_row(x, place, table, number):
     if min(x[3:5]) <= 0:
         table.errors.append(f"{place}: has the radii {x[3]:g} and {x[4]:g}, they must be positive")
-        return
-    table.add(place, ellipse(x[:3], x[3:5], x[6], x[7], x[5]))
-
-
-SHAPE = {"lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0"], "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}
-OF_SHAPE = re.compile(r"f?id|[xyz]\d+|c[xyz]|r[12]|rake|strike|dip")  # titles of columns
-N_COLUMNS = {"lines": 5, "ellipses": 8}  # without titles
-
-
-def named_columns(titles, kind):
-    """The columns beside those of the shape: (column, title, unit). Titles are `name`, or an entry of a joint with its
-    unit or without: `initial aperture [mm]`. Where titles do not tell the columns of the shape, those come first."""
-    words = [re.fullmatch(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title).groups("") for title in titles]
-    known = [title.lower() for title, _ in words]
-    if set(SHAPE[kind]) <= set(known):
-        other = [k for k, title in enumerate(known) if title and not OF_SHAPE.fullmatch(title)]
     else:
-        other = range(N_COLUMNS.get(kind, len(words)), len(words))
-    return [(k, "name" if known[k] == "name" else words[k][0], words[k][1]) for k in other]
+        table.add(place, ellipse(x[:3], x[3:5], x[6], x[7], x[5]), number)
 
 
-def take_named(words, columns):
-    """The texts of named columns, which are removed from the words."""
-    found = {}
-    for k, title, unit in columns:
-        text = words[k].strip() if k < len(words) else ""
-        if text:
-            found[title] = f"{text} {unit}".strip()
-    taken = {k for k, _, _ in columns}
-    words[:] = [word for k, word in enumerate(words) if k not in taken]
-    return found
+def polygons_row(x, place, table, number):
+    if len(x) != 6:
+        table.add(place, x.reshape(-1, 3), number)
+    elif (x[3:] > x[:3]).all():
+        table.box = x[:3], x[3:]
+    else:
+        table.errors.append(f"{place}: the domain xmin,ymin,zmin,xmax,ymax,zmax has a maximum that is not above its "
+                            "minimum")
 
 
-def read_csv(path, kind):
-    """A table of lines with commas; empty lines and what follows a # are passed over. A first line without numbers has
-    titles."""
-    row = {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}[kind]
-    table, is_first, named = Table(), True, []
+ROWS = {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
+
+
+def wrong_columns(words, columns, of, table):
+    """The fault of the columns of a row, or None."""
+    kind, n = columns.kind, len(words)
+    if columns.titles and columns.count is not None and n > columns.count:
+        return f"has {n} columns, the titles are {columns.count}"
+    if kind == "polygons":
+        is_box = len(of) == 6 and not table.fractures and table.box is None
+        if not is_box and (len(of) % 3 or len(of) < 9):
+            return f"has {len(of)} columns, needs 3 for each of at least 3 corners: x0,y0,z0,x1,y1,z1,..."
+    elif columns.titles:
+        k = columns.missing(words)
+        return None if k is None else f"has no number in column {k + 1}, \"{columns.titles[k]}\""
+    elif n != columns.count:
+        needed = ",".join((["id"] if kind == "lines" else []) + SHAPE[kind])
+        return f"has {n} columns, needs {columns.count}: {needed}"
+    return None
+
+
+def read_row(words, columns, place, table):
+    """Adds the fracture of a row, or an error."""
+    of = columns.of(words)
+    if columns.kind == "polygons":
+        while of and not columns.text(words, of[-1]):  # polygons with fewer corners
+            of.pop()
+    wrong = wrong_columns(words, columns, of, table)
+    if wrong:
+        table.errors.append(f"{place}: {wrong}")
+        return
+    x, before = numbers([words[k] for k in of], place, table, [k + 1 for k in of]), len(table.fractures)
+    if x is None:
+        return
+    ROWS[columns.kind](x, place, table, columns.text(words, columns.number))
+    for fracture in table.fractures[before:]:
+        has = columns.properties(words)
+        fracture.name = has.pop("name", "")
+        fracture.properties = has
+        if fracture.name:
+            fracture.title = f"{fracture.name} ({place})"
+
+
+def are_titles(words):
+    return not any(is_number(word) for word in words)
+
+
+def rows_of(path):
+    """(line, words) of the rows of a CSV. Empty lines, rows of commas and comments after # are passed over."""
     for k, line in enumerate(read_lines(path), 1):
         words = columns(line)
-        if words is None:
+        if words is None or not any(word.strip() for word in words):
             continue
         separator = other_separator(line, words)
         if separator:
-            raise NetworkError(f"{path}: line {k}: has {separator}; columns are separated by commas, and numbers have decimal points", [path])
+            raise NetworkError(f"{path}: line {k}: has {separator}; columns are separated by commas, and numbers have "
+                               "decimal points", [path])
+        yield k, words
+
+
+def read_csv(path, kind):
+    """A table of fractures, a row each. A first line without numbers has the titles of the columns."""
+    table, known = Table(), None
+    for k, words in rows_of(path):
+        place = f"{path}: line {k}"
+        if known is None and are_titles(words):
+            known = TitledColumns(kind, words, path, k)
+            continue
+        known = known or Columns(kind)
         while len(words) > 1 and not words[-1].strip():  # commas at the end
             words.pop()
-        is_title = is_first and not any(is_number(word) for word in words)
-        is_first = False
-        if is_title:
-            named = named_columns(words, kind)
-            table.n_columns = 4 if len(words) - len(named) == 4 else 5
-            continue
-        has, before = take_named(words, named), len(table.fractures)
-        row(words, f"{path}: line {k}", table)
-        for fracture in table.fractures[before:]:
-            fracture.name = has.pop("name", "")
-            fracture.properties = has
-            if fracture.name:
-                fracture.title = f"{fracture.name} ({path}: line {k})"
+        read_row(words, known, place, table)
     return table
 
 
-def read_fab(path):
-    """The fractures of a file in FracMan's format: after BEGIN FRACTURE for each a line `id corners set ...`, a line
-    `number x y z` for each corner and a last one with the normal; x east, y north, z up."""
-    table, lines = Table(), read_lines(path)
-    begin = next((k for k, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "FRACTURE"]), None)
-    if begin is None:
-        raise NetworkError(f"{path}: has no line BEGIN FRACTURE", [path])
-    for k, line in enumerate(lines[:begin], 1):
-        entry, _, unit = (word.strip().lower() for word in line.partition("="))
-        if entry == "length_unit" and unit not in ("m", "meter", "meters", "metre", "metres"):
-            raise NetworkError(f"{path}: line {k}: lengths are in {unit}, expected metres", [path])
-    k = begin + 1
-    while k < len(lines) and lines[k].split()[:2] != ["END", "FRACTURE"]:
-        words, place = lines[k].split(), f"{path}: line {k + 1}"
-        k += 1
-        if not words:
-            continue
-        head = words[:2]
-        if len(head) < 2 or not all(word.isdigit() for word in head):
-            raise NetworkError(f"{place}: is \"{lines[k - 1].strip()[:40]}\", expected the number of a fracture and that of its corners", [path])
-        n = int(head[1])
-        corners = [line.split() for line in lines[k:k + n]]
-        if [c[:1] for c in corners] != [[str(row + 1)] for row in range(n)] or any(len(c) < 4 for c in corners):
-            raise NetworkError(f"{place}: fracture {head[0]} has {n} corners; their lines, number x y z, do not follow", [path])
-        x = [numbers(c[1:4], f"{path}: line {k + row + 1}", table, 2) for row, c in enumerate(corners)]
-        if all(p is not None for p in x):
-            table.fractures.append(Row(f"{head[0]} ({place})", np.array(x), head[0]))
-        k += n + 1
-    if k >= len(lines):
-        raise NetworkError(f"{path}: has no line END FRACTURE", [path])
-    return table
+def kind_of(path):
+    """By the titles, or without these by the number of columns."""
+    _, words = next(rows_of(path), (0, []))
+    titles = {parted_title(word)[0].lower() for word in words} if are_titles(words) else set()
+    if "cx" in titles:
+        return "ellipses"
+    return "lines" if (titles & {"x0", "z0"} == {"x0"} if titles else len(words) == 5) else "polygons"
 
 
-def read_table(path, kind):
-    """The fractures in a file; refuses it with a line for each thing that is wrong. A kind None is that of the columns."""
-    if kind is None:
-        rows = (words for words in map(columns, read_lines(path)) if words)
-        first = next(rows, [])
-        words = first if any(is_number(word) for word in first) else next(rows, [])
-        titles = [title.strip().lower() for title in first]
-        kind = "lines" if len(words) == 5 or {"x0", "z0"} & set(titles) == {"x0"} else "polygons"
-    table = read_fab(path) if kind == "fab" else read_csv(path, kind)
+def complete(table, path):
+    """The table; refuses one with errors or without fractures."""
     if not table.errors and not table.fractures:
         table.errors.append(f"{path}: has no fracture")
     Errors(table.errors).throw([path])
     return table
+
+
+def read_table(path, kind):
+    """The fractures in a file; refuses it with a line for each thing that is wrong. None is the kind of the columns."""
+    return complete(read_csv(path, kind or kind_of(path)), path)

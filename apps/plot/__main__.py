@@ -9,6 +9,7 @@ with flow has flow.png, with pressure and velocity, too, one with heat temperatu
 where the rock does not deform there are no others but these and the last.
 """
 import argparse
+import io
 import sys
 from pathlib import Path
 
@@ -72,6 +73,9 @@ def of_run(directory, options):
         rock, joints = read.grid(file), None
         for file in [file for t, file in fracture_steps if t == time]:
             joints = read.grid(file)
+        if joints is None and any(step["time"] == time and step["fractures"] for step in states):
+            raise PlotError(f"{directory / 'fractures.pvd'}: has no step at t = {time:g} s, bulk.pvd has one; "
+                            "run the scene again")
         cut = joints if joints and joints.GetNumberOfCells() else None
         for picture, kind in ("flow", flow.FLUID), ("temperature", flow.HEAT):
             if rock.GetCellData().HasArray(kind.drive):
@@ -97,7 +101,9 @@ def of_run(directory, options):
     elif names:
         left_out("loops.png", directory, "it holds one step, a loop needs two")
     start = float(scene.get("Time", {}).get("start", 0))
-    made = [("series", series.of_run(states, name, clock, start)), ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
+    dim = content.get("mesh", {}).get("dimension", 3)
+    made = [("series", series.of_run(states, name, clock, start, dim)),
+            ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
     yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)
@@ -112,16 +118,26 @@ def plot(path, options):
     if not path.exists():
         raise PlotError(f"{path}: no such file or directory")
     folder = options.output or (path if path.is_dir() else path.parent)
-    folder.mkdir(parents=True, exist_ok=True)
     if options.paraview:
-        from paraview_state import write
-        print(write(path, folder))
-        return
+        from paraview_state import state_of
+        made = {"paraview.py": state_of(path).encode()}
+    else:
+        made = pictures(path, options)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in made.items():
+        (folder / name).write_bytes(content)
+        print(folder / name)
+
+
+def pictures(path, options):
+    """{name of a file: its bytes} of all pictures, so that an error leaves none of them behind."""
     from style import save
+    made = {}
     for name, figure in of_run(path, options) if path.is_dir() else of_csv(path):
-        picture = folder / f"{name}.png"
+        picture = io.BytesIO()
         save(figure, picture, options.dpi)
-        print(picture)
+        made[f"{name}.png"] = picture.getvalue()
+    return made
 
 
 def main(words=None):

@@ -1,8 +1,6 @@
 """Laboratory tests of several specimens: shear against displacement, dilation, stress paths with the strength."""
-import csv
-
 import numpy as np
-from read import PlotError
+from read import PlotError, csv_rows
 from style import FAINT, MOST_CURVES, Quantity, give_room, look, plt
 
 REACHED = 1e-3  # of a strength: as near to it a shear traction is at it
@@ -11,20 +9,19 @@ ABOVE = 1.15    # times the largest shear traction: strengths beyond that are no
 
 def specimens(path):
     """{name: {column: values}} of a CSV of `sprekk point` of several specimens; None of any other."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    if not rows or rows[0][:3] != ["specimen", "t", "state"]:
+    rows = csv_rows(path)
+    if not rows or not {"specimen", "t", "state"} <= set(rows[0]):
         return None
-    curves = {}
+    if len(rows) < 2:
+        raise PlotError(f"{path}: has no rows")
+    at, curves = rows[0].index("specimen"), {}
     try:
         for row in rows[1:]:
-            curves.setdefault(row[0], []).append([float(word) for word in row[1:]])
-        tables = {name: np.array(values).T for name, values in curves.items()}
+            curves.setdefault(row[at], []).append([float(word) for word in row[:at] + row[at + 1:]])
     except ValueError as error:
-        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
-    if not tables or any(len(table) != len(rows[0]) - 1 for table in tables.values()):
-        raise PlotError(f"{path}: has no rows, or incomplete ones")
-    return {name: dict(zip(rows[0][1:], table)) for name, table in tables.items()}
+        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
+    titles = rows[0][:at] + rows[0][at + 1:]
+    return {name: dict(zip(titles, np.array(values).T)) for name, values in curves.items()}
 
 
 def size(curve, kind):

@@ -63,8 +63,8 @@ view.ResetCamera()
 '''
 
 
-def write(directory, folder):
-    """Writes FOLDER/paraview.py for the run in a directory; returns its path."""
+def state_of(directory):
+    """The text of a state for the run in a directory."""
     from bulk import warp_factor
     from read import arrays
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -77,10 +77,8 @@ def write(directory, folder):
         raise PlotError(f"{directory}: a state for ParaView is written of runs that deform; open bulk.pvd and fractures.pvd")
     warp = warp_factor(vtk_to_numpy(rock.GetPoints().GetData()), arrays(rock.GetPointData())["displacement"])
     solid, run = not is_plane(rock), Path(directory).resolve()
-    state = Path(folder) / "paraview.py"
-    state.write_text(STATE.format(
+    return STATE.format(
         name=run.name, run=str(run), warp=warp,
         cut=CUT.format(centre=list(rock.GetCenter())) if solid else "",
         fractures=FRACTURES if written_steps(directory, "fractures") else "",
-        camera=CAMERA if solid else ""))
-    return state
+        camera=CAMERA if solid else "")

@@ -2,29 +2,48 @@
 import csv
 import json
 import xml.etree.ElementTree as xml
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
-from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPUnstructuredGridReader
+from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLPUnstructuredGridReader,
+                                 vtkXMLUnstructuredGridReader)
 
 
 class PlotError(Exception):
     """What is wrong with the input, in one line that names the file."""
 
 
+def csv_rows(path):
+    """The rows of a CSV with a line of titles; refuses two columns of one title and rows of another length."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = [(k, row) for k, row in enumerate(csv.reader(file), 1) if row]
+    except (UnicodeDecodeError, csv.Error):
+        raise PlotError(f"{path}: is no CSV in UTF-8") from None
+    titles = rows[0][1] if rows else []
+    for k, title in enumerate(titles):
+        if title in titles[:k]:
+            raise PlotError(f'{path}: line {rows[0][0]}: two columns have the title "{title}"')
+    for k, row in rows[1:]:
+        if len(row) != len(titles):
+            raise PlotError(f"{path}: line {k}: is not complete: has {len(row)} columns, the titles are {len(titles)}")
+    return [row for _, row in rows]
+
+
 def point_csv(path):
     """Columns of a CSV of `sprekk point` by name, and the tangential axes: ["t"] or ["t1", "t2"]."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    if len(rows) < 2 or rows[0][:2] != ["t", "state"]:
+    rows = csv_rows(path)
+    if len(rows) < 2 or not {"t", "state", "jump_n"} <= set(rows[0]):
         raise PlotError(f'{path}: is no CSV of "sprekk point"; such a file starts with "t,state,jump_n"')
     try:
         columns = dict(zip(rows[0], np.array(rows[1:], dtype=float).T))
     except ValueError as error:
-        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
     return columns, [name[len("jump_"):] for name in columns if name.startswith("jump_t")]
 
 
@@ -34,12 +53,46 @@ def results(directory):
     if not path.is_file():
         raise PlotError(f'{directory}: holds no results.json; "sprekk run" writes one into its output directory')
     try:
-        content = json.loads(path.read_text())
-    except json.JSONDecodeError as error:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:  # of json, or of text that is no UTF-8
         raise PlotError(f"{path}: is no JSON ({error})") from None
+    check_results(path, content)
     if not content.get("steps"):
         raise PlotError(f"{path}: no step of the run has been completed")
     return content
+
+
+NUMBER = int, float
+KINDS = {dict: "an object", list: "a list", NUMBER: "a number", bool: "true or false", str: "a text"}
+WHOLE = {"status": str, "steps": list, "mesh": dict, "time_unit": dict, "single_fractures": list, "timing": dict}
+STEP = {"time": NUMBER, "converged": bool, "cuts": NUMBER, "newton_iterations": NUMBER, "linear_iterations": NUMBER,
+        "measures": dict}  # in each step
+OF_STEP = {"fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict, "inflows": dict}  # in some
+MEMBERS = {"fractures": dict, "wells": dict, "reactions": list}  # each of them
+
+
+def check_results(path, content):
+    """Refuses results that "sprekk run" does not write."""
+    def check(place, value, kind):
+        if not isinstance(value, kind):
+            text = json.dumps(value)[:40]
+            raise PlotError(f"{path}: {place} is {text}, expected {KINDS[kind]}; run the scene again")
+
+    def check_members(place, value, kinds):
+        for name, kind in kinds.items():
+            if name in value:
+                check(f'"{name}"{place}', value[name], kind)
+                for one in value[name].values() if kind is dict and name in MEMBERS else ():
+                    check(f'a member of "{name}"{place}', one, MEMBERS[name])
+
+    check("the content", content, dict)
+    check_members("", content, WHOLE)
+    for k, step in enumerate(content.get("steps", []), 1):
+        check(f"step {k}", step, dict)
+        missing = [name for name in STEP if name not in step]
+        if missing:
+            raise PlotError(f'{path}: step {k} has no "{missing[0]}"; run the scene again')
+        check_members(f" of step {k}", step, {**STEP, **OF_STEP})
 
 
 def scene(directory):
@@ -64,26 +117,63 @@ def entries(section, name):
 
 def written_steps(directory, kind):
     """(time, file) of each step that DIRECTORY/KIND.pvd lists; none if there is no such file."""
-    return [(float(entry.get("timestep")), file) for entry, file in listed(Path(directory) / f"{kind}.pvd")]
+    path = Path(directory) / f"{kind}.pvd"
+    try:
+        return [(float(entry.get("timestep")), file) for entry, file in listed(path)]
+    except (TypeError, ValueError):
+        raise PlotError(f'{path}: a file has no "timestep" that is a number') from None
 
 
-def listed(path):
-    """(entry, file) of each file that a .pvd or .vtm lists; none if there is no such list."""
+def listed(path, tag="DataSet", attribute="file"):
+    """(entry, file) of each file that a .pvd, .vtm or .pvtu lists; none if there is no such list."""
     if not path.is_file():
         return []
     try:
-        entries = xml.parse(path).getroot().findall(".//DataSet")
+        entries = xml.parse(path).getroot().findall(f".//{tag}")
     except xml.ParseError as error:
         raise PlotError(f"{path}: is no XML ({error})") from None
-    return [(entry, path.parent / entry.get("file")) for entry in entries]
+    if any(entry.get(attribute) is None for entry in entries):
+        raise PlotError(f'{path}: a {tag} has no "{attribute}"')
+    return [(entry, path.parent / entry.get(attribute)) for entry in entries]
+
+
+@contextmanager
+def messages():
+    """Collects the messages of VTK. By itself it prints them, and goes on without a part that it cannot read."""
+    window, shown, level = vtkStringOutputWindow(), vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield window
+    finally:
+        vtkOutputWindow.SetInstance(shown)
+        vtkLogger.SetStderrVerbosity(level)
 
 
 def output(reader, file):
+    """The content of a file by a reader of VTK; refuses a file that is missing, empty or damaged."""
     if not Path(file).is_file():
         raise PlotError(f"{file}: no such file")
-    reader.SetFileName(str(file))
-    reader.Update()
-    return reader.GetOutput()
+    with messages() as said:
+        reader.SetFileName(str(file))
+        reader.Update()
+        content = reader.GetOutput()
+    if "ERROR" in said.GetOutput():
+        raise PlotError(f"{file}: is damaged or not complete; run the scene again")
+    return content
+
+
+def whole(reader, file, pieces):
+    """The content of a file that lists others; an error names the one at fault."""
+    for piece in pieces:
+        if not piece.is_file():
+            raise PlotError(f"{piece}: no such file")
+    try:
+        return output(reader, file)
+    except PlotError:
+        for piece in pieces:
+            output(vtkXMLUnstructuredGridReader(), piece)
+        raise
 
 
 def joined(grids):
@@ -96,22 +186,26 @@ def joined(grids):
 
 def blocks(file):
     """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
-    for _, piece in listed(Path(file)):
-        if not piece.is_file():  # VTK would go on
-            raise PlotError(f"{piece}: no such file")
-    tree, found = output(vtkXMLMultiBlockDataReader(), file), {}
+    tree, found = whole(vtkXMLMultiBlockDataReader(), file, [piece for _, piece in listed(Path(file))]), {}
     for k in range(tree.GetNumberOfBlocks()):
-        block = tree.GetBlock(k)
-        parts = [block.GetBlock(i) for i in range(block.GetNumberOfBlocks())] if hasattr(block, "GetBlock") else [block]
-        found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts)
+        found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts(tree.GetBlock(k)))
     return found
+
+
+def parts(block):
+    """The grids in a block: a nested one, or one of several pieces, as earlier versions wrote them."""
+    if hasattr(block, "GetBlock"):
+        return [block.GetBlock(k) for k in range(block.GetNumberOfBlocks())]
+    if hasattr(block, "GetPartition"):
+        return [block.GetPartition(k) for k in range(block.GetNumberOfPartitions())]
+    return [block]
 
 
 def grid(file):
     """The pieces of a .pvtu, or those of all fractures in a .vtm, as one grid of VTK."""
     if Path(file).suffix == ".vtm":
         return joined(block for block in blocks(file).values() if block.GetCellData().HasArray("fracture"))
-    return output(vtkXMLPUnstructuredGridReader(), file)
+    return whole(vtkXMLPUnstructuredGridReader(), file, [piece for _, piece in listed(Path(file), "Piece", "Source")])
 
 
 @dataclass

@@ -1,9 +1,8 @@
 """Over time: slip and opening of fractures, pressures and rates of wells, injected volume; and what probes wrote."""
-import csv
 import re
 
 import numpy as np
-from read import PlotError
+from read import PlotError, csv_rows
 from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
 
 MOST_LINES = 6  # in one panel
@@ -20,7 +19,7 @@ def injected(times, rates, start=0.0):
     return np.cumsum(np.diff(np.concatenate([[start], times])) * rates)
 
 
-def panels(steps, start=0.0):
+def panels(steps, start=0.0, dim=3):
     """(label, unit, {name: values over the steps}) of what a run's steps hold."""
     times = np.array([step["time"] for step in steps])
     fractures = steps[-1].get("fractures", {})
@@ -47,7 +46,8 @@ def panels(steps, start=0.0):
 
     if wells:
         yield "pressure in wells", "Pa", of_wells("pressure")
-        yield "injected volume", "m³", {n: injected(times, v, start) for n, v in of_wells("rate").items()}
+        base = "m²" if dim == 2 else "m³"  # per depth in 2D
+        yield "injected volume", base, {n: injected(times, v, start) for n, v in of_wells("rate").items()}
         if any("temperature" in well for well in steps[-1]["wells"].values()):
             yield "temperature in wells", "K", of_wells("temperature")
 
@@ -81,9 +81,9 @@ def figure_of(title, times, name, content):
     return figure
 
 
-def of_run(steps, title, wanted=None, start=0.0):
+def of_run(steps, title, wanted=None, start=0.0, dim=3):
     """Of at least two steps; None if there is nothing to draw."""
-    content = list(panels(steps, start)) if len(steps) > 1 else []
+    content = list(panels(steps, start, dim)) if len(steps) > 1 else []
     content = [
         (label, base, curves)
         for label, base, curves in content
@@ -100,8 +100,7 @@ TITLE = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*$")
 
 def probe(path):
     """The columns of a probe's CSV: [(name, unit, values)], the first of them the time."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
+    rows = csv_rows(path)
     titles = [TITLE.match(title) for title in rows[0]] if rows else []
     if not titles or None in titles or titles[0]["name"] != "time":
         raise PlotError(f'{path}: is no CSV of a probe; such a file starts with "time [s],"')
@@ -110,7 +109,7 @@ def probe(path):
             -1, len(titles)
         )
     except ValueError as error:
-        raise PlotError(f"{path}: a line is not complete or holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
     return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
 
 

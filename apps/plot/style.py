@@ -32,6 +32,7 @@ PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
             "Pa": [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")],
             "K": [(1, "K")],
             "m³": [(1, "m³"), (1e-3, "l")],
+            "m²": [(1, "m²")],
             "s": [(86400, "d"), (3600, "h"), (60, "min"), (1, "s")]}
 LEAST_TIMES = 2  # a time is at least so many of its unit
 

@@ -51,8 +51,12 @@ def report(options):
     directory = options.directory
     if not directory.is_dir():
         raise PlotError(f"{directory}: no such directory")
+    file = options.output or directory / "report.html"
+    if not file.parent.is_dir():
+        raise PlotError(f"{file}: cannot be written: there is no folder {file.parent}")
     content = read.results(directory)
-    entries = scene.Scene(directory, ROOT / "docs" / "reference.md")
+    dim = content.get("mesh", {}).get("dimension", 3)
+    entries = scene.Scene(directory, ROOT / "docs" / "reference.md", dim)
     drawn, left_out = pictures(directory, options.dpi)
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     html = page.of_run(
@@ -66,8 +70,6 @@ def report(options):
         view.of_run(directory) if viewer else None,
         viewer,
     )
-    file = options.output or directory / "report.html"
-    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(html, encoding="utf-8")
     return file
 

@@ -2,7 +2,7 @@
 from collections import namedtuple
 
 import numpy as np
-from numbers_in_words import number, quantity, unit_of
+from numbers_in_words import RATES, number, quantity, unit_of
 
 Table = namedtuple("Table", "title columns rows note")
 MOST_ROWS = 30
@@ -75,7 +75,7 @@ def of_boundaries(step):
         )
 
 
-def of_wells(step):
+def of_wells(step, dim):
     wells = step.get("wells", {})
     if wells:
         warm = any("temperature" in well for well in wells.values())
@@ -84,7 +84,8 @@ def of_wells(step):
             + ((f"{well.get('temperature', np.nan):.2f} K",) if warm else ())
             for name, well in wells.items()
         ]
-        yield Table("Wells", ["well", "rate (m³/s)", "pressure"] + ["temperature of the fluid"] * warm, rows, "")
+        titles = ["well", f"rate ({RATES['fluid'][dim == 2]})", "pressure"] + ["temperature of the fluid"] * warm
+        yield Table("Wells", titles, rows, "")
 
 
 def of_costs(content):
@@ -113,4 +114,4 @@ def of_run(content):
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
     fractures = singles(content, last) or last.get("fractures", {})
-    return [*of_fractures(fractures, dim), *of_wells(last), *of_boundaries(last)], list(of_costs(content))
+    return [*of_fractures(fractures, dim), *of_wells(last, dim), *of_boundaries(last)], list(of_costs(content))

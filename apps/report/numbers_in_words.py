@@ -8,6 +8,7 @@ PREFIXED = {
     "s": ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"), (1e-3, "ms")),
     "J": ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1, "J")),
 }
+RATES = {"fluid": ("m³/s", "m²/s"), "heat": ("W", "W/m")}  # in 3D; in 2D, per depth
 LEAST = 0.5, {"s": 2, "m": 0.8}  # of the number in front of a unit
 ROUND = {"m": ("km",)}  # units for round multiples alone
 

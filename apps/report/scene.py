@@ -6,17 +6,19 @@ from numbers_in_words import in_unit
 
 
 class Reference:
-    """(unit, default) of entries, as docs/reference.md lists them by section; NAME stands for any name."""
+    """(unit, default) of entries, as docs/reference.md lists them by section; NAME stands for any name. A meaning with
+    `(2D: m^2/s)` has the unit of that dimension."""
 
-    def __init__(self, path):
+    def __init__(self, path, dim=3):
         self.sections = {}
         section = {}
         for line in path.read_text().splitlines() if path.is_file() else []:
             if line.startswith("## "):
                 section = self.sections.setdefault(tuple(line[3:].split(" > ")[1:]), {})
             elif line.startswith("| ") and not line.startswith("| name "):
-                name, _, unit, default = re.split(r"(?<!\\)\|", line.strip("| "))[:4]
-                section[name.strip()] = unit.strip(), default.strip()
+                name, _, unit, default, *_, meaning = re.split(r"(?<!\\)\|", line.strip("| "))
+                per_depth = re.findall(r"\(2D: (\S+)\)", meaning) if dim == 2 else []
+                section[name.strip()] = per_depth[0] if len(per_depth) == 1 else unit.strip(), default.strip()
 
     def entry(self, path, name):
         """(unit, default) of an entry of a section; of an unknown one nothing."""
@@ -36,9 +38,9 @@ def same(value, default):
 class Scene:
     """The scene of a run: .entries is a dictionary of texts and of dictionaries."""
 
-    def __init__(self, directory, reference):
+    def __init__(self, directory, reference, dim=3):
         self.entries = read.scene(directory)
-        self.reference = Reference(reference)
+        self.reference = Reference(reference, dim)
 
     def has(self, name):
         """Whether some section has an entry of this name that is not empty."""

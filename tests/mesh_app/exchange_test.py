@@ -145,6 +145,14 @@ class ExchangeTest(ProgramTest):
             exchange.read(self.geojson(lines, crs={"type": "name", "properties": {"name": "EPSG:25832"}}), 2),
             names=False,
         )
+        for crs, why in (
+            ("EPSG:999999", "names the coordinate system \"EPSG:999999\", which GDAL does not know"),
+            ("nonsense", "names the coordinate system \"nonsense\", which GDAL does not know"),
+            ("EPSG:4978", "has coordinates from the centre of the earth"),
+        ):
+            path = self.geojson(lines, crs={"type": "name", "properties": {"name": crs}})
+            self.refused(path, why)
+        self.refused(self.geojson(lines, crs="EPSG:25832"), "\"crs\" is \"EPSG:25832\", expected null or ")
         self.refused(self.write_by_ogr("ESRI Shapefile", "degrees.shp", 4326), "WGS 84", "in degrees")
         self.refused(self.write_by_ogr("ESRI Shapefile", "feet.shp", 2263), "US survey foot")
         drawing = self.write_by_ogr("DXF", "net.dxf")
@@ -158,11 +166,56 @@ class ExchangeTest(ProgramTest):
         broken.write_text("{\"type\": \"FeatureCollection\", ")
         self.refused(broken, "cannot be read")
         self.refused(self.geojson([], crs=None), "has no fracture")
+        for x, why in (
+            ([["a", "b"], [1, 2]], "feature 2: has the coordinate \"a\", expected a number"),
+            ([[1, None], [1, 2]], "feature 2: has the coordinate null, expected a number"),
+            ("text", "feature 2: has the coordinates \"text\", expected a list"),
+            ([[1], [2]], "feature 2: has a point of 1 coordinate"),
+            ([[1, 2], [1e300, 2]], "feature 2: has the coordinate 1e+300 m; at most 1e+12 m"),
+        ):
+            self.refused(self.geojson([("Point", [0, 0], {}), ("LineString", x, {})], crs=None), why)
+        self.refused(self.geojson([("Blob", [[1, 2], [3, 4]], {})], crs=None), "has a geometry of the type \"Blob\"")
+        for content, why in (
+            ("[]", "is no GeoJSON"),
+            ("{", "is no JSON"),
+            ('{"crs": null, "features": [3]}', "feature 1: "),
+        ):
+            broken.write_text(content)
+            self.refused(broken, why)
+        for name, content, why in (
+            ("net.dxf", "nonsense\n", "is no DXF file"),
+            ("net.dxf", "  0\nSECTION\n  2\nENTITIES\n  0\nLINE\n 10\nabc\n", "line "),
+            ("net.shp", "text", "is no ESRI Shapefile file"),
+        ):
+            broken = self.folder / name
+            broken.write_text(content)
+            self.refused(broken, f"cannot be read: {why}")
+            with self.assertRaises(NetworkError) as caught:
+                exchange.read(broken, 2)
+            self.assertNotIn("cpp", str(caught.exception))
         self.refused(
             self.geojson([(None, None, {}), ("LineString", [[0.5, 0.5], [0.5, 0.5]], {})], crs=None),
             "feature 1: has no geometry",
             "feature 2: has 1 different points",
         )
+
+    def network(self, path):
+        domain = {"corners": [], "faces": {}, **SQUARE}
+        return Network(as_xml("network", {**DEFAULTS, "domain": domain, "fractures": {"set": {"file": str(path)}}}))
+
+    def test_equal_names(self):
+        """Features of one name are one fracture where they meet at their ends, or are parts of one feature."""
+        lines = [[[0.1, 0.1], [0.2, 0.1]], [[0.2, 0.1], [0.3, 0.2]], [[0.5, 0.5], [0.6, 0.5]]]
+        features = [("LineString", x, {"id": 0, "Remark": "a \"b\""}) for x in lines]
+        bent = self.network(self.geojson(features[:2], crs=None)).fractures
+        self.assertEqual([one.single for one in bent], ["set 0"] * 2)
+        path = self.geojson(features, crs=None)
+        with self.assertRaises(NetworkError) as caught:
+            self.network(path)
+        for word in (f"fracture 0 ({path}: feature 3)", f"fracture 0 ({path}: feature 1)", "does not meet it"):
+            self.assertIn(word, str(caught.exception))
+        several = self.network(self.geojson([("MultiLineString", lines, {"name": "both"})], crs=None)).fractures
+        self.assertEqual([one.single for one in several], ["both"] * 3)
 
     def test_network(self):
         """In a scene: a file by its ending, in the place of a CSV; what belongs to a shapefile counts as input, too."""

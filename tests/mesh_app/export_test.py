@@ -7,6 +7,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -103,6 +104,47 @@ class ExportTest(ProgramTest):
         self.assertIn("holds no fractures.pvd", self.export("net.geojson", expect=1))
         self.assertIn("ends in none of .geojson", self.export("net.txt", expect=1))
         self.assertIn("expected EPSG:NUMBER", self.export("net.geojson", "--crs", "utm", expect=1))
+        for file in ("net.geojson", "net.shp"):
+            for crs, why in (("EPSG:999999", "is unknown to GDAL"), ("EPSG:4326", "WGS 84 is in degrees")):
+                self.assertIn(f"--crs {crs}: {why}", self.export(file, "--crs", crs, expect=1))
+        said = self.export("absent/net.geojson", expect=1)
+        self.assertIn("net.geojson: cannot be written: there is no folder", said)
+        self.assertFalse((self.folder / "absent").exists())
+        (self.folder / "out/results.json").write_text("[]")
+        self.assertIn("results.json: the content is [], expected an object;", self.export("net.geojson", expect=1))
+
+    def test_damaged_files(self):
+        """A fracture whose file is empty, cut or missing is one error with its name, without lines of VTK; an earlier
+        file stays as it is."""
+        self.run_scene("verification/crossing_2d.xml")
+        piece = sorted((self.folder / "out/fractures").glob("fractures_*.vtu"))[-1]
+        whole, made = piece.read_bytes(), self.folder / "net.geojson"
+        made.write_text("earlier")
+        command = [sys.executable, "-B", ROOT / "apps/export", self.folder / "out", "-o", made]
+        for content in (b"", whole[:100], whole[: len(whole) // 2], whole[:-200], None):
+            piece.unlink() if content is None else piece.write_bytes(content)
+            done = subprocess.run(command, capture_output=True, text=True)
+            why = "no such file" if content is None else "is damaged or not complete; run the scene again"
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertEqual(done.stderr, f"sprekk export: {piece}: {why}\n")
+            self.assertEqual(made.read_text(), "earlier")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["net.geojson", "out"])
+
+    def test_blocks_of_earlier_versions(self):
+        """Pieces in place of nested blocks."""
+        self.run_scene("verification/crossing_2d.xml")
+        names = [feature["properties"]["name"] for feature in self.export("net.geojson")]
+        for file in (self.folder / "out").glob("fractures_*.vtm"):
+            file.write_text(file.read_text().replace("<Block ", "<Piece ").replace("</Block>", "</Piece>"))
+        self.assertEqual([feature["properties"]["name"] for feature in self.export("net.geojson")], names)
+
+    def test_shapefiles_are_replaced(self):
+        """With all the files that belong to them."""
+        self.run_scene("verification/crossing_2d.xml")
+        for words, endings in ((("--crs", "EPSG:25832"), {".prj"}), ((), set())):
+            self.export("net.shp", *words)
+            found = {path.suffix for path in self.folder.glob("net.*")}
+            self.assertEqual(found, {".shp", ".shx", ".dbf", ".cpg"} | endings)
 
 
 if __name__ == "__main__":

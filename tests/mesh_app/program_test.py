@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
+import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -108,7 +109,7 @@ class Files(MeshTest):
         self.write("net.csv", "7,0.2,0.5,0.4,0.5", "8,0.5,0.2,0.5,0.4")
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
         self.assertEqual(self.singles(), [("set 7", {}), ("set 8", {})])
-        self.write("net.csv", "id,east,north,to east,to north,friction angle (deg)", "7,0.2,0.5,0.4,0.5,30")
+        self.write("net.csv", "friction angle (deg),Y1,X1,y0 [m],x0,FID", "30,0.5,0.4,0.5,0.2,7")
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
         self.assertEqual(self.singles(), [("set 7", {"friction angle": "30 deg"})])
         self.write("net.csv", "name,dilation angle,x0,y0,z0,x1,y1,z1,x2,y2,z2", "P,5,0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
@@ -119,11 +120,90 @@ class Files(MeshTest):
         net = self.write("net.csv", "name,x0,y0,x1,y1,friction angle", "A,0.2,0.5,0.4,0.5,30", "A,0.4,0.5,0.8,0.6,31")
         self.refused(net, f'fracture A ({net}: line 3): has the name "A", as fracture A ({net}: line 2), and other values')
         net = self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4")
-        self.refused(net, f"{net}: line 2: has 3 columns, needs 4: x0,y0,x1,y1")
+        self.refused(net, f'{net}: line 2: has no number in column 5, "y1"')
         other = self.write("other.csv", "name,x0,y0,x1,y1", "A,0.2,0.2,0.4,0.2")
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5")
         told = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
         self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', told)
+
+    def test_parts_of_one_fracture(self):
+        """Rows of one name or number are one fracture where they meet at their ends or along their sides, and the
+        report says so; others are refused with both places."""
+        rows = "7,0.2,0.5,0.4,0.5", "8,0.5,0.2,0.5,0.4", "7,0.6,0.6,0.8,0.6", "7,0.4,0.5,0.6,0.6"
+        self.write("net.csv", *rows)
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual([name for name, _ in self.singles()], ["set 7", "set 8"])
+        self.assertEqual(self.report()["sets"]["set"]["fractures"], 2)
+        net = self.folder / "net.csv"
+        one, other = (f"fracture 7 ({net}: line {k})" for k in (1, 3))
+        self.assertIn(f'one fracture, "set 7", of 3 parts: {one}, {other} and 1 more', self.report()["repairs"])
+        apart = f'{other}: has the name "set 7", as {one}, and does not meet it; parts of one fracture meet at'
+        self.write("net.csv", *rows[:3])
+        self.refused(net, apart)
+        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # crosses it
+        self.refused(net, apart)
+        self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5", "A,0.6,0.6,0.8,0.6")
+        one, other = (f"fracture A ({net}: line {k})" for k in (2, 3))
+        self.refused(net, f'{other}: has the name "A", as {one}, and does not meet it')
+        self.write("net.csv", "7,0.2,0.5,1.2,0.5", "7,1.2,0.5,0.2,0.2")  # outside of the domain
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        triangles = "A,0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5", "A,0.2,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.7"
+        titles = "name,x0,y0,z0,x1,y1,z1,x2,y2,z2"
+        self.write("net.csv", titles, *triangles)
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv"}}, **self.CUBE))
+        self.assertEqual(self.singles(), [("A", {})])
+        self.write("net.csv", titles, *triangles, "A,0.5,0.2,0.2,0.5,0.8,0.2,0.5,0.5,0.8")
+        self.refused(net, f'line 4): has the name "A", as {one}, and does not meet it; parts of one fracture meet',
+                     dim=3, **self.CUBE)
+
+    def test_numbers_of_several_sources(self):
+        """Fractures at random have numbers that the file does not have; lines of a section need other names."""
+        self.write("net.csv", "1,0.2,0.5,0.4,0.5", "3,0.5,0.2,0.5,0.4")
+        random = {"number": 2, "seed": 1, "shortest": 0.1, "longest": 0.1, "exponent": 0.0, "strike": 0.0, "dip": 90.0,
+                  "concentration": 0.0, "corners": 8}
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv", "random": random}}))
+        self.assertEqual([name for name, _ in self.singles()], ["set 1", "set 3", "set 2", "set 4"])
+        lines = {"1": {"points": [0.4, 0.5, 0.6, 0.6]}}
+        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv", "lines": lines}}), expect=1)
+        one = f"fracture 1 ({self.folder / 'net.csv'}: line 1)"
+        self.assertIn(f'fracture "1" of "set": has the name "set 1", as {one} of another file or section', told)
+
+    def test_remarks_in_quotes(self):
+        """Columns that are no entries of a joint may hold anything; the program passes them over."""
+        titles = 'name,x0,y0,x1,y1,Remark,"the ""note"""'
+        self.write("net.csv", titles, 'A,0.2,0.5,0.4,0.5,"along the ""long"" joint",b')
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        self.assertEqual(self.singles(), [("A", {"Remark": "along the 'long' joint", "the 'note'": "b"})])
+        net = self.write("net.csv", "name,x0,y0,x1,y1", '"the ""A""",0.2,0.5,0.4,0.5')
+        self.refused(net, "the name 'the \"A\"' has a quotation mark")
+
+    def test_places_far_from_the_origin(self):
+        """Coordinates as in UTM: a place is exact to a hundredth of a metre; in a small domain, better than that."""
+        utm = {"lower corner": [466000.0, 6691580.0], "upper corner": [466060.0, 6691640.0]}
+        net = self.write("net.csv", "1,466010,6691590,466050,6691600", "2,466020,6691630,466030.001,6691595.0043")
+        self.refused(net, "apart at (466030.002, 6691595) without meeting", domain=utm)
+        small = {"lower corner": [466000.0, 1e-3], "upper corner": [466000.01, 0.011]}
+        rows = "1,466000.002,0.005,466000.008,0.005", "2,466000.005004,0.009,466000.005004,0.0050004"
+        net = self.write("net.csv", *rows)
+        self.refused(net, "apart at (466000.005004, 0.005) without meeting", domain=small)
+        rows = "6691580.25,0,0,6691581.25,1,1", "6691580.5,0.2,0.5,6691580.8,0.2,0.5,6691580.8,0.8,0.5"
+        net = self.write("net.csv", *rows)
+        self.refused(net, "a domain from (6691580.25, 0, 0) to (6691581.25, 1, 1), the scene's", dim=3, **self.CUBE)
+
+    def test_huge_coordinates(self):
+        """One error with the place, and no warnings of numpy."""
+        net = self.write("net.csv", "1,0.2,0.5,0.4,0.5", "2,0.5,0.2,1e300,0.4")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.refused(net, f'{net}: line 2: "1e300" in column 4 is beyond 1e+12, the largest allowed')
+            net = self.write("net.csv", "1,0.2,0.5,0.4,0.5", "2,0.5,0.2,1e9,0.4")
+            self.refused(net, f"fracture 2 ({net}: line 2): has the coordinate 1e+09 m, more than 1e+06 diagonals")
+            lines = {"line": {"points": [0.4, 0.5, 1e300, 0.6]}}
+            self.write("net.csv", "1,0.2,0.5,0.4,0.5")
+            self.assertIn('fracture "line" of "other": has the coordinate 1e+300 m', self.mesh(
+                self.scene(fractures={"other": {"file": "net.csv", "lines": lines}}), expect=1))
+            huge = {"lower corner": [0.0, 0.0], "upper corner": [1e300, 1.0]}
+            self.refused(net, "has the coordinate 1e+300 m; at most 1e+12 m are meshed", domain=huge)
 
     def test_polygons_and_their_domain(self):
         self.write("net.csv", "0,0,0,2,1,1", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5,0.2,0.8,0.5", "1,0.2,0.2,1,0.8,0.2,1,0.5,0.8")
@@ -148,9 +228,53 @@ class Files(MeshTest):
         self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
         self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36 + 0.18, 9)
 
+    TESSELLATED = ("BEGIN FORMAT", "  No_Fractures = 0", "  No_TessFractures = 1", "END FORMAT", "BEGIN FRACTURE",
+                   "END FRACTURE", "BEGIN TESSFRACTURE", "  2 4 2 1 1.0e-6", "   1 0.5 0.2 0.2", "   2 0.5 0.8 0.2",
+                   "   3 0.5 0.8 0.8", "   4 0.4 0.2 0.8", "   1 2 3", "   1 3 4", "END TESSFRACTURE")
+
+    def test_tessellated_fab(self):
+        """The triangles of a tessellated fracture are one fracture."""
+        self.write("net.fab", *self.TESSELLATED)
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
+        other = 0.5 * np.linalg.norm(np.cross([0, 0.6, 0.6], [-0.1, 0, 0.6]))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.18 + other, 9)
+        self.assertEqual(self.report()["sets"]["set"]["fractures"], 1)
+        self.assertEqual(self.singles(), [("set 2", {})])
+        corners = "0 0.2 0.2 0.5", "1 0.8 0.2 0.5", "2 0.8 0.8 0.5", "3 0.2 0.8 0.5"  # as PorePy numbers them
+        self.write("net.fab", "BEGIN FRACTURE", "0 4 1", *corners, "0 -1 -1 -1", "END FRACTURE")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36, 9)
+
+    def test_bad_tessellated_fab(self):
+        for k, line, words in (
+            (2, "  No_TessFractures = 2", "line 3: No_TessFractures is 2, the section TESSFRACTURE has 1"),
+            (1, "  No_Fractures = 1", "line 2: No_Fractures is 1, the section FRACTURE has 0"),
+            (13, "   1 3 5", 'line 14: a facet of a TESSFRACTURE is "1 3 5", expected the numbers of three'),
+            (13, "   1 3 4 2 1", 'a facet of a TESSFRACTURE is "1 3 4 2 1", expected'),
+            (13, "", 'a facet of a TESSFRACTURE is "", expected'),
+            (7, "  2 4", 'line 8: is "2 4", expected the numbers'),
+            (7, "  2 4 5 1", "line 8: fracture 2 has 5 facets"),
+            (7, "  2 5 2 1", "line 8: fracture 2 has 5 nodes; their lines"),
+            (7, "  2 99999999999 2 1", "line 8: fracture 2 has 99999999999 nodes; their lines"),
+            (7, "  2 0 2 1", "line 8: fracture 2 has 0 nodes; their lines"),
+            (14, "", "has no line END TESSFRACTURE"),
+            (6, "BEGIN CURVEDFRACTURE", "line 7: the section CURVEDFRACTURE is unknown, expected FRACTURE"),
+            (0, "XAxis = North", "line 1: the x axis points north, expected east"),
+        ):
+            lines = [line if row == k else known for row, known in enumerate(self.TESSELLATED)]
+            self.refused(self.write("net.fab", *lines), words, dim=3, **self.CUBE)
+        for k, line, words in (
+            (11, "  1 3 1 1.0e-5 2.0", "line 12: fracture 1 is in line 6, too; each needs a number of its own"),
+            (2, "  No_Fractures = 3", "line 3: No_Fractures is 3, the section FRACTURE has 2 fractures"),
+            (10, "  2 3 1", "line 6: fracture 1: the line of its normal, 0 x y z, does not follow"),
+        ):
+            lines = [line if row == k else known for row, known in enumerate(self.FAB)]
+            self.refused(self.write("net.fab", *lines), words, dim=3, **self.CUBE)
+
     def test_bad_rows(self):
         net = self.write("net.csv", "id,x0,y0,x1,y1", "1,0.2,0.5,0.8", "2,0.2,nan,0.8,0.5", "3,0.2,0.5,O.8,0.5", "4,0.1,0.1,0.2,0.2")
-        self.refused(net, f"{net}: line 2: has 4 columns, needs 5", f'{net}: line 3: "nan" in column 3 is no finite number',
+        self.refused(net, f'{net}: line 2: has no number in column 5, "y1"',
+                     f'{net}: line 3: "nan" in column 3 is no finite number',
                      f'{net}: line 4: "O.8" in column 4 is no number')
         net = self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.5,0.8,0.5", "3,1.5,0.5,1.8,0.5")
         self.refused(net, f"fracture 3 ({net}: line 3): lies outside")
@@ -164,6 +288,52 @@ class Files(MeshTest):
         self.refused(net, f"{net}: line 1: the domain", dim=3)
         net = self.write("net.csv", "0.5,0.5,0.5,0.3,0,0,0,0")
         self.refused(net, f"{net}: line 1: has the radii 0.3 and 0", dim=3, kind="ellipses", **self.CUBE)
+
+    def length(self, *rows):
+        self.write("net.csv", *rows)
+        self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
+        return self.report()["sets"]["set"]["length"]
+
+    def test_titles_decide(self):
+        """Columns are found by their titles, in any order; without titles they have the order of the documentation."""
+        wanted = np.hypot(0.6, 0.1) + np.hypot(0.3, 0.2)
+        for rows in (("x0,x1,y0,y1", "0.2,0.8,0.1,0.2", "0.2,0.5,0.5,0.7"),
+                     ("x0,y0,x1,y1,id", "0.2,0.1,0.8,0.2,1", "0.2,0.5,0.5,0.7,2"),
+                     ("Y1 [m],id,X1,y0,x0", "0.2,1,0.8,0.1,0.2", "0.7,2,0.5,0.5,0.2"),
+                     ("1,0.2,0.1,0.8,0.2", "2,0.2,0.5,0.5,0.7")):
+            self.assertAlmostEqual(self.length(*rows), wanted, 9)
+        self.assertEqual([name for name, _ in self.singles()], ["set 1", "set 2"])
+        polygons = "z0,z1,z2,z3,number,x0,y0,x1,y1,x2,y2,x3,y3", "0.5,0.5,0.5,,4,0.2,0.2,0.8,0.2,0.8,0.8"
+        more = "id,x0,y0,z0,...", "5,0.2,0.2,0.2,0.8,0.2,0.2,0.8,0.8,0.2"
+        ellipse = "id,dip,cz,cy,cx,r2,r1,rake,strike [deg]", "6,60,0.5,0.5,0.5,0.2,0.3,30,120"
+        for rows, area, name in ((polygons, 0.18, "set 4"), (more, 0.18, "set 5"), (ellipse, np.pi * 0.06, "set 6")):
+            self.write("net.csv", *rows)
+            kind = {"format": "ellipses"} if rows is ellipse else {}
+            self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.csv", **kind}}, **self.CUBE))
+            self.assertAlmostEqual(self.report()["sets"]["set"]["area"], area, 9)
+            self.assertEqual(self.singles(), [(name, {})])
+
+    def test_bad_titles(self):
+        for titles, why in (
+            ("START_X,START_Y,x1,y1,id", 'the titles of lines lack "x0", "y0"; columns may have any order'),
+            ("x0,y0,x1,y1,X0", 'columns 1 and 5 have the same title, "x0"'),
+            ("x0,y0,x1,y1,name,name", 'columns 5 and 6 have the same title, "name"'),
+            ("x0 [km],y0,x1,y1,id", 'the column "x0" is in km, expected m'),
+        ):
+            net = self.write("net.csv", titles, "0.2,0.1,0.8,0.2,1")
+            self.refused(net, f"{net}: line 1: {why}")
+        net = self.write("net.csv", "x0,y0,x1,y1", "0.2,0.1,0.8,0.2,1")
+        self.refused(net, f"{net}: line 2: has 5 columns, the titles are 4")
+        net = self.write("net.csv", "x0\ty0\tx1\ty1", "0.2\t0.1\t0.8\t0.2")
+        self.refused(net, f"{net}: line 1: has tabs")
+        titles = "x,y,z,dip,dip direction,radius,aperture [mm],number"
+        net = self.write("net.csv", titles, "0.5,0.5,0.5,70,60,0.1,0.2,1")
+        why = f'{net}: line 1: the titles of ellipses lack "cx", "cy"'
+        self.refused(net, why, dim=3, kind="ellipses", **self.CUBE)
+        net = self.write("net.csv", "cx,cy,cz,r1,r2,rake,strike,dip", "0.5,0.5,0.5,0.1,0.1,0,0,0")
+        self.refused(net, '; these are titles of ellipses, to be named by "format"; columns', dim=3, **self.CUBE)
+        net = self.write("net.csv", "x0,y0,z0,x1,y1,z1,x3,y3,z3", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
+        self.refused(net, f'{net}: line 1: the titles of polygons lack "x2", "y2", "z2"', dim=3, **self.CUBE)
 
     def test_numbers_in_quotes(self):
         self.write("net.csv", 'id,x0,y0,x1,y1', '"a, first","0.2", 0.5,"0.8",0.5')
@@ -182,7 +352,7 @@ class Files(MeshTest):
                 self.refused(net, f"{net}: line {2 + len(before)}: has {name}; columns are separated by commas")
             net = self.write("net.csv", row)
             self.refused(net, f"{net}: line 1: has {name}", dim=3, **self.CUBE)
-        self.write("net.csv", "trace 7, x in m, y in m, x1, y1", "1 2, 0.2,\t0.5, 0.8, 0.5")
+        self.write("net.csv", "# trace 7, x in m, y in m, x1, y1", "1 2, 0.2,\t0.5, 0.8, 0.5", ",,,,")
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
 
     def test_closed_rings(self):

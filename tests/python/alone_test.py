@@ -45,6 +45,13 @@ class Scenes(unittest.TestCase):
                 again = sprekk.Scene(scene.entries, folder=path.parent, name=str(path))
                 self.assertEqual(scene.to_xml(defaults=True), again.to_xml(defaults=True))
 
+    def test_traces_of_one_name(self):
+        """No trace takes the place of another."""
+        table = {"geometry": [[[0, 0], [1, 1]], [[0, 1], [1, 0]], [[0, 2], [1, 2]]], "id": [7, 8, 7]}
+        self.assertEqual(list(sprekk.traces(table)["lines"]), ["1", "2", "3"])
+        with self.assertRaisesRegex(sprekk.Error, 'rows 0 and 2, counted from 0 on, have the same name, "7"'):
+            sprekk.traces(table, name="id")
+
     def test_units(self):
         for value in ("30 GPa", 30e9, 30_000_000_000, "30e9", np.float64(3e10), "3e4 MPa"):
             scene = sprekk.Scene(PUSH).changed({"Materials": {"rock": {

@@ -3,9 +3,12 @@
 
 Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
 import contextlib
+import csv
 import importlib.util
 import io
+import json
 import runpy
+import subprocess
 import sys
 import types
 from pathlib import Path
@@ -27,6 +30,7 @@ import bulk  # noqa: E402
 import convergence  # noqa: E402
 import flow  # noqa: E402
 import fractures  # noqa: E402
+import laboratory  # noqa: E402
 import loops  # noqa: E402
 import magnitudes  # noqa: E402
 import maps  # noqa: E402
@@ -54,13 +58,13 @@ class PlotTest(ProgramTest):
             self.assertEqual(plot.main(list(map(str, words))), expect, err.getvalue())
         return out.getvalue(), err.getvalue()
 
-
-class Pictures(PlotTest):
     def csv(self, scene, *overrides):
         path = self.folder / "point.csv"
         path.write_text(self.call("point", self.scene(scene), *(w for o in overrides for w in ("--set", o)))[0])
         return path
 
+
+class Pictures(PlotTest):
     def test_specimens_of_a_laboratory(self):
         path = self.csv("point/shear_tests.xml")
         self.draw(path)
@@ -387,9 +391,9 @@ class Pictures(PlotTest):
         self.expect_labels(made["series"], "time (h)", "largest slip (", "pressure in wells (MPa)", "injected volume (")
         panels = {ax.get_ylabel().split(" (")[0]: ax for ax in made["series"].axes}
         times, volume = panels["injected volume"].lines[0].get_data()
-        litres = 1e3 if "(l)" in panels["injected volume"].get_ylabel() else 1
+        self.assertEqual(panels["injected volume"].get_ylabel(), "injected volume (m²)")
         self.assertTrue(np.allclose(times, [1, 2, 3]))
-        self.assertTrue(np.allclose(volume, litres * 6e-5 * 3600 * np.cumsum([0.5, 1, 1])))
+        self.assertTrue(np.allclose(volume, 6e-5 * 3600 * np.cumsum([0.5, 1, 1])))
         lines = {line.get_label(): line.get_ydata() for line in panels["largest slip"].lines}
         wanted = [step["fractures"]["west"]["max_slip"] for step in content["steps"]]
         self.assertTrue(np.allclose(lines["west"] / lines["west"][-1], np.array(wanted) / wanted[-1]))
@@ -502,6 +506,59 @@ class Errors(PlotTest):
         self.run_scene("seed/push_2d.xml")
         (self.folder / "out" / "fractures" / "fractures_0000_0_0.vtu").unlink()
         self.expect_error(self.folder / "out", ["fractures_0000_0_0.vtu", "no such file"])
+        (self.folder / "out" / "fractures.pvd").unlink()
+        self.expect_error(self.folder / "out", ["fractures.pvd: has no step at t = "])
+
+    def test_damaged_pieces(self):
+        """An empty or cut file is one error that names it, without lines of VTK and without pictures."""
+        self.run_scene("seed/push_2d.xml")
+        command = [sys.executable, "-B", ROOT / "apps/plot", self.folder / "out", "--output", self.folder / "pictures"]
+        for name in ("fractures/fractures_0000_0_0.vtu", "bulk/bulk_0000_0.vtu"):
+            piece = self.folder / "out" / name
+            whole = piece.read_bytes()
+            for length in (0, 100, len(whole) // 2, len(whole) - 200):
+                piece.write_bytes(whole[:length])
+                done = subprocess.run(command, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 1, length)
+                said = f"sprekk plot: {piece}: is damaged or not complete; run the scene again\n"
+                self.assertEqual((done.stdout, done.stderr), ("", said))
+                self.assertFalse((self.folder / "pictures").exists())
+            piece.write_bytes(whole)
+        self.draw(self.folder / "out", "--dpi", 20)
+
+    def test_results_of_another_kind(self):
+        for content in ("[]", "null", '{"steps": 3}', '{"steps": [1]}', '{"mesh": 2, "steps": []}'):
+            self.expect_error(self.write("run/results.json", content).parent, ["results.json: ", "expected "])
+        self.expect_error(self.write("run/results.json", '{"steps": [{}]}').parent, ['step 1 has no "time"'])
+        self.run_scene("seed/push_2d.xml")
+        known = self.results()
+        for name, value in (("fractures", []), ("fractures", {"fracture": 1}), ("time", "0"), ("cuts", None)):
+            step = {**known["steps"][-1], name: value}
+            self.write("run/results.json", json.dumps({**known, "steps": [step]}))
+            self.expect_error(self.folder / "run", [f'"{name}" of step 1 is ', "expected "])
+        (self.folder / "run/results.json").write_bytes(b'{"reason": "\xff"}')
+        self.expect_error(self.folder / "run", ["results.json: is no JSON"])
+
+    def test_columns_by_their_titles(self):
+        """In any order; none twice, none too many."""
+        path = self.csv("point/cyclic_shear.xml", "Time.steps=4")
+        rows = [line.split(",") for line in path.read_text().splitlines()]
+        turned = self.write("turned.csv", "".join(",".join(row[::-1]) + "\n" for row in rows))
+        for name, values in read.point_csv(path)[0].items():
+            self.assertEqual(read.point_csv(turned)[0][name].tolist(), values.tolist())
+        specimens = self.csv("point/shear_tests.xml", "Time.steps=4")
+        with specimens.open(newline="") as file:
+            rows = list(csv.reader(file))
+        turned = self.folder / "turned.csv"
+        with turned.open("w", newline="") as file:
+            csv.writer(file).writerows(row[::-1] for row in rows)
+        known, found = laboratory.specimens(specimens), laboratory.specimens(turned)
+        self.assertEqual(list(found), list(known))
+        for name, curve in known.items():
+            self.assertTrue(all(np.array_equal(found[name][title], values) for title, values in curve.items()))
+        for titles, why in (("t,state,jump_n,t", 'line 1: two columns have the title "t"'),
+                            ("t,state,jump_n", "line 2: is not complete: has 4 columns")):
+            self.expect_error(self.write("a.csv", titles + "\n1,1,1,1\n"), [why])
 
 
 class Numbers(ProgramTest):

@@ -98,6 +98,21 @@ class Pages(ReportTest):
         self.assertIn("no such directory", self.write(expect=1))
         (self.folder / "out").mkdir()
         self.assertIn("holds no results.json", self.write(expect=1))
+        self.run_scene("seed/push_2d.xml")
+        said = self.write("--output", self.folder / "absent/report.html", expect=1)
+        self.assertIn("report.html: cannot be written: there is no folder", said)
+        self.assertFalse((self.folder / "absent").exists())
+
+    def test_damaged_files(self):
+        """One error that names the file, and no report."""
+        self.run_scene("seed/push_2d.xml")
+        piece = self.folder / "out/fractures/fractures_0000_0_0.vtu"
+        piece.write_bytes(piece.read_bytes()[:1000])
+        said = f"sprekk report: {piece}: is damaged or not complete; run the scene again\n"
+        self.assertEqual(self.write(expect=1), said)
+        (self.folder / "out/results.json").write_text("[]")
+        self.assertIn("results.json: the content is [], expected an object;", self.write(expect=1))
+        self.assertFalse((self.folder / "out/report.html").exists())
 
 
 class Checks(ReportTest):
@@ -109,7 +124,35 @@ class Checks(ReportTest):
             self.assertEqual(found[name].verdict, "passed", found[name])
         wells = self.results()["steps"][-1]
         stored = sum(wells["inflows"].values()) + wells["wells"]["injector"]["rate"]
-        self.assertIn(f"{numbers_in_words.number(stored)} m³/s, is stored", found["balance of fluid"].words)
+        self.assertIn(f"{numbers_in_words.number(stored)} m²/s, is stored", found["balance of fluid"].words)
+
+    def test_rates_per_depth(self):
+        """Of a plane scene in m^2/s and W/m: checks, tables and the scene in words; of a body in m^3/s and W."""
+        self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
+        page = Path(self.write()).read_text()
+        self.assertIn("rate (m²/s)", page)
+        self.assertRegex(page, r"<dt>rate</dt><dd>[^<]* m\^2/s</dd>")
+        for wrong in ("m³/s", "m^3/s"):
+            self.assertNotIn(wrong, page)
+        step = {"inflows": {"west": 1.0}, "heat_inflows": {"west": 1.0}, "wells": {"w": {"rate": 2.0, "heat": 3.0}}}
+        for dim, units in (
+            (2, ("3 m²/s, is stored", "3 W/m through wells")),
+            (3, ("3 m³/s, is stored", "3 W through wells")),
+        ):
+            for check, unit in zip(checks.fluid([step], dim), units):
+                self.assertIn(unit, check.words)
+            (table,) = figures.of_wells(step, dim)
+            self.assertEqual(table.columns[1], f"rate ({numbers_in_words.RATES['fluid'][dim == 2]})")
+
+    def test_stages(self):
+        """Faces are excavated and joints weaken: a report is written, laws are not judged by those of the start."""
+        content = self.run_scene("stages/gallery_2d.xml")
+        self.assertEqual(content["status"], "completed")
+        self.assertIn("not judged: the scene has stages", Path(self.write()).read_text())
+        found = self.verdicts()
+        self.assertEqual(found["laws of contact and friction"].verdict, "noted")
+        self.assertNotIn("failed", {check.verdict for check in found.values()})
+        self.assertEqual(len(view.of_run(self.folder / "out")["surfaces"]), 2)
 
     def test_what_is_wrong_fails(self):
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")

@@ -14,8 +14,14 @@ def traces(table, geometry="geometry", name=None):
     pandas.DataFrame or a dict of columns. Geometries are shapely's LineStrings or lists of points [x, y]; names are
     those of a column, or the index."""
     lines = list(table[geometry])
-    names = list(table[name] if name else getattr(table, "index", range(1, len(lines) + 1)))
-    return {"lines": {str(key): {"points": [float(x) for point in getattr(line, "coords", line) for x in point]}
+    names = list(map(str, table[name] if name else getattr(table, "index", range(1, len(lines) + 1))))
+    rows = {}
+    for k, key in enumerate(names):
+        if key in rows:
+            raise _sprekk.Error(f'traces: rows {rows[key]} and {k}, counted from 0 on, have the same name, "{key}"; '
+                                "each trace needs a name of its own")
+        rows[key] = k
+    return {"lines": {key: {"points": [float(x) for point in getattr(line, "coords", line) for x in point]}
                       for key, line in zip(names, lines)}}
 
 
