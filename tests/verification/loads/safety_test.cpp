@@ -33,8 +33,11 @@ const std::string coarse = "Mesh.cells={5, 2}";
 
 Real tan_of(Real degrees) { return std::tan(degrees * M_PI / 180); }
 
+/// On several ranks on the coarse mesh.
 TEST(FactorOfSafety, OfABlockOnAPlane) {
-  expect_between(safety("plane_2d.xml"), tan_of(40) / tan_of(30));
+  const bool on_one_rank = Tpetra::getDefaultComm()->getSize() == 1;
+  expect_between(safety("plane_2d.xml", on_one_rank ? std::vector<std::string>{} : std::vector{coarse}),
+                 tan_of(40) / tan_of(30));
   expect_between(safety("plane_2d.xml", {coarse, "Mesh.cell=triangle", "Materials.joint.friction angle=32"}),
                  tan_of(32) / tan_of(30));
 }
