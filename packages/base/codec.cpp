@@ -3,6 +3,7 @@
 #include <Teuchos_Array.hpp>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "base/check.hpp"
 #include "base/text.hpp"

@@ -2,6 +2,7 @@
 
 #include <Teuchos_Array.hpp>
 #include <limits>
+#include <type_traits>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
