@@ -191,6 +191,7 @@ def arguments(words):
     parser.add_argument("--only", metavar="CASE", action="append", choices=names + groups,
                         help=f"one of {', '.join(names)}, or what several begin with ({', '.join(groups)}); may be repeated")
     parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
+    parser.add_argument("--no-pictures", dest="pictures", action="store_false", help="tables only")
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="run on N ranks")
     parser.add_argument("--output", type=Path, default=Path("output/perf/verification"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
@@ -215,8 +216,9 @@ def main(words):
         wrong += more
         if rows:
             write(rows, options.output / f"{case.name}.csv")
-            draw(case, rows, options.output / f"{case.name}.png")
-            if case.picture:
+            if options.pictures:
+                draw(case, rows, options.output / f"{case.name}.png")
+            if options.pictures and case.picture:
                 case.picture(options.output / f"{case.name}_lines.png")
         print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds looked at"]))
         if case.jumps:
