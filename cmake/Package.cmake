@@ -3,9 +3,9 @@ set(SPREKK_PRECOMPILED $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 
 # sprekk_grouped(RESULT PREFIX sources... [ALONE paths...])
 # Sets RESULT to files that include the sources of each folder in groups of eight: a group reads each header once and
-# instantiates each template once, which takes half of the CPU time. Names in unnamed namespaces are therefore unique
-# within a folder. Sources named by ALONE, with large kernels or options of their own, remain single files. Without
-# SPREKK_GROUPS all sources are single files. PREFIX: of the folder in #include.
+# instantiates each template once. Names in unnamed namespaces are therefore unique within a folder. Sources named by
+# ALONE, with large kernels or options of their own, remain single files. Without SPREKK_GROUPS all sources are single
+# files. PREFIX: of the folder in #include.
 function(sprekk_grouped result prefix)
   cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
   set(files)

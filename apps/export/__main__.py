@@ -106,7 +106,7 @@ def geometry(ogr, shapes, plane):
     return whole
 
 
-BESIDE = (".shx", ".dbf", ".prj", ".cpg")  # files of an earlier shapefile
+SIDECARS = (".shx", ".dbf", ".prj", ".cpg")  # files of an earlier shapefile
 WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shapefile}
 
 
@@ -133,7 +133,7 @@ def put(write, path, *content):
     """Writes all files in a scratch folder and moves them to their place: an error leaves no part behind."""
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
         write(Path(scratch) / path.name, *content)
-        for ending in BESIDE if write is write_shapefile else ():
+        for ending in SIDECARS if write is write_shapefile else ():
             path.with_suffix(ending).unlink(missing_ok=True)
         for file in sorted(Path(scratch).iterdir()):
             file.replace(path.parent / file.name)

@@ -44,7 +44,7 @@ class Log {
 
   const Comm& comm_;
   std::ostream *out_, *warnings_;
-  bool writes_;  ///< on this rank
+  bool writes_;               ///< on this rank
   std::string path_, early_;  ///< early_: the lines before there is a file
   std::ofstream file_;
   int error_ = 0;  ///< the system's number of the first error of the file

@@ -36,12 +36,12 @@ enum class Ending {
   interrupted  ///< should_stop said so before the end of the last step
 };
 
-/// Runs the scene, from its beginning or from a checkpoint, and writes its results; with the section Accuracy again and
-/// again, on finer and finer meshes, each time in place of the results before. The log is written to log.txt line by
-/// line, warnings also to the standard error. A step that did not converge is reported, and what was computed before is
-/// kept. An interrupted run goes back to the end of its last whole step, and writes a checkpoint there if the scene
-/// asks for any. Throws an Error for bad input, for a file that cannot be written, and where another run writes into
-/// the directory, before anything there is touched; the same on every rank. Collective.
+/// Runs the scene, from its beginning or from a checkpoint, and writes its results. With the section Accuracy it repeats
+/// the run on finer meshes; each run replaces the results before. The log is written to log.txt line by line, warnings
+/// also to the standard error. A step that did not converge is reported; the results of earlier steps remain. An
+/// interrupted run ends at its last whole step, with a checkpoint if the scene has checkpoints. Error, the same on every
+/// rank: bad input, a file that cannot be written, or a directory in use by another run, which remains untouched.
+/// Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().

@@ -4,7 +4,7 @@
 Copies the sources to OUTPUT/source and builds them there without a compiler cache. Each compilation is timed, and its
 lines are counted: lines that the compiler reads after preprocessing, without empty ones, precompiled headers as well.
 The law is that of docs/how_to_add_a_law.md. Figures are CPU time of all processes of a build, which other work on the
-machine raises a little; Wall time is printed as well.
+machine raises a little. Wall time is printed as well.
 
     build.py [--only program|tests|law] [--jobs N] [--output DIR]"""
 import argparse
