@@ -115,6 +115,18 @@ class Restart(ProgramTest):
         self.go(*scene, QUIET, ranks=ranks, output="parts", restart=True)
         self.expect_same_bits("whole", "parts")
 
+    def test_same_bits_with_a_longer_schedule(self):
+        """Of a run that ended by its schedule, and goes on with further times."""
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                scene, whole = [CYCLIC, EVERY_STEP, QUIET], "Time.schedule={1, 2, 4, 4.5}"
+                self.go(*scene, whole, ranks=ranks, output="whole")
+                self.go(*scene, "Time.schedule={1, 2, 4}", ranks=ranks, output="parts")
+                self.go(*scene, whole, ranks=ranks, output="parts", restart=True)
+                self.expect_same_bits("whole", "parts")
+                for folder in ("whole", "parts"):
+                    shutil.rmtree(self.folder / folder)
+
     def test_same_steps_where_they_choose_themselves(self):
         """With all that the choice remembers."""
         n_rejected = 0
