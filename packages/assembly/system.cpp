@@ -183,7 +183,7 @@ void System::declare_fields() {
       carried_[context().field(name)] = 1;
       blocks_[context().field(name)].advected = true;
     }
-  changing_ = coupled_ || std::find(carried_.begin(), carried_.end(), 1) != carried_.end();
+  changing_ = std::any_of(unknowns_.begin(), unknowns_.end(), [](const auto& unknown) { return unknown.balance; });
   for (std::size_t b = 0; b < unknowns_.size(); ++b)
     if (!unknowns_[b].augmented_by.empty()) contact_blocks_.traction = static_cast<int>(b);
   declare_scales();

@@ -308,9 +308,11 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 /// they do: else those that slip hardens would stick for their slip, and then no more (in 3D z turns too much where it
 /// is small). And slip against z has no larger b: else joints that slip weakens had states that slide backwards.
 /// Without a bond T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and
-/// stick; so do those that a step finds on the limit, |z| = b to 1e-10, until they move, c_t |p - p_old| > 1e-10 b:
-/// else rounding would say which of them slip. p_old is the plastic jump at the end of the last step. Where p or p -
-/// p_old is zero to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
+/// stick; with a cohesion that opening destroys, up to y = T + 1e-10 cohesion: rounding of a vanishing normal traction
+/// must not open them. Where |z| = b and p = p_old to 1e-10 b, both residuals are that small, and the state is the one
+/// with the smaller residual: rounding does not decide which faces slip at the begin of a step, and the solution in
+/// either state keeps that state. p_old is the plastic jump at the end of the last step. Where p or p - p_old is zero
+/// to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
 ///
 /// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
 /// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
@@ -356,8 +358,8 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     const T pushed = c.normal * at.separation, y = lambda[0] + pushed;
     if (bonded) cohesion = law.cohesion(at);
     const bool parted = y > cohesion.strength;
-    if (parted && cohesion.lost) return true;
-    if (parted) {
+    if (parted && cohesion.lost && y > cohesion.strength + 1e-10 * cohesion.shear) return true;
+    if (parted && !cohesion.lost) {
       R[0] = lambda[0] - cohesion.tension;
       at.lambda_n = cohesion.tension;
     } else {
@@ -380,9 +382,16 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     for (int i = 0; i < dim; ++i) R[i] = lambda[i];
     return ContactState::open;
   }
-  if ((bears_at_rest && size <= b) || (size <= (1 + 1e-10) * b && c.tangential * norm(step) <= 1e-10 * b)) {
+  const auto stick = [&] {
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
+  };
+  if (bears_at_rest && size <= b) return stick();
+  const T moved = c.tangential * norm(step);
+  if (size <= (1 + 1e-10) * b && moved <= 1e-10 * b) {
+    T beyond[dim - 1];
+    for (int i = 0; i < dim - 1; ++i) beyond[i] = lambda[i + 1] - b * z[i] / size;
+    if (moved <= norm(beyond)) return stick();
   }
   if (turn_along(p, p_old, z, size, at.plastic_slip)) is_open();
   for (int i = 0; i < dim - 1; ++i) R[i + 1] = lambda[i + 1] - b * z[i] / size;

@@ -198,6 +198,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
       }
       const auto faces = results.add_step(taken, last || !step.converged);
       progress.add(taken, faces);
+      if (!taken.warning.empty()) log.warning("t = {:.6g}: {}", step.time, taken.warning);
       for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
       if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
       if (step.converged) checkpoints.after_step(results, last);

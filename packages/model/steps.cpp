@@ -140,6 +140,22 @@ std::pair<Real, Real> Steps::next_attempt() {
   }
 }
 
+namespace {
+
+/// Of an accepted step of length dt with errors above the tolerance.
+std::string limit_of_steps(Real dt, const StepTaken& step) {
+  const auto worst = std::max_element(step.errors.begin(), step.errors.end(),
+                                      [](const auto& a, const auto& b) { return a.value < b.value; });
+  return fmt::format(
+      "the step of length {:.6g} is accepted with a relative error of {:.2g} of '{}', above Time > "
+      "\"tolerance\", after {} rejected attempts: {}",
+      dt, worst->value, worst->name, step.n_rejected,
+      step.n_rejected < solve::StepControl::most_rejections ? "shorter ones are below Time > \"smallest step\""
+                                                            : "there were too many in a row");
+}
+
+}  // namespace
+
 StepTaken Steps::choose() {
   using Verdict = solve::StepControl::Verdict;
   auto& system = model_.system();
@@ -155,7 +171,8 @@ StepTaken Steps::choose() {
     if (!step.report.converged) return step;
     const Real dt = (step.end - step.begin) / std::max(1, step.report.substeps);
     const auto verdict = control_->judge(dt, step.errors, step.report.newton_iterations);
-    if (verdict == Verdict::jumped) system.forget_rates(true);
+    if (verdict == Verdict::jumped || verdict == Verdict::limited) system.forget_rates(true);
+    if (verdict == Verdict::limited) step.warning = limit_of_steps(dt, step);
     std::erase_if(step.errors, [](const auto& error) { return error.order == fields::StepError::unknown; });
     if (verdict != Verdict::rejected) break;
     const auto scope = model_.timers().scope("choice of steps");

@@ -22,6 +22,7 @@ struct StepTaken {
   fields::StepErrors errors = {};  ///< relative, of steps that are chosen
   int n_rejected = 0;              ///< attempts that were taken back
   int rejected_iterations = 0;     ///< of Newton's method in them
+  std::string warning = "";        ///< where it errs more than it should
 };
 
 /// Takes a model through the section Time of its scene. A host that lets steps be chosen uses it as a run does.

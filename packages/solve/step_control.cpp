@@ -9,6 +9,7 @@ namespace {
 
 constexpr Real aim = 0.8;                              // of the tolerance
 constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // of what is rejected
+constexpr Real shorter = 0.9;                          // of a rejected step, that the next attempt must be below
 constexpr Real same = 1e-12;                           // of times that differ by rounding
 
 }  // namespace
@@ -37,18 +38,21 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
     factor = std::min(factor, std::pow(aim * *options_.tolerance / error.value, 1 / error.order));
   }
   const bool helped = rejected_dt_ == 0 || dt > 0.8 * rejected_dt_ || worst < 0.8 * worst_;
-  if (worst > 1 && helped && dt > options_.smallest) {
+  const bool can_be_shorter = options_.smallest <= shorter * dt, too_many = n_rejected_ == most_rejections;
+  if (worst > 1 && helped && can_be_shorter && !too_many) {
     worst_ = worst;
     rejected_dt_ = dt;
+    ++n_rejected_;
     memory_.length = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
     return Verdict::rejected;
   }
   const bool again = rejected_dt_ > 0;
   rejected_dt_ = worst_ = 0;
+  n_rejected_ = 0;
   if (options_.iterations) factor = std::min(factor, factor_by_iterations(dt, newton_iterations));
   if (worst > 1) {
     memory_.length = bounded(dt);
-    return Verdict::jumped;
+    return helped ? Verdict::limited : Verdict::jumped;
   }
   if (again) factor = std::min<Real>(factor, 1);
   const Real next = dt * std::max(factor, most_shrink);
@@ -59,10 +63,10 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
 
 /// Where steps a tenth as long take about as many, the length stays.
 Real StepControl::factor_by_iterations(Real dt, int n) {
-  constexpr Real harder = 1.5, much_shorter = 0.1;
+  constexpr Real easier = 0.5, harder = 2, much_shorter = 0.1;
   const Real factor = std::sqrt(static_cast<Real>(*options_.iterations) / std::max(1, n));
-  const bool alike =
-      factor < 1 && dt <= memory_.judged && n >= memory_.judged_iterations && n < harder * memory_.judged_iterations;
+  const bool alike = factor < 1 && dt <= memory_.judged && n > easier * memory_.judged_iterations &&
+                     n < harder * memory_.judged_iterations;
   if (alike && dt < much_shorter * memory_.judged) return 1;
   if (!alike) {
     memory_.judged = dt;

@@ -17,21 +17,24 @@ struct StepControlOptions {
 
 /// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
 /// suggest dt (wanted/n)^(1/2), but no shorter one where a tenth of the length has not saved any; where an error is
-/// unknown a step is no longer than the one before. Steps with an error
-/// above the tolerance are to be rejected, unless a shorter one was tried and is hardly better: what jumps at a time
-/// does so in steps of any length. Stops, increasing, are met; the last two steps before one are equal, so that none is
-/// tiny.
+/// unknown a step is no longer than the one before. Steps with an error above the tolerance are to be rejected, unless
+/// no shorter one is allowed, or one was tried and is hardly better (loads that jump at a time do so in steps of any
+/// length), or `most_rejections` were in a row. The attempt after a rejected one is at most 0.9 times as long. Stops,
+/// increasing, are met; the last two steps before one are equal, so that none is tiny.
 class StepControl {
  public:
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
       : options_(options), stops_(std::move(stops)), memory_{options.first} {}
+
+  static constexpr int most_rejections = 30;
 
   /// The end of the next step, from t.
   Real end_of_step(Real t) const;
   enum class Verdict {
     accepted,
     rejected,  ///< a shorter one is to be tried
-    jumped     ///< accepted, for it is no shorter step that helps
+    jumped,    ///< accepted, for a shorter step does not help
+    limited    ///< accepted: no shorter step is allowed, or `most_rejections` were in a row
   };
   /// Of a step of length dt, and sets the length of the next one.
   Verdict judge(Real dt, const fields::StepErrors& errors, int newton_iterations);
@@ -59,6 +62,7 @@ class StepControl {
   Memory memory_;
   Real worst_ = 0;        // error over tolerance of the attempt that was rejected last, in this step; or 0
   Real rejected_dt_ = 0;  // its length
+  int n_rejected_ = 0;    // attempts in this step
 };
 
 }  // namespace sprekk::solve

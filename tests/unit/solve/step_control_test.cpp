@@ -103,7 +103,34 @@ TEST(StepControl, AcceptsWhatNoShorterStepMakesBetter) {
   EXPECT_EQ(control.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::rejected);
   EXPECT_EQ(control.judge(control.memory().length, {{"error", 0.5, 1}}, 1), Verdict::jumped);
   StepControl smallest({.tolerance = 1e-2, .first = 0.1, .smallest = 0.1, .largest = 1}, {1});
-  EXPECT_EQ(smallest.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::jumped);
+  EXPECT_EQ(smallest.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::limited);
+}
+
+/// The last step before a stop is the shortest one that is allowed, up to rounding.
+TEST(StepControl, TriesNoStepTwiceWithTheSameLength) {
+  StepControl control({.tolerance = 1e-2, .first = 1e-7, .smallest = 1e-8, .largest = 1}, {1});
+  EXPECT_EQ(control.judge(1e-7, {{"error", 1e3, 1}}, 1), Verdict::rejected);
+  EXPECT_EQ(control.judge(1.000000000000001e-8, {{"error", 1e2, 1}}, 1), Verdict::limited);
+}
+
+/// Errors fall with each attempt, though by so little that the tolerance stays out of reach.
+TEST(StepControl, LimitsRejectionsInARow) {
+  StepControl control({.tolerance = 1e-2, .first = 1, .smallest = 1e-300, .largest = 1}, {1});
+  Real error = 1e30;
+  int n = 0;
+  for (auto verdict = Verdict::rejected; verdict == Verdict::rejected && n < 1000; ++n, error *= 0.7)
+    if (verdict = control.judge(control.memory().length, {{"error", error, 1}}, 1); verdict != Verdict::rejected)
+      EXPECT_EQ(verdict, Verdict::limited);
+  EXPECT_EQ(n, StepControl::most_rejections + 1);
+}
+
+/// Counts of iterations that alternate say nothing about the length.
+TEST(StepControl, IsNotDrivenToEverShorterStepsByCountsThatAlternate) {
+  for (const int more : {5, 6, 7}) {
+    StepControl control({.tolerance = {}, .iterations = 3, .first = 0.1, .smallest = 1e-12, .largest = 1}, {100});
+    for (int k = 0; k < 200; ++k) control.judge(control.memory().length, {}, k % 2 == 0 ? 4 : more);
+    EXPECT_GT(control.memory().length, 1e-3) << more;
+  }
 }
 
 TEST(StepControl, AimsAtACountOfNewtonIterations) {
