@@ -231,7 +231,7 @@ py::list table_of(const Model& model, std::vector<OutputField> outputs, bool sin
 
 py::list reactions_of(Model& model) {
   py::list all;
-  for (auto& reaction : model.system().reactions(model.state())) {
+  for (auto& reaction : model.system().reactions_of_step(model.state())) {
     const std::vector<Real> moment(reaction.moment.begin(), reaction.moment.end());
     all.append(py::make_tuple(reaction.condition, reaction.field, reaction.called.unit,
                               array_of(std::move(reaction.force)), array_of(moment)));

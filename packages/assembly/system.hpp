@@ -64,6 +64,9 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
   /// counts for the first. Collective.
   std::vector<Reaction> reactions(const fields::BlockVector& x);
+  /// Those at the end of the last step, with all that was stored in it; of x where nothing is stored or no step has been
+  /// taken. Collective.
+  std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
   /// The same sums of any rows r. Collective.
   std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const;
   /// Those of all modules, summed over the ranks. Collective.
@@ -149,6 +152,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
   void declare_gains();
   void find_gains();
+  void find_unbalanced(const fields::BlockVector& x);
   void find_errors(const fields::BlockVector& x);
   void resume_errors(const fields::BlockVector& x, const std::vector<Real>& memory);
   fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
@@ -185,6 +189,8 @@ class System : public fields::BlockProblem, private contact::Equations {
   fields::BlockVector diagonals_;    // [block] of linear_; of balances that couple to other rows: of matrix_
   fields::BlockVector present_;      // [block] the same of the last jacobian()
   fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
+  fields::BlockVector at_end_;       // [block] residual at the end of the last step; empty: nothing stored, or none
+  fields::BlockVector unbalanced_;   // [block] the same, zero in rows of prescribed unknowns
   fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
   contact::Blocks contact_blocks_;   // without a displacement where modules hold bodies
   std::unique_ptr<contact::Contact> contact_;  // null where nothing touches and all is held

@@ -235,6 +235,7 @@ void System::commit(const BlockVector& x) {
     contact_->find_loose(present_grips());
     contact_->remember(x);
   }
+  if (has_rates()) find_unbalanced(x);
   if (keeps_gains()) find_gains();
   if (rate_errors_) find_errors(x);
   committed_t_ = t_;
@@ -242,6 +243,24 @@ void System::commit(const BlockVector& x) {
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     auto s = state(static_cast<int>(m));
     modules_[m]->commit(s);
+  }
+}
+
+/// Before histories and gains move on.
+void System::find_unbalanced(const BlockVector& x) {
+  if (at_end_.empty()) {
+    at_end_ = fields::create_like(x);
+    unbalanced_ = fields::create_like(x);
+  }
+  raw_residual(x, at_end_);
+  for (std::size_t b = 0; b < x.size(); ++b) {
+    Tpetra::deep_copy(*unbalanced_[b], *at_end_[b]);
+    const auto mask = constraints_[b].mask();
+    const auto row = owned_view(*unbalanced_[b]);
+    Kokkos::parallel_for(
+        "prescribed", Kokkos::RangePolicy<Execution>(0, mask.extent(0)), KOKKOS_LAMBDA(int i) {
+          if (mask(i)) row(i) = 0;
+        });
   }
 }
 
@@ -435,7 +454,11 @@ std::vector<Total> System::totals(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<Total> totals;
   base::collectively(*comm(), [&] {
-    for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->totals(state(static_cast<int>(m)), totals);
+    for (std::size_t m = 0; m < modules_.size(); ++m) {
+      auto s = state(static_cast<int>(m));
+      for (const auto& v : unbalanced_) s.unbalanced.push_back(const_view(*v));
+      modules_[m]->totals(s, totals);
+    }
   });
   std::vector<Real> here;
   for (const auto& total : totals) here.push_back(total.value);
@@ -451,6 +474,10 @@ std::vector<Reaction> System::reactions(const BlockVector& x) {
   raw_residual(x, r);
   rates_ = rates;
   return sums_of_held(r);
+}
+
+std::vector<Reaction> System::reactions_of_step(const BlockVector& x) {
+  return at_end_.empty() ? reactions(x) : sums_of_held(at_end_);
 }
 
 std::vector<Reaction> System::sums_of_held(const BlockVector& r) const {

@@ -347,7 +347,7 @@ json Results::reactions() {
     for (std::size_t i = 0; i < values.size(); ++i) add(sums[i], values[i]);
   };
   const auto& mesh = model_.mesh();
-  for (const auto& reaction : model_.system().reactions(model_.state())) {
+  for (const auto& reaction : model_.system().reactions_of_step(model_.state())) {
     const bool in_region = reaction.region >= 0;
     const auto& [name, moments, regions, unit] = reaction.called;
     units_.insert({{name, unit}, {moments, unit + "*m"}, {regions, unit}});

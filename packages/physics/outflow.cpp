@@ -51,17 +51,31 @@ Real Outflow::largest(Real t, bool beyond) const {
   return largest;
 }
 
+/// [owned row] what is out of balance there over the sum of area times coefficient, U.
+std::map<LocalIndex, Real> Outflow::unbalanced_per_coefficient(const assembly::State& state) const {
+  std::map<LocalIndex, Real> sums;
+  if (state.unbalanced.empty()) return sums;
+  const auto unbalanced = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.unbalanced[block_]);
+  for (const auto& [number, row, area, x] : points_)
+    if (const auto& coefficient = conditions_[number].coefficient; coefficient && row < n_owned_)
+      sums[row] += area * (*coefficient)(x, 0);
+  for (auto& [row, sum] : sums) sum = sum > 0 ? unbalanced(row) / sum : 0;
+  return sums;
+}
+
 void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const {
   const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+  const auto unbalanced = unbalanced_per_coefficient(state);
   const std::size_t first = totals.size();
   for (const auto& one : conditions_)
     totals.push_back({{names_.inflows, mesh.boundary_names[one.boundary]}, 0, names_.unit});
   for (const auto& [number, row, area, x] : points_) {
     if (row >= n_owned_) continue;
     const auto& [boundary, value, coefficient, region, fracture] = conditions_[number];
-    const Real beyond = value(x, state.t);
-    totals[first + number].value -=
-        area * (coefficient ? (*coefficient)(x, 0) * fluid_.drop(u(row), beyond, 0) : beyond);
+    const Real beyond = value(x, state.t), h = coefficient ? (*coefficient)(x, 0) : 0;
+    totals[first + number].value -= area * (coefficient ? h * fluid_.drop(u(row), beyond, 0) : beyond);
+    if (const auto of_row = unbalanced.find(row); h > 0 && of_row != unbalanced.end())
+      totals[first + number].value += area * h * of_row->second;
   }
 }
 

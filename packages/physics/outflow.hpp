@@ -7,6 +7,7 @@
 #include "physics/exchange.hpp"
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,8 @@ class Outflow {
   /// The largest value on this rank, of a flux or of what is beyond.
   Real largest(Real t, bool beyond) const;
   /// Appends what flows in for each condition, by boundaries.
+  /// Rates into the domain, by boundaries: of those with a coefficient such that the rows of the last step are in
+  /// balance.
   void totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const;
 
  private:
@@ -84,6 +87,8 @@ class Outflow {
 
   std::vector<FluxCondition> conditions_;
   OutflowNames names_;
+  std::map<LocalIndex, Real> unbalanced_per_coefficient(const assembly::State& state) const;
+
   std::vector<Point> points_;
   int block_ = -1;
   LocalIndex n_owned_ = 0;

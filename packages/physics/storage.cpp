@@ -50,28 +50,36 @@ struct StorageCell {
   }
 };
 
-/// The same of a fracture face whose aperture is a_0 and a widening b, the second of x, m:
+/// The same of a fracture face whose aperture is a = max(a_0 + b, a_min) with a widening b, the second of x, m:
 /// r = rate |f| (a e - a_old e_old).
 /// | gained   | [owned face, 2] | Pa, m | p_old less that at the start, b_old                        |
+/// | least    | [local face]    | m     | a_min                                                      |
 struct StorageFace : StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
   using Rows = assembly::Slots<assembly::Slot<1, 1>>;
+  ConstView<Real*> least;
 
+  KOKKOS_INLINE_FUNCTION bool is_wide(int e, Real widening) const { return room(e) + widening > least(e); }
+  KOKKOS_INLINE_FUNCTION Real aperture(int e, Real widening) const {
+    return is_wide(e, widening) ? room(e) + widening : least(e);
+  }
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[2], Real (&r)[1]) const {
     const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
-    const Real a_old = room(e) + gained(e, 1), opened = x[1] - gained(e, 1);
+    const Real a_old = aperture(e, gained(e, 1));
+    const Real opened = is_wide(e, x[1]) && is_wide(e, gained(e, 1)) ? x[1] - gained(e, 1) : aperture(e, x[1]) - a_old;
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
     r[0] = volume(e) * rate * (a_old * fluid.density(old) * denser + opened * fluid.density(x[0]));
   }
   KOKKOS_INLINE_FUNCTION Real stored(int e, const Real (&x)[2]) const {
-    return volume(e) * (room(e) + x[1]) * fluid.density(x[0]);
+    return volume(e) * aperture(e, x[1]) * fluid.density(x[0]);
   }
   KOKKOS_INLINE_FUNCTION Real stored_before(int e) const {
     return stored(e, {initial(e) + gained(e, 0), gained(e, 1)});
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
-    J[0][1] = volume(e) * rate * fluid.density(x[0]);
-    J[0][0] = J[0][1] * (room(e) + x[1]) * fluid.compressibility;
+    const Real density = volume(e) * rate * fluid.density(x[0]);
+    J[0][1] = is_wide(e, x[1]) ? density : 0;
+    J[0][0] = density * aperture(e, x[1]) * fluid.compressibility;
   }
 };
 
@@ -109,6 +117,7 @@ struct Stored {
   Capacity capacity;
   Real initial;
   Real carried = 0;  ///< what changes the fluid, at the start
+  Real least = 0;    ///< of a fracture's aperture, m
 };
 
 /// Finds what is stored in the entities of a loop, in their order.
@@ -140,12 +149,13 @@ class Storage final : public assembly::Module {
   }
 
   void bind(const assembly::Context& context) override {
-    std::vector<Real> volume, room, growth, initial;
+    std::vector<Real> volume, room, growth, initial, least;
     for (const auto& stored : find_(*context.mesh())) {
       volume.push_back(stored.volume);
       room.push_back(stored.capacity.room);
       growth.push_back(stored.capacity.growth);
       initial.push_back(stored.initial);
+      least.push_back(stored.least);
       carried_.push_back(stored.carried);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
@@ -153,6 +163,7 @@ class Storage final : public assembly::Module {
     op_.room = assembly::to_device(room, "room");
     op_.growth = assembly::to_device(growth, "growth");
     op_.initial = assembly::to_device(initial, "initial values");
+    if constexpr (m == 2) op_.least = assembly::to_device(least, "least apertures");
     std::vector<int> columns;
     for (const auto& name : this->columns()) columns.push_back(context.field(name));
     assembler_ =
@@ -266,7 +277,8 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
       stored.push_back({.volume = face.area,
                         .capacity = {.room = parameters.aperture[f], .growth = 0},
                         .initial = mean(face, parameters.initial),
-                        .carried = parameters.change ? mean(face, parameters.change->initial) : 0});
+                        .carried = parameters.change ? mean(face, parameters.change->initial) : 0,
+                        .least = parameters.least[f]});
     }
     return stored;
   };

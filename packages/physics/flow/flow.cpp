@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace sprekk::physics {
 
@@ -234,18 +235,18 @@ Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) 
       [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
 }
 
-std::vector<Real> start_apertures(const Setting& setting) {
+std::vector<StartAperture> start_apertures(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
-  std::vector<Real> apertures;
+  std::vector<StartAperture> apertures;
   if (scene.flow) {
-    for (const auto& face : hydraulics(setting)) apertures.push_back(face.along.mechanical_aperture());
+    for (const auto& face : hydraulics(setting)) apertures.push_back({face.along.aperture, face.along.least});
     return apertures;
   }
   const auto openings = openings_of(setting);
   for (std::size_t f = 0; f < openings.size(); ++f) {
     const auto& face = mesh.fracture_faces[f];
-    apertures.push_back(std::max(
-        Real(0), joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f].value_or(0)));
+    apertures.push_back(
+        {joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f].value_or(0), 0});
   }
   return apertures;
 }
@@ -263,8 +264,12 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto all_carried = carried_in(scene);
   auto [darcy, fractures, wells] = parts_of(setting, all_carried);
   const auto change = darcy.change;
-  std::vector<Real> aperture;
-  for (const auto& face : fractures.faces) aperture.push_back(face.along.mechanical_aperture());
+  FractureStorageParameters in_fractures{
+      .fluid = darcy.fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change};
+  for (const auto& face : fractures.faces) {
+    in_fractures.aperture.push_back(deforms ? face.along.aperture : face.along.mechanical_aperture());
+    in_fractures.least.push_back(face.along.least);
+  }
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
     const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
@@ -285,9 +290,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
     modules.push_back(make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;
   modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (denser || deforms)
-    modules.push_back(make_fracture_storage(
-        {.aperture = aperture, .fluid = fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change}));
+  if (denser || deforms) modules.push_back(make_fracture_storage(std::move(in_fractures)));
 }
 
 FluidFlux fluid_flux(const Setting& setting) {
@@ -327,11 +330,44 @@ std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::Sy
   return make_balance_error(system, std::move(parameters));
 }
 
+namespace {
+
+/// Of joints that a compression of 1e-3 of the rock's Young's modulus closes by more than their initial aperture.
+void add_closure_warnings(const Setting& setting, std::vector<std::string>& warnings) {
+  const auto& [scene, mesh, start] = setting;
+  if (!Mechanics::is_in(scene)) return;
+  Real modulus = 0;
+  for (const auto& rock : elasticity(scene, mesh).values) modulus = std::max(modulus, rock.youngs_modulus());
+  const Real compression = 1e-3 * base::max_over_ranks(*mesh.comm, modulus), zero = 0;
+  std::set<std::string> seen;
+  for (std::size_t k = 0; k < mesh.single_fractures.size(); ++k) {
+    const auto& joint = joint_of(scene, mesh, static_cast<int>(k));
+    if (!joint.is_uniform() || !joint.initial_aperture.is_constant()) continue;
+    const auto law = joint.joint({}).law;
+    const Real aperture = joint.initial_aperture({}, 0),
+               closure = -law.closure(laws::Contact<Real>{.lambda_n = -compression, .history = {&zero, 0}});
+    if (aperture == 0 || !(closure > aperture) || !seen.insert(fmt::format("{} {}", closure, aperture)).second)
+      continue;
+    const bool residual = !is_zero(joint.residual_aperture);
+    warnings.push_back(fmt::format(
+        "{}: fracture \"{}\": a compression of {:.3g} Pa closes the joint by {:.3g} m, more than its \"initial "
+        "aperture\" "
+        "{:.3g} m; {}",
+        scene.origin, mesh.single_fractures[k].name, compression, closure, aperture,
+        residual ? "the fluid then has the \"residual aperture\"" : "the fluid in it then bears the compression"));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> Flow::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
-  const auto skew = scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh));
-  return skew.empty() ? std::vector<std::string>() : std::vector{scene.origin + ": " + skew};
+  std::vector<std::string> all;
+  if (const auto skew = scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
+    all.push_back(scene.origin + ": " + skew);
+  add_closure_warnings(setting, all);
+  return all;
 }
 
 std::vector<std::string> Flow::warnings_of_state(const Setting& setting,

@@ -130,8 +130,12 @@ bool has_unknown_pressure(const Scene& scene);
 /// Of the fluid in rock and fractures; 0 without.
 base::Expression initial_pressure(const Scene& scene);
 
-/// Mechanical apertures of local fracture faces at the start, those of (15). Collective.
-std::vector<Real> start_apertures(const Setting& setting);
+/// The mechanical aperture (15) of a fracture face, m: at the start, but for its bound, and that bound.
+struct StartAperture {
+  Real value, least;
+};
+/// Of local fracture faces. Collective.
+std::vector<StartAperture> start_apertures(const Setting& setting);
 
 SchemeEntry scheme_entry(const Scene& scene);
 /// Of local cells.

@@ -8,6 +8,7 @@
 #include "physics/flow/well_connections.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace sprekk::physics {
@@ -156,11 +157,17 @@ class Wells final : public assembly::Module {
     const auto on_host = [](const auto& x) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x); };
     const std::array p = {on_host(state.x[blocks_[0]]), on_host(state.x[blocks_[1]])};
     const auto widening = widens_ ? on_host(state.x[widening_]) : p[1];
+    const auto W_of = [&](const WellConnection& c) {
+      return index(c, widens_ && c.face >= 0 ? widening(c.face) : 0) * flow_factor(state, c);
+    };
+    const auto unbalanced = unbalanced_per_index(state, W_of);
     for (const auto& c : connections_) {
       const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
-      const Real W = index(c, widens_ && c.face >= 0 ? widening(c.face) : 0) * flow_factor(state, c);
+      const Real W = W_of(c);
       const bool held = well(c).pressure.has_value();
-      const Real flow = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
+      const auto of_row = unbalanced[c.fracture >= 0].find(c.row);
+      const Real rest = of_row == unbalanced[c.fracture >= 0].end() ? 0 : of_row->second;
+      const Real flow = held ? W * (parameters_.fluid.drop(pressure(c, state.t), at, 0) + rest) : rate(c, state.t);
       const Real drop = flow == 0 ? 0 : flow / W;
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
@@ -178,6 +185,21 @@ class Wells final : public assembly::Module {
   }
 
  private:
+  /// What is out of balance in rows of wells of given pressure, over the sum of their W(connection): Pa, of [rock,
+  /// fractures] by row. A well that conducts much better than what is around it has a pressure drop near rounding; the
+  /// balance of the row is known better than the product of both.
+  template <class Index>
+  std::array<std::map<LocalIndex, Real>, 2> unbalanced_per_index(const assembly::State& state, const Index& W) const {
+    std::array<std::map<LocalIndex, Real>, 2> sums;
+    if (state.unbalanced.empty()) return sums;
+    for (const auto& c : connections_)
+      if (well(c).pressure) sums[c.fracture >= 0][c.row] += W(c);
+    for (int k = 0; k < 2; ++k) {
+      const auto unbalanced = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.unbalanced[blocks_[k]]);
+      for (auto& [row, sum] : sums[k]) sum = sum > 0 ? unbalanced(row) / sum : 0;
+    }
+    return sums;
+  }
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && parameters_.carried.empty(); }
 
   /// Two for each that is carried: into rock, and into fractures.

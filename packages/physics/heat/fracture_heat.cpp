@@ -98,7 +98,7 @@ class FractureHeat final : public assembly::Module {
     const auto kept = Kokkos::create_mirror_view(history[0]);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       kept(f, 0) = start(f, parameters_.initial);
-      kept(f, 1) = parameters_.faces[f].aperture * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
+      kept(f, 1) = parameters_.faces[f].at_start() * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
       kept(f, 2) = kept(f, 1);
     }
     Kokkos::deep_copy(history[0], kept);
@@ -107,7 +107,7 @@ class FractureHeat final : public assembly::Module {
   void commit(assembly::State& state) const override {
     const auto kept = state.history[0];
     const auto facet = facet_;
-    const auto aperture = aperture_;
+    const auto aperture = aperture_, least = least_;
     const auto T = state.x[temperature_];
     const auto p = pressure_ < 0 ? ConstView<Real*>() : state.x[pressure_];
     const auto widening = widening_ < 0 ? ConstView<Real*>() : state.x[widening_];
@@ -119,7 +119,7 @@ class FractureHeat final : public assembly::Module {
           const Real a = aperture(f) + (widens ? widening(f) : 0);
           kept(f, 0) = T(facet(f));
           kept(f, 2) = kept(f, 1);
-          kept(f, 1) = (a > 0 ? a : 0) * (flows ? fluid.density(p(facet(f))) : 1) *
+          kept(f, 1) = (a > least(f) ? a : least(f)) * (flows ? fluid.density(p(facet(f))) : 1) *
                        (changes ? response.density(kept(f, 0)).value : 1);
         });
   }
@@ -161,7 +161,7 @@ class FractureHeat final : public assembly::Module {
     const auto host = Kokkos::create_mirror_view(T);
     for (LocalIndex f = 0; f < n_faces; ++f) {
       const auto& face = parameters_.faces[f];
-      const Plane plane(*mesh_, f, face.aperture * face.conductivity, parameters_.scheme);
+      const Plane plane(*mesh_, f, face.at_start() * face.conductivity, parameters_.scheme);
       for (int k = 0; k < n; ++k)
         for (int j = 0; j < n; ++j) host(f, k * n + j) = plane.T[k][j];
     }
@@ -170,13 +170,14 @@ class FractureHeat final : public assembly::Module {
   }
 
   void set_filling() {
-    std::vector<Real> area, aperture;
+    std::vector<Real> area, aperture, least;
     std::vector<LocalIndex> facet;
     View<Real**> factor("factor", parameters_.faces.size(), expands ? 2 : 1);
     const auto host = Kokkos::create_mirror_view(factor);
     for (std::size_t f = 0; f < parameters_.faces.size(); ++f) {
       area.push_back(mesh_->fracture_faces[f].area);
       aperture.push_back(parameters_.faces[f].aperture);
+      least.push_back(parameters_.faces[f].least);
       facet.push_back(mesh_->facets->fracture_face[f]);
       host(f, 0) = parameters_.faces[f].capacity;
       if (expands) host(f, 1) = -parameters_.expansion;
@@ -185,13 +186,14 @@ class FractureHeat final : public assembly::Module {
     filling_.area = assembly::to_device(area, "area");
     filling_.factor = factor;
     aperture_ = assembly::to_device(aperture, "aperture");
+    least_ = assembly::to_device(least, "least aperture");
     facet_ = assembly::to_device(facet, "facet");
   }
 
   FractureHeatParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1, pressure_ = -1, widening_ = -1;  // blocks of face temperature, face pressure, widening
-  ConstView<Real*> aperture_;                             // [local fracture face] a_0, m
+  ConstView<Real*> aperture_, least_;                     // [local fracture face] a_0, its bound, m
   ConstView<LocalIndex*> facet_;                          // [local fracture face]
   Conduction conduction_;
   Filling<expands ? 2 : 1> filling_;

@@ -16,9 +16,11 @@ namespace sprekk::physics {
 struct FractureHeatParameters {
   /// Of one fracture face.
   struct Face {
-    Real aperture;      ///< a_0 at the start, m
+    Real aperture;      ///< a_0, m
+    Real least;         ///< of the aperture, m
     Real conductivity;  ///< of what fills it, W/(m K)
     Real capacity;      ///< rho c of that at reference conditions, J/(m^3 K)
+    Real at_start() const { return aperture > least ? aperture : least; }
   };
   std::vector<Face> faces = {};  ///< [local fracture face]
   FluxScheme scheme = FluxScheme::rt0;

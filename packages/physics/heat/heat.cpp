@@ -83,7 +83,8 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
       const auto& joint = joint_of(scene, mesh, mesh.fracture_faces[f].single);
       faces.push_back(at_place(scene, joint, [&]() -> FractureHeatParameters::Face {
         const auto& own = joint.filling_heat_capacity;
-        return {.aperture = std::max(least, apertures[f]),
+        return {.aperture = apertures[f].value,
+                .least = std::max(least, apertures[f].least),
                 .conductivity = value_at(conductivity_name, joint.filling_conductivity, base::positive(), x),
                 .capacity = own          ? value_at(capacity_name, *own, base::at_least(0), x)
                             : scene.flow ? scene.heat->fluid_capacity.value_or(0)

@@ -427,7 +427,7 @@ struct ElasticPlasticJump<dim>::Shown {
     Real tangential[dim - 1];
     for (int i = 0; i < dim - 1; ++i) tangential[i] = plastic[i + 1];
     slip = laws::norm(tangential);
-    aperture = joint.initial_aperture + point.w[0];
+    aperture = std::max(joint.least_aperture, joint.initial_aperture + point.w[0]);
     at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
     const Real bound = joint.law.bound(at);
     if (!at.open && at.shear > 0) slip_tendency = at.shear / std::max(bound, at.shear * 1e-16);
@@ -515,7 +515,9 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
   auto jumps = initial_tractions(mesh, parameters);
   if (parameters.initial_stress.empty()) return jumps;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    const auto& [law, aperture, plastic] = parameters.joints[joint_of(parameters, mesh, f)];
+    const auto& joint = parameters.joints[joint_of(parameters, mesh, f)];
+    const auto& law = joint.law;
+    const auto& plastic = joint.plastic_jump;
     const Real pressed = jumps[f][0];
     const Real zero = 0;  // all that laws have kept of faces
     laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .dim = mesh.dim(), .history = {&zero, 0}};

@@ -18,6 +18,7 @@ namespace sprekk::physics {
 struct JointParameters {
   laws::Joint law;
   Real initial_aperture = 0;           ///< a0 of (15), m
+  Real least_aperture = 0;             ///< that is left however far the sides close, m
   std::array<Real, 2> plastic_jump{};  ///< tangential, at the start, in the frame of the face, m
 };
 

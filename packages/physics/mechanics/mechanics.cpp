@@ -40,13 +40,16 @@ Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
       static_cast<int>(own ? mesh.single_fractures.size() : mesh.fracture_names.size()), group_of,
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
-        return material(fracture).is_uniform() &&
+        return material(fracture).is_uniform() && material(fracture).residual_aperture.is_constant() &&
                std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
       },
       [&](int fracture, int f) {
         const auto& jump = section(fracture).plastic_jump;
         auto joint = at_place(scene, material(fracture), [&] {
-          return material(fracture).joint(f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre);
+          const auto x = f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre;
+          auto joint = material(fracture).joint(x);
+          if (has_fluid(scene)) joint.least_aperture = material(fracture).residual_aperture(x, 0);
+          return joint;
         });
         for (std::size_t k = 0; k < jump.size(); ++k)
           joint.plastic_jump[k] = f < 0 ? jump[k]({}, 0) : mean(mesh, mesh.fracture_faces[f], jump[k]);
