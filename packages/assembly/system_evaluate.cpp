@@ -301,11 +301,11 @@ View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n
 
 }  // namespace
 
-/// Where something is carried, of other balances; of others that may be far above their scale, everywhere.
+/// Of unknowns whose values are far above what they have changed by, such as absolute temperatures and pressures of
+/// balances, or may be far above their scale.
 View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
   return rounding_by_others(matrix_, b, base::n_local_elements(*blocks_[b].map), [&](int c) {
-    const bool counts = (carried_[b] && unknowns_[c].balance) || unknowns_[c].unbounded;
-    return counts ? rounding(x, unknowns_[c].scale) : 0;
+    return unknowns_[c].balance || unknowns_[c].unbounded ? rounding(x, unknowns_[c].scale) : 0;
   });
 }
 

@@ -41,6 +41,7 @@ class TimeStepper {
 
  private:
   NewtonReport solve(BlockVector& x, StepReport& report);
+  NewtonReport settle(BlockVector& x, NewtonReport newton, int& settlings, StepReport& report);
   NewtonReport relax(BlockVector& x, StepReport& report);
 
   BlockProblem& problem_;

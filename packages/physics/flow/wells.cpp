@@ -167,7 +167,8 @@ class Wells final : public assembly::Module {
       const bool held = well(c).pressure.has_value();
       const auto of_row = unbalanced[c.fracture >= 0].find(c.row);
       const Real rest = of_row == unbalanced[c.fracture >= 0].end() ? 0 : of_row->second;
-      const Real flow = held ? W * (parameters_.fluid.drop(pressure(c, state.t), at, 0) + rest) : rate(c, state.t);
+      const Real product = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
+      const Real flow = held ? product + W * rest : product;
       const Real drop = flow == 0 ? 0 : flow / W;
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
@@ -177,9 +178,10 @@ class Wells final : public assembly::Module {
       auto next = of_well + 3 + mesh_->fracture_names.size();
       for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {
         const auto control = this->control(c, parameters_.carried[j], state.t);
-        const Real u = flow > 0 && control.brings ? control.value : carried_at(state, j, c);
+        const Real there = carried_at(state, j, c), u = product > 0 && control.brings ? control.value : there;
         totals[next++].value += share * u;
-        totals[next++].value += parameters_.carried[j].capacity * flow * u;
+        totals[next++].value +=
+            parameters_.carried[j].capacity * (flow * there + product * (u - there));  // as in its row
       }
     }
   }
