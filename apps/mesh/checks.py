@@ -138,7 +138,9 @@ def lying_on(plan):
             pair = fractures[0].name, fractures[1].name
             yield pair, f"{pair[0]} and {pair[1]} lie on each other; leave one out or make them one"
         elif fractures and side:
-            yield (fractures[0].name, side.name), f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides"
+            advice = "; \"layers\" of its set chooses others" if " of the layer " in fractures[0].name else ""
+            yield ((fractures[0].name, side.name),
+                   f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides{advice}")
 
 
 def check(plan):

@@ -11,7 +11,7 @@ from fab import read_fab
 from generator import at_random
 from parts import joined_parts
 from shapes import MOST, Errors, Feature, NetworkError, at, ellipse, refuse
-from tables import Table, read_table
+from tables import Table, has_points, read_table
 
 MOST_FRACTURES = 10**5
 MOST_DIAGONALS = 1e6  # of the domain, from its centre to a point of a fracture
@@ -64,6 +64,8 @@ class Network:
         self.again, self.at_random = again or {}, []
         self.entries = as_dictionary(xml.fromstring(text))
         self.files = []  # that it was read from
+        self.leaves_out = self.entries.get("unusable fractures") == "left out"
+        self.left_out = []  # lines for the report
         self.tables = {(kind, name): self.table(content) for kind in ("fractures", "constraints")
                        for name, content in self.entries.get(kind, {}).items() if "file" in content}
         self.domain = self.body("domain", self.domain_entries(), "boundary")
@@ -78,7 +80,7 @@ class Network:
         self.check_dimensions()
         self.check_reach()
         self.set_sizes()
-        self.joined = joined_parts(self.fractures, self.dim, self.tolerance)  # lines for the report
+        self.joined = self.left_out + joined_parts(self.fractures, self.dim, self.tolerance)  # lines for the report
 
     def place(self, path):
         return f"Sprekk > Mesh file > network > {path}"
@@ -91,10 +93,19 @@ class Network:
         self.files += exchange.files_of(path)
         domain = self.entries.get("domain")
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
+        dim, layers = 2 if of_domain == "lines" else 3, content.get("layers", [])
         if exchange.is_exchange(path) and "format" not in content:
-            return Table(exchange.read(path, 2 if of_domain == "lines" else 3))
-        kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else of_domain)
-        return read_fab(path) if kind == "fab" else read_table(path, kind)
+            table = Table(exchange.read(path, dim, layers, self.left_out if self.leaves_out else None, "unit" in content))
+        else:
+            if layers:
+                raise NetworkError(f"{path}: has no layers, \"layers\" of its set names some; files of GDAL have them", [path])
+            kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else None)
+            if kind is None:
+                kind = "points" if of_domain and has_points(path, dim) else of_domain
+            table = read_fab(path) if kind == "fab" else read_table(path, kind, dim)
+        for row in table.fractures:
+            row.points = row.points * content.get("unit", 1.0)
+        return table
 
     def domain_entries(self):
         if "domain" in self.entries:

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from shapes import MOST, Errors, NetworkError
+from shapes import MOST, Errors, NetworkError, Unusable
 
 DRIVERS = {".geojson": "GeoJSON", ".json": "GeoJSON", ".shp": "ESRI Shapefile", ".gpkg": "GPKG", ".dxf": "DXF"}
 COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # of a shapefile
 METRES, NO_UNIT = "6", "0"  # $INSUNITS of a drawing
+UNITS = {"1": "1 in", "2": "1 ft", "4": "1 mm", "5": "1 cm", "7": "1 km"}  # others
 NAME, NUMBER = ("name",), ("id", "fid", "number")  # attributes, in any case of letters
 OF_DRAWING = {"layer", "paperspace", "subclasses", "linetype", "entityhandle", "text"}  # that say nothing of a joint
 
@@ -170,7 +171,7 @@ def refuse_other_units(path):
     if unit not in (METRES, NO_UNIT):
         raise NetworkError(
             f"{path}: is a drawing in the unit {unit} of DXF ($INSUNITS), expected {METRES}, "
-            "metres; scale it, or set $INSUNITS to 6 if its lengths are in metres",
+            f"metres; give \"unit\" of its set, as \"{UNITS.get(unit, '1 m')}\", or \"1 m\" if its lengths are in metres",
             [path],
         )
 
@@ -186,8 +187,8 @@ def parts(geometry, ogr):
             yield from parts(geometry.GetGeometryRef(k), ogr)
 
 
-def corners(part, is_polygon, dim, place, errors):
-    """Of one fracture, or None and an error."""
+def corners(part, is_polygon, dim, place, errors, unused):
+    """Of one fracture, or None and an error, or a line in `unused` where it has no extent."""
     if is_polygon and dim == 2:
         errors.append(f"{place}: is a polygon; in 2D fractures are lines")
         return None
@@ -215,12 +216,12 @@ def corners(part, is_polygon, dim, place, errors):
         return None
     keep = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))  # drawings repeat points
     if keep.sum() < dim:
-        errors.append(f"{place}: has {keep.sum()} different points, needs {dim} at least")
+        unused.append(f"{place}: has {keep.sum()} different points, needs {dim} at least")
         return None
     return points[keep]
 
 
-def outlines(feature, k, dim, path, ogr, errors):
+def outlines(feature, k, dim, path, ogr, errors, unused):
     """The fractures of the k-th feature; points and texts are none. Several parts are one fracture by their number."""
     texts = {
         feature.GetFieldDefnRef(i).GetName(): str(feature.GetField(i))
@@ -234,38 +235,67 @@ def outlines(feature, k, dim, path, ogr, errors):
     }
     drawing = OF_DRAWING if Path(path).suffix.lower() == ".dxf" else ()
     properties = {title: text for title, text in texts.items() if title.lower() not in (*NAME, *NUMBER, *drawing)}
-    place = f"{path}: feature {k}"
+    place = f"{path}: feature {k}" + (f" of the layer \"{texts['Layer']}\"" if drawing and "Layer" in texts else "")
     geometry = feature.GetGeometryRef()
     if geometry is None or geometry.IsEmpty():
-        errors.append(f"{place}: has no geometry")
+        unused.append(f"{place}: has no geometry")
         return
     for part, is_polygon in parts(geometry, ogr):
-        points = corners(part, is_polygon, dim, place, errors)
+        points = corners(part, is_polygon, dim, place, errors, unused)
         if points is not None:
             yield Outline(f"{said['name'] or said['number']} ({place})", points, **said, properties=properties)
 
 
-def read(path, dim):
-    """The fractures in a file; refuses it with a line for each thing that is wrong."""
+def layer_of(feature, layer, path):
+    """The name of the layer of a feature: of a drawing an attribute."""
+    return feature.GetField("Layer") if Path(path).suffix.lower() == ".dxf" else layer.GetName()
+
+
+def check_layers(path, layers, known):
+    missing = [name for name in layers if name not in known]
+    if missing:
+        raise NetworkError(
+            f"{path}: has no layer \"{missing[0]}\"; its layers are " + ", ".join(f'"{name}"' for name in sorted(known)),
+            [path],
+        )
+
+
+def throw(errors, unused, left_out, path):
+    """Refuses a file; what cannot be used goes to `left_out` instead, unless this is None."""
+    found = Errors(errors)
+    for line in unused if left_out is None else ():
+        with found.of_one():
+            raise Unusable(line)
+    if left_out is not None:
+        left_out += [f"left out: {line}" for line in unused]
+    found.throw([path])
+
+
+def read(path, dim, layers=(), left_out=None, has_unit=False):
+    """The fractures in a file, of all layers or of these; refuses it with a line for each thing that is wrong. `left_out`:
+    see throw(); `has_unit`: the scene says in which unit coordinates are."""
     gdal, ogr, osr = library()
     if not Path(path).is_file():
         raise NetworkError(
             f"{path}: cannot be read: " + ("is no file" if Path(path).exists() else "No such file or directory"), [path]
         )
-    found, errors, k, ending = [], [], 0, Path(path).suffix.lower()
+    found, errors, unused, known, k, ending = [], [], [], set(), 0, Path(path).suffix.lower()
     members = geojson(path) if DRIVERS[ending] == "GeoJSON" else None
     try:
         source = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=[DRIVERS[ending]])
-        if ending == ".dxf":
+        if ending == ".dxf" and not has_unit:
             refuse_other_units(path)
         for layer in (source.GetLayer(i) for i in range(source.GetLayerCount())):
             refuse_degrees(path, layer, members, osr)
             for feature in layer:
                 k += 1
-                found += outlines(feature, k, dim, path, ogr, errors)
+                known.add(layer_of(feature, layer, path))
+                if not layers or layer_of(feature, layer, path) in layers:
+                    found += outlines(feature, k, dim, path, ogr, errors, unused)
     except RuntimeError as error:  # by GDAL
         raise NetworkError(f"{path}: cannot be read: {reason(error, path)}", [path]) from None
-    if not errors and not found:
+    check_layers(path, layers, known)
+    if not errors and not unused and not found:
         errors.append(f"{path}: has no fracture")
-    Errors(errors).throw([path])
+    throw(errors, unused, left_out, path)
     return found

@@ -1,11 +1,12 @@
 """What gmsh is to mesh: points, edges and plane faces that meet in edges and points only, and whose they are."""
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 from arrange import arrange, near_pairs, on_segment
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
-from shapes import Errors, NetworkError, Plane, check_line, check_polygon, refuse
+from shapes import Errors, NetworkError, Plane, Unusable, check_line, check_polygon, refuse, thinned, unusable
 from surfaces import Surface, are_level, check_angles, moved_onto, overlap, traces, without
 
 
@@ -87,11 +88,13 @@ class Plan:
         network, domain = self.network, self.network.domain
         owners, errors = list(domain.sides), Errors()
         for line in network.fractures + network.constraints + [s for body in network.regions for s in body.sides]:
-            with errors.of_one():
+            with errors.of_one(), self.leaving_out(line):
+                self.thin(line)
                 check_line(line, network.tolerance)
                 parts = self.worth(line, domain.clip_line(line, network.tolerance))
                 owners += [replace(line, points=x) for x in parts]
         errors.throw()
+        self.check_sets()
         check_same(network.fractures, network.tolerance)
         segments, parents = [], []
         for k, owner in enumerate(owners):
@@ -100,12 +103,45 @@ class Plan:
             parents += [frozenset([k])] * (len(flat) - 1)
         return owners, np.array(segments), parents, []
 
+    @contextmanager
+    def leaving_out(self, feature):
+        """Leaves a fracture or a constraint out that cannot be used, where the network allows it."""
+        try:
+            yield
+        except Unusable as error:
+            if not self.network.leaves_out or feature.kind not in ("fracture", "constraint"):
+                raise
+            self.repairs.append(f"left out: {error}")
+            self.network.fractures = [one for one in self.network.fractures if one is not feature]
+
+    def check_sets(self):
+        """Each set must have a fracture in the domain."""
+        left, errors = {fracture.group for fracture in self.network.fractures}, Errors()
+        for name in self.network.entries["fractures"]:
+            if name not in left:
+                errors.lines.append(f"{self.network.place('fractures > ' + name)}: has no fracture in the domain that can be used")
+        errors.throw()
+
+    def thin(self, line):
+        """Drops points of a polyline that are closer than the tolerance; sides of bodies stay as they are."""
+        if line.kind not in ("fracture", "constraint") or not np.isfinite(line.points).all():
+            return
+        points = thinned(line.points, self.network.tolerance)
+        dropped = len(line.points) - len(points)
+        line.points = points
+        if dropped:
+            self.repairs.append(f"left out {dropped} point{'s' if dropped > 1 else ''} closer to others than the tolerance: {line.name}")
+
     def worth(self, line, parts):
         """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture or constraint that has none."""
         length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
         least = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
+        whole = np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()
+        if whole < least:
+            unusable(line, f"is {whole:.3g} m long, shorter than the \"minimum distance\", {least:.3g} m; make it smaller, or leave "
+                           "the line out")
         if max(length, default=0) < least:
-            refuse(line, "lies outside of the domain")
+            unusable(line, "lies outside of the domain")
         for x in length:
             if x < self.network.minimum_distance:
                 self.repairs.append(f"left out a part of {x:.3g} m in the domain: {line.name}")
@@ -116,23 +152,24 @@ class Plan:
         network, domain, tolerance = self.network, self.network.domain, self.tolerance
         surfaces, errors = list(domain.surfaces), Errors()
         for feature in network.fractures:
-            with errors.of_one():
+            with errors.of_one(), self.leaving_out(feature):
                 check_polygon(feature, network.tolerance)
                 self.flatten(feature)
                 parts = domain.clip_polygon(self.joined_corners([Surface.whole(feature)], domain.surfaces)[0], tolerance)
                 if not parts:
-                    refuse(feature, "lies outside of the domain")
+                    unusable(feature, "lies outside of the domain")
                 surfaces += parts
         errors.throw()
+        self.check_sets()
         check_same(network.fractures, tolerance)
         surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
-            with errors.of_one():
+            with errors.of_one(), self.leaving_out(feature):
                 check_polygon(feature, network.tolerance)
                 self.flatten(feature)
                 parts = domain.clip_polygon(Surface.whole(feature), tolerance)
                 if not parts and feature.kind == "constraint":
-                    refuse(feature, "lies outside of the domain")
+                    unusable(feature, "lies outside of the domain")
                 for part in parts:
                     level = [s for s in surfaces if are_level(part, s, tolerance) and overlap(part, s, tolerance)]
                     surfaces += without(part, level, tolerance) if level else [part]

@@ -19,6 +19,14 @@ class NetworkError(Exception):
         self.files, self.features = files, list(features)
 
 
+class Unusable(NetworkError):
+    """A fracture that a larger map may well have, and a network cannot: outside of the domain, too short, without geometry."""
+
+
+HINT = ("\"unusable fractures\" = \"left out\" in the section network leaves fractures out that are outside of the domain, "
+        "too short or without geometry, and lists them; \"layers\" of a set chooses those of a drawing")
+
+
 class Errors:
     """Collects what is wrong with several things, to tell it all at once: a line each."""
 
@@ -26,14 +34,16 @@ class Errors:
 
     def __init__(self, lines=(), features=()):
         self.lines, self.features = list(lines), list(features)
+        self.has_unusable = False
 
     @contextmanager
     def of_one(self):
         try:
             yield
         except NetworkError as error:
-            self.lines.append(str(error))
+            self.lines.append(f"{error}; {HINT}" if isinstance(error, Unusable) and not self.has_unusable else str(error))
             self.features += error.features or [()]  # which no other drawing mends
+            self.has_unusable |= isinstance(error, Unusable)
 
     def throw(self, files=()):
         if self.lines:
@@ -62,6 +72,22 @@ def at(point, extent):
 
 def refuse(feature, what):
     raise NetworkError(f"{feature.name}: {what}", features=[(feature.name,)])
+
+
+def unusable(feature, what):
+    raise Unusable(f"{feature.name}: {what}", features=[(feature.name,)])
+
+
+def thinned(points, tolerance):
+    """A polyline without the points that are within the tolerance of the one before; its ends stay."""
+    kept = [0]
+    for k in range(1, len(points)):
+        if np.linalg.norm(points[k] - points[kept[-1]]) > tolerance:
+            kept.append(k)
+    last = len(points) - 1
+    if kept[-1] != last:
+        kept[-1 if len(kept) > 1 else len(kept):] = [last]
+    return points[kept]
 
 
 class Plane:
@@ -124,8 +150,8 @@ def check_line(line, tolerance):
         refuse(line, "has a coordinate that is no finite number")
     length = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     if length.min() <= tolerance:
-        refuse(line, f"has no length: points {np.argmin(length) + 1} and {np.argmin(length) + 2} are {length.min():.3g} m apart, "
-                     f"the tolerance is {tolerance:.3g} m")
+        unusable(line, f"has no length: its ends are {length.min():.3g} m apart, the \"tolerance\" is {tolerance:.3g} m; make "
+                       "it smaller, or leave the line out")
     if not LineString(line.points).is_simple:
         refuse(line, "crosses itself; make it two fractures")
 

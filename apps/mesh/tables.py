@@ -4,7 +4,7 @@ import math
 import os
 import re
 import stat
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from shapes import MOST, Errors, NetworkError, ellipse
@@ -104,7 +104,7 @@ def other_separator(line, words):
     return None
 
 
-SHAPE = {"lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2"],
+SHAPE = {"points": ["x", "y"], "lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2"],
          "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}  # titles of columns
 NUMBER = ("id", "fid", "number")  # titles of the number of a fracture; the first of these counts
 UNITS = {"rake": "deg", "strike": "deg", "dip": "deg"}  # others are in m
@@ -116,12 +116,12 @@ class Columns:
     """The columns of a table, from 0 on: `shape` in the order of SHAPE, the number, and others as (column, title,
     unit). `count` is that of columns; None: any, the rest being further corners."""
 
-    def __init__(self, kind):
-        """Without titles."""
-        self.kind, self.titles, self.named = kind, [], []
-        self.number = 0 if kind == "lines" else None
-        self.shape = {"lines": range(1, 5), "polygons": range(0), "ellipses": range(8)}[kind]
-        self.count = {"lines": 5, "polygons": None, "ellipses": 8}[kind]
+    def __init__(self, kind, dim=2):
+        """Without titles; of points in so many dimensions."""
+        self.kind, self.dim, self.titles, self.named = kind, dim, [], []
+        self.number = 0 if kind in ("lines", "points") else None
+        self.shape = {"points": range(1, 1 + dim), "lines": range(1, 5), "polygons": range(0), "ellipses": range(8)}[kind]
+        self.count = {"points": 1 + dim, "lines": 5, "polygons": None, "ellipses": 8}[kind]
 
     def of(self, words):
         """The columns of the shape in a row, as long as it is."""
@@ -139,10 +139,12 @@ class TitledColumns(Columns):
     """By the titles in the first line: those of the shape, `id`, `fid` or `number`, `name`, and entries of a joint with
     a unit or without, as `initial aperture [mm]`."""
 
-    def __init__(self, kind, words, path, line):
-        super().__init__(kind)
+    def __init__(self, kind, words, path, line, dim=2):
+        super().__init__(kind, dim)
         self.path, self.line = path, line
         parted = [parted_title(word) for word in words]
+        if kind == "points":
+            parted = [(re.sub(r"(?i)^(?:pt|point)_(?=[xyz]$)", "", title), unit) for title, unit in parted]
         self.titles, units = [title.lower() for title, _ in parted], [unit for _, unit in parted]
         self.refuse_doubled()
         self.count = len(words)
@@ -156,6 +158,10 @@ class TitledColumns(Columns):
         self.number = next((self.titles.index(title) for title in NUMBER if title in self.titles), None)
         self.named = [(k, "name" if title == "name" else parted[k][0], units[k])
                       for k, title in enumerate(self.titles) if title and title not in (*shape, *NUMBER)]
+        if kind == "points":
+            self.named = [one for one in self.named if one[1].lower() != "z"]
+            if self.number is None:
+                self.refuse(f"the titles of points lack one of {', '.join(NUMBER)}: the points of one number are a line")
 
     def refuse(self, why):
         raise NetworkError(f"{self.path}: line {self.line}: {why}", [self.path])
@@ -167,7 +173,7 @@ class TitledColumns(Columns):
 
     def shape_titles(self):
         """Those of the shape; of polygons with as many corners as there are titles."""
-        needed = SHAPE[self.kind]
+        needed = SHAPE[self.kind] if self.kind != "points" else list("xyz"[:self.dim])
         if self.kind == "polygons":
             of_corners = (re.fullmatch(r"[xyz](\d{1,6})", title) for title in self.titles)
             last = max((int(found[1]) for found in of_corners if found), default=0)
@@ -175,7 +181,7 @@ class TitledColumns(Columns):
         missing = [f'"{title}"' for title in needed if title not in self.titles]
         if missing:
             listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
-            order = SHAPE[self.kind] if self.kind != "lines" else ["id", *SHAPE["lines"]]
+            order = ["id", *needed] if self.kind in ("lines", "points") else SHAPE[self.kind]
             meant = next((f"; these are titles of {kind}, to be named by \"format\"" for kind, titles in SHAPE.items()
                           if set(titles) <= set(self.titles)), "")
             self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
@@ -219,7 +225,14 @@ def polygons_row(x, place, table, number):
                             "minimum")
 
 
-ROWS = {"lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
+def points_row(x, place, table, number):
+    if number:
+        table.add(place, x[None], number)
+    else:
+        table.errors.append(f"{place}: has no number of a line, to which this point belongs")
+
+
+ROWS = {"points": points_row, "lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
 
 
 def wrong_columns(words, columns, of, table):
@@ -235,7 +248,8 @@ def wrong_columns(words, columns, of, table):
         k = columns.missing(words)
         return None if k is None else f"has no number in column {k + 1}, \"{columns.titles[k]}\""
     elif n != columns.count:
-        needed = ",".join((["id"] if kind == "lines" else []) + SHAPE[kind])
+        of_kind = list("xyz"[:columns.dim]) if kind == "points" else SHAPE[kind]
+        needed = ",".join((["id"] if kind in ("lines", "points") else []) + of_kind)
         return f"has {n} columns, needs {columns.count}: {needed}"
     return None
 
@@ -279,19 +293,43 @@ def rows_of(path):
         yield k, words
 
 
-def read_csv(path, kind):
-    """A table of fractures, a row each. A first line without numbers has the titles of the columns."""
+def read_csv(path, kind, dim=2):
+    """A table of fractures, a row each; of points in so many dimensions the points of one number are one. A first line
+    without numbers has the titles of the columns."""
     table, known = Table(), None
     for k, words in rows_of(path):
         place = f"{path}: line {k}"
         if known is None and are_titles(words):
-            known = TitledColumns(kind, words, path, k)
+            known = TitledColumns(kind, words, path, k, dim)
             continue
-        known = known or Columns(kind)
+        known = known or Columns(kind, dim)
         while len(words) > 1 and not words[-1].strip():  # commas at the end
             words.pop()
         read_row(words, known, place, table)
+    return joined_points(table, dim) if kind == "points" else table
+
+
+def joined_points(table, dim):
+    """One fracture of the rows of each number, in their order; the first has its name and further columns."""
+    of_number = {}
+    for row in table.fractures:
+        of_number.setdefault(row.number, []).append(row)
+    table.fractures = []
+    for number, rows in of_number.items():
+        points = np.concatenate([row.points for row in rows])
+        if len(points) < dim:
+            table.errors.append(f"fracture {rows[0].title}: has {len(points)} points, needs {dim} at least")
+        table.fractures.append(replace(rows[0], points=points))
     return table
+
+
+def has_points(path, dim):
+    """Whether a file has a point a line: by its titles, or without these by the number of columns."""
+    _, words = next(rows_of(path), (0, []))
+    if not are_titles(words):
+        return len(words) == 1 + dim
+    titles = {re.sub("^(?:pt|point)_", "", parted_title(word)[0].lower()) for word in words}
+    return {"x", "y"} <= titles
 
 
 def kind_of(path):
@@ -311,6 +349,6 @@ def complete(table, path):
     return table
 
 
-def read_table(path, kind):
+def read_table(path, kind, dim=2):
     """The fractures in a file; refuses it with a line for each thing that is wrong. None is the kind of the columns."""
-    return complete(read_csv(path, kind or kind_of(path)), path)
+    return complete(read_csv(path, kind or kind_of(path), dim), path)

@@ -1,5 +1,6 @@
 #include "assembly/constraints.hpp"
 
+#include "assembly/one_sided.hpp"
 #include "base/check.hpp"
 #include "mesh/facets.hpp"
 
@@ -25,7 +26,8 @@ bool DirichletCondition::holds_at(const std::array<Real, 3>& x) const {
 
 namespace {
 
-/// Collects entries, one per unknown.
+/// Collects entries, one per unknown. Where several faces give a condition to one, the least of their directions
+/// counts, in any order of faces.
 class Collector {
  public:
   Collector(Held& held, GlobalIndex n_owned) : held_(held), n_owned_(n_owned) {}
@@ -34,8 +36,10 @@ class Collector {
     const auto [found, is_new] = first_.emplace(entry.unknown, static_cast<int>(held_.entries.size()));
     if (is_new)
       held_.entries.push_back(entry);
-    else if (held_.entries[found->second].condition != entry.condition)
+    else if (auto& known = held_.entries[found->second]; known.condition != entry.condition)
       held_.repeated.emplace_back(found->second, entry);
+    else
+      known.side = std::min(known.side, entry.side);
   }
 
  private:
@@ -44,6 +48,23 @@ class Collector {
   std::unordered_map<GlobalIndex, int> first_;  // entry of an unknown
 };
 
+using mesh::operator-;
+
+template <class AnyMesh>
+mesh::Vector place(const AnyMesh& mesh, GlobalIndex node) {
+  mesh::Vector x{};
+  std::copy_n(mesh.coordinates.begin() + node * mesh.dim(), mesh.dim(), x.begin());
+  return x;
+}
+
+mesh::Vector centre_of(const mesh::GlobalMesh& mesh, const mesh::GlobalMesh::BoundaryFace& face) {
+  return mesh::face_centre(mesh, face.cell, face.local_face);
+}
+
+mesh::Vector centre_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) {
+  return mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face));
+}
+
 /// What conditions on a field hold of the unknowns below n_owned, on a mesh or a rank's part of it. Nodes are those of
 /// faces, of the cell that has the face; entity_of(face, node) is what carries the unknowns there, -1 for nothing.
 template <class AnyMesh, class EntityOf>
@@ -51,10 +72,10 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
   Held held;
   Collector collector(held, n_owned);
-  const int dim = mesh.dim();
-  const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component) {
-    Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, {0, 0, 0}};
-    std::copy_n(mesh.coordinates.begin() + node * dim, dim, entry.x.begin());
+  const auto has_copies = nodes_with_copies(mesh);
+  const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component, const auto& face) {
+    Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, place(mesh, node)};
+    if (has_copies[node]) entry.side = centre_of(mesh, face) - entry.x;
     if (conditions[condition].holds_at(entry.x)) collector.add(entry);
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
@@ -65,7 +86,7 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
         const int corner = mesh::face_nodes(mesh.shape)[face.local_face][a];
         const auto node = mesh.cells[face.cell * mesh::n_nodes(mesh.shape) + corner];
         for (int c = 0; c < n_components; ++c)
-          if (conditions[k].values[c]) add(entity_of(face, node), node, k, c);
+          if (conditions[k].values[c]) add(entity_of(face, node), node, k, c, face);
       }
     }
   return held;
@@ -126,8 +147,7 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
     }
     for (const auto& face : mesh.boundary_faces)
       if (fracture < 0 && face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region))
-        add(k, mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face],
-            mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face)));
+        add(k, mesh.facets->of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face], centre_of(mesh, face));
     for (const auto& rim : mesh.facets->rims)
       if (rim.boundary == boundary && region < 0 &&
           (fracture < 0 || mesh.fracture_faces[rim.face].fracture == fracture))
@@ -167,7 +187,7 @@ Real largest_of(const std::vector<Real>& values) {
 std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
                                     std::vector<std::string>& conflicts) {
   const auto value = [&](const Held::Entry& entry) {
-    return (*conditions[entry.condition].values[entry.component])(entry.x, t);
+    return one_sided(*conditions[entry.condition].values[entry.component], entry.x, entry.side, t);
   };
   std::vector<Real> values;
   for (const auto& entry : held.entries) values.push_back(value(entry));

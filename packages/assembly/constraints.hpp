@@ -34,6 +34,7 @@ struct Held {
     GlobalIndex unknown;  ///< free node * components + component, by the numbers of the mesh that it was found on
     int condition, component;
     std::array<Real, 3> x;
+    std::array<Real, 3> side = {};  ///< from x into a face of its own side, where a fracture ends; see one_sided()
   };
   std::vector<Entry> entries;                   ///< one per unknown
   std::vector<std::pair<int, Entry>> repeated;  ///< (number of the first entry, a second condition on its unknown)
@@ -51,7 +52,8 @@ std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std:
 /// All conditions on one node field: which owned unknowns they hold and to what value.
 class Constraints {
  public:
-  /// Boundary values are taken face by face at the nodes of the owning cell. `conditions` are those on this field.
+  /// Boundary values are taken face by face at the nodes of the owning cell. Where a fracture ends on the boundary and
+  /// a value jumps, each copy of the node has the value of its own side. `conditions` are those on this field.
   Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions);
 
   /// Evaluates all values at time t. Throws an Error that names both conditions where two of them ask different values

@@ -1,6 +1,7 @@
 #include "assembly/prescribed_error.hpp"
 
 #include "assembly/geometry.hpp"
+#include "assembly/one_sided.hpp"
 #include "base/check.hpp"
 
 #include <algorithm>
@@ -13,15 +14,18 @@ LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face,
   return mesh.cells[face.cell * mesh.nodes_per_cell() + mesh::face_nodes(mesh.shape)[face.local_face][k]];
 }
 
-/// The integral of g - I g over a face, and the face's area. Throws where g has no value.
-std::array<Real, 2> missed(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face, const base::Expression& g,
-                           Real t) {
+/// The integral of g - I g over a face, and the face's area; `has_copies` of nodes. Throws where g has no value.
+std::array<Real, 2> missed(const mesh::Mesh& mesh, const std::vector<char>& has_copies,
+                           const mesh::Mesh::BoundaryFace& face, const base::Expression& g, Real t) {
+  using mesh::operator-;
   const int dim = mesh.dim(), n = mesh::n_face_nodes(mesh.shape);
+  const auto centre = mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face));
   FaceValues interpolant{};
   for (int k = 0; k < n; ++k) {
     std::array<Real, 3> x{};
-    std::copy_n(&mesh.coordinates[node_of(mesh, face, k) * dim], dim, x.begin());
-    interpolant[k] = g(x, t);
+    const LocalIndex node = node_of(mesh, face, k);
+    std::copy_n(&mesh.coordinates[node * dim], dim, x.begin());
+    interpolant[k] = one_sided(g, x, has_copies[node] ? centre - x : mesh::Vector{}, t);
   }
   Real sum = 0, total = 0;
   for_each_face_point(mesh, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {
@@ -37,12 +41,13 @@ template <class Sums>
 void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletCondition& condition, Real t,
                const Sums& sums) {
   if (condition.within) return;  // single nodes
+  const auto has_copies = nodes_with_copies(mesh);
   for (const auto& face : mesh.boundary_faces) {
     const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];
     if (!face.owned || face.boundary != condition.boundary || !everywhere) continue;
     for (int c = 0; c < n_components; ++c) {
       if (!condition.values[c]) continue;
-      const auto of_face = missed(mesh, face, *condition.values[c], t);
+      const auto of_face = missed(mesh, has_copies, face, *condition.values[c], t);
       for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
         for (int i = 0; i < 2; ++i) sums(mesh.free_node(node_of(mesh, face, k)) * n_components + c, i) += of_face[i];
     }

@@ -116,8 +116,8 @@ void decode_expression(Reading& reading, const std::string& suffix, const std::s
     return reading.fail(
         suffix, calculates
                     ? fmt::format("is \"{}\": {}; {}", shortened(text), shortened(defect), no_units_in_expressions)
-                    : fmt::format("is \"{}\", neither an expression nor a number with a unit: {}", shortened(text),
-                                  shortened(defect)));
+                    : fmt::format("is \"{}\", neither an expression nor a number with a unit: {}{}", shortened(text),
+                                  shortened(defect), units_like(unit)));
   }
   if (const auto hint = hint_on_digits(text); !hint.empty())
     return reading.fail(suffix, fmt::format("is \"{}\", neither a number nor an expression{}", shortened(text), hint));
@@ -157,7 +157,11 @@ void decode(const ParameterEntry& entry, Reading reading, double& target) {
     const auto& text = Teuchos::getValue<std::string>(entry);
     if (text == "infinite") return use(*parse_number(text));
     const auto quantity = parse_quantity(text);
-    if (quantity && defect_of_unit(quantity->unit).empty()) return use_quantity(*quantity);
+    const auto defect = quantity ? defect_of_unit(quantity->unit) : "";
+    if (quantity && defect.empty()) return use_quantity(*quantity);
+    if (quantity)
+      return reading.fail("", fmt::format("is \"{}\", no number with a unit: {}{}", shortened(text), shortened(defect),
+                                          units_like(reading.unit)));
     hint = hint_on_digits(text);
   }
   wrong_type(entry, reading, "a number, e.g. type=\"double\"" + hint);

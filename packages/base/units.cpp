@@ -1,5 +1,6 @@
 #include "base/units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -34,20 +35,26 @@ constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
 
 constexpr Real foot = 0.3048, inch = foot / 12, darcy = 9.869232667160128e-13;  // 1 cP cm^2/s/atm
 constexpr Real psi = 4.4482216152605 / (inch * inch);                           // a pound-force per square inch
-constexpr std::array<Symbol, 30> symbols{{{"m", true, length},
+constexpr std::array<Symbol, 41> symbols{{{"m", true, length},
+                                          {"micron", false, {length.powers, -6, 1}},
+                                          {"microns", false, {length.powers, -6, 1}},
                                           {"g", true, {mass.powers, -3, 1}},
+                                          {"t", false, {mass.powers, 3, 1}},
                                           {"s", true, time_in(1)},
                                           {"N", true, force},
                                           {"Pa", true, pressure_in(0)},
                                           {"bar", true, pressure_in(5)},
                                           {"J", true, {{2, 1, -2, 0, 0}, 0, 1}},
                                           {"D", true, {{2, 0, 0, 0, 0}, 0, darcy}},
+                                          {"darcy", true, {{2, 0, 0, 0, 0}, 0, darcy}},
+                                          {"md", false, {{2, 0, 0, 0, 0}, -3, darcy}},
                                           {"l", true, {{3, 0, 0, 0, 0}, -3, 1}},
                                           {"L", true, {{3, 0, 0, 0, 0}, -3, 1}},
                                           {"P", true, {{-1, 1, -1, 0, 0}, -1, 1}},
                                           {"ft", false, {{1, 0, 0, 0, 0}, 0, foot}},
                                           {"in", false, {{1, 0, 0, 0, 0}, 0, inch}},
                                           {"psi", true, {{-1, 1, -2, 0, 0}, 0, psi}},
+                                          {"ksi", false, {{-1, 1, -2, 0, 0}, 3, psi}},
                                           {"W", true, {{2, 1, -3, 0, 0}, 0, 1}},
                                           {"K", false, {{0, 0, 0, 0, 1}, 0, 1}},
                                           {"rad", true, angle_in(1)},
@@ -59,9 +66,14 @@ constexpr std::array<Symbol, 30> symbols{{{"m", true, length},
                                           {"h", false, time_in(3600)},
                                           {"hour", false, time_in(3600)},
                                           {"hours", false, time_in(3600)},
+                                          {"hr", false, time_in(3600)},
                                           {"d", false, time_in(day)},
                                           {"day", false, time_in(day)},
                                           {"days", false, time_in(day)},
+                                          {"week", false, time_in(7 * day)},
+                                          {"weeks", false, time_in(7 * day)},
+                                          {"yr", false, time_in(365.25 * day)},
+                                          {"yrs", false, time_in(365.25 * day)},
                                           {"year", false, time_in(365.25 * day)},
                                           {"years", false, time_in(365.25 * day)}}};
 
@@ -90,8 +102,29 @@ constexpr std::array<std::array<const char*, 6>, 11> offered{{{"Pa", "kPa", "MPa
                                                               {"J", "kJ", "MJ", nullptr, nullptr},
                                                               {"W", "kW", "MW", nullptr, nullptr},
                                                               {"mD", "D", nullptr, nullptr, nullptr},
-                                                              {"K", nullptr, nullptr, nullptr, nullptr},
+                                                              {"K", "\u00b0C", nullptr, nullptr, nullptr},
                                                               {"degree", "rad", nullptr, nullptr, nullptr}}};
+
+/// 0 degrees Celsius in K; names of that scale, which is no multiple of K.
+constexpr Real zero_celsius = 273.15;
+constexpr std::array<std::string_view, 3> celsius{"\u00b0C", "degC", "\u2103"};
+
+bool is_celsius(std::string_view name) { return std::find(celsius.begin(), celsius.end(), name) != celsius.end(); }
+
+/// Raised digits and points as text of ASCII: "kg/m\u00b3" -> "kg/m^3", "Pa\u00b7s" and "Pa.s" -> "Pa*s".
+std::string plain(std::string text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> written{{{"\u207b\u00b9", "^-1"},
+                                                                                  {"\u207b\u00b2", "^-2"},
+                                                                                  {"\u207b\u00b3", "^-3"},
+                                                                                  {"\u00b2", "^2"},
+                                                                                  {"\u00b3", "^3"},
+                                                                                  {"\u00b7", "*"}}};
+  for (const auto& [from, to] : written)
+    for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  std::replace(text.begin(), text.end(), '.', '*');
+  return text;
+}
 
 bool opens_symbol(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;
@@ -115,6 +148,7 @@ Unit unit_called(const std::string& name) {
     if (candidate == name && !found) found = unit;
   });
   if (found) return *found;
+  if (is_celsius(name)) throw Error(fmt::format("\"{}\" can only stand alone, for an entry in K; write K here", name));
   std::vector<std::string> usual;  // nobody means "Gs"
   for (const auto& row : offered)
     for (const char* unit : row)
@@ -133,7 +167,7 @@ Unit product(Unit a, const Unit& b, int power) {
 /// Reads a whole text as a unit; throws an Error.
 class UnitParser {
  public:
-  explicit UnitParser(const std::string& text) : text_(text) {}
+  explicit UnitParser(const std::string& text) : text_(plain(text)), given_(text) {}
 
   Unit parse() {
     constexpr std::size_t longest = 40;  // the parser descends into parentheses
@@ -144,7 +178,7 @@ class UnitParser {
   }
 
  private:
-  [[noreturn]] void fail() const { throw Error(fmt::format("\"{}\" is no unit like \"kg/m^3\"", text_)); }
+  [[noreturn]] void fail() const { throw Error(fmt::format("\"{}\" is no unit like \"kg/m^3\"", given_)); }
 
   bool take(char c) {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
@@ -177,13 +211,15 @@ class UnitParser {
   }
 
   int exponent() {
-    if (!take('^')) return 1;
-    const int sign = take('-') ? -1 : 1;
+    const bool has_digit = at_ < text_.size() && text_[at_] >= '1' && text_[at_] <= '9';  // "m3"
+    const bool is_power = !has_digit && take('^');
+    if (!has_digit && !is_power) return 1;
+    const int sign = is_power && take('-') ? -1 : 1;
     if (at_ == text_.size() || text_[at_] < '1' || text_[at_] > '9') fail();
     return sign * (text_[at_++] - '0');
   }
 
-  const std::string& text_;
+  const std::string text_, given_;
   std::size_t at_ = 0;
 };
 
@@ -230,7 +266,13 @@ std::string quantity_text(const Quantity& quantity) {
 
 std::ostream& operator<<(std::ostream& out, const Quantity& quantity) { return out << quantity_text(quantity); }
 
+std::string units_like(const std::string& unit) {
+  const auto names = offers(unit);
+  return names.empty() ? "" : fmt::format("; allowed are {} and what else measures the same", quoted_list(names));
+}
+
 std::string defect_of_unit(const std::string& unit) {
+  if (is_celsius(unit)) return "";
   try {
     UnitParser(unit).parse();
   } catch (const Error& error) {
@@ -241,6 +283,7 @@ std::string defect_of_unit(const std::string& unit) {
 
 Real value_in(const std::string& unit, const Quantity& quantity) {
   if (quantity.unit.empty()) return quantity.value;
+  if (unit == "K" && is_celsius(quantity.unit)) return quantity.value + zero_celsius;
   const Unit from = UnitParser(quantity.unit).parse();
   SPREKK_CHECK(unit != "-", "has the unit \"{}\", must be a number without a unit", quantity.unit);
   const Unit to = UnitParser(unit).parse();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -49,7 +50,7 @@ class Parser {
   std::string file_;
   bool is_version_4_ = false, has_entities_ = false;
   std::map<std::pair<int, int>, int> groups_of_entity_;  ///< by dimension and number; index into group_sets
-  std::map<int, int> set_of_group_;                      ///< index into group_sets
+  std::map<std::vector<int>, int> set_of_groups_;        ///< of version 2.2; index into group_sets
   MshFile mesh_;
 
   void read_section(const std::string& name) {
@@ -249,12 +250,36 @@ class Parser {
           if (t == 0) group = std::abs(value);
           if (t == 1) entity = value;
         }
-        const auto [set, is_new] = set_of_group_.emplace(group, static_cast<int>(mesh_.group_sets.size()));
-        if (is_new) add_set(group == 0 ? std::vector<int>{} : std::vector<int>{group});
-        add_element(element_type(number, tag), tag, set->second, entity);
+        add_element(element_type(number, tag), tag, set_of(group == 0 ? std::vector<int>{} : std::vector{group}),
+                    entity);
+        join_repeated();
       }
       i += n_here;
     }
+  }
+
+  int set_of(const std::vector<int>& groups) {
+    const auto [set, is_new] = set_of_groups_.emplace(groups, static_cast<int>(mesh_.group_sets.size()));
+    if (is_new) add_set(groups);
+    return set->second;
+  }
+
+  /// gmsh repeats an element of several groups in version 2.2, for each of them, under another number.
+  void join_repeated() {
+    if (mesh_.elements.size() < 2) return;
+    const auto& last = mesh_.elements.back();
+    auto& before = *(mesh_.elements.end() - 2);
+    const auto groups = mesh_.group_sets[last.groups];
+    auto joined = mesh_.group_sets[before.groups];
+    const auto nodes = mesh_.element_nodes.begin();
+    if (last.type != before.type || last.entity != before.entity || groups.empty() || joined.empty() ||
+        std::find(joined.begin(), joined.end(), groups[0]) != joined.end() ||
+        !std::equal(nodes + before.first_node, nodes + last.first_node, nodes + last.first_node))
+      return;
+    joined.push_back(groups[0]);
+    before.groups = set_of(joined);
+    mesh_.element_nodes.resize(last.first_node);
+    mesh_.elements.pop_back();
   }
 
   void read_elements_4() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "mesh/cell_geometry.hpp"
+#include "mesh/face_groups.hpp"
 #include "mesh/msh_file.hpp"
 #include "mesh/raise_order.hpp"
 
@@ -58,11 +60,9 @@ class MshBuilder {
   std::vector<GlobalIndex> node_of_point_;               ///< [point of the file], -1 if dropped
   std::vector<GlobalIndex> neighbour_;                   ///< see face_neighbours()
   std::vector<MarkedFace> marked_;                       ///< of the fractures
-  std::unordered_map<GlobalIndex, int> fracture_at_;     ///< [cell face]
   std::map<std::pair<int, int>, int> single_of_entity_;  ///< by group and entity; index into single_fractures
-  std::vector<int> whole_;           ///< [fracture] the single fracture that is all of it; -1: it has several
-  std::vector<std::string> inside_;  ///< groups with faces inside of the mesh that are no fractures
-  std::string first_inside_;         ///< an element of the first of them
+  std::vector<int> whole_;  ///< [fracture] the single fracture that is all of it; -1: it has several
+  InnerFaces inner_;
 
   template <class... Arguments>
   [[noreturn]] void fail(fmt::format_string<Arguments...> message, Arguments&&... arguments) const {
@@ -96,20 +96,47 @@ class MshBuilder {
     const auto has_region = [&](const Element* cell) { return !msh_.group_sets[cell->groups].empty(); };
     const bool has_regions = std::any_of(cell_.begin(), cell_.end(), has_region);
     if (!has_regions) mesh_.region_names = {"bulk"};
+    const auto region_of_set = regions_of_sets();
     for (const auto* cell : cell_) {
       const auto& groups = msh_.group_sets[cell->groups];
       if (has_regions && groups.empty())
         fail("element {} is in no physical group although others are; each cell needs a region", cell->tag);
-      if (groups.size() > 1)
-        fail("element {} is in the physical groups \"{}\" and \"{}\"; a cell has one region", cell->tag,
-             msh_.group_name(dim, groups[0]), msh_.group_name(dim, groups[1]));
-      mesh_.cell_region.push_back(groups.empty() ? 0 : index_of(msh_.group_name(dim, groups[0]), mesh_.region_names));
+      const int region = region_of_set[cell->groups];
+      if (!groups.empty() && region < 0)
+        fail(
+            "element {} is in the physical groups \"{}\" and \"{}\", of which none is a part of the other; a cell has "
+            "one region",
+            cell->tag, msh_.group_name(dim, groups[0]), msh_.group_name(dim, groups[1]));
+      mesh_.cell_region.push_back(groups.empty() ? 0 : index_of(msh_.group_name(dim, region), mesh_.region_names));
       for (int k : order) mesh_.cells.push_back(node(*cell, k));
       auto nodes = std::vector<GlobalIndex>(mesh_.cells.end() - order.size(), mesh_.cells.end());
       std::sort(nodes.begin(), nodes.end());
       const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
       if (twice != nodes.end()) fail("element {} has node {} twice", cell->tag, msh_.node_tags[*twice]);
     }
+  }
+
+  /// [set of groups] The group that is the region of its cells: the one that is a part of all others, of equal ones the
+  /// first, with a name if any of them has one; -1 where there is none.
+  std::vector<int> regions_of_sets() const {
+    std::map<int, std::set<int>> sets_of_group;  // with cells
+    for (const auto* cell : cell_)
+      for (const int group : msh_.group_sets[cell->groups]) sets_of_group[group].insert(cell->groups);
+    const auto has_name = [&](int group) { return msh_.group_names.count({mesh_.dim(), group}) > 0; };
+    const auto is_part = [&](int a, int b) {
+      const auto &of_a = sets_of_group[a], &of_b = sets_of_group[b];
+      return std::includes(of_b.begin(), of_b.end(), of_a.begin(), of_a.end());
+    };
+    std::vector<int> regions;
+    for (auto groups : msh_.group_sets) {
+      if (std::any_of(groups.begin(), groups.end(), has_name))
+        groups.erase(std::remove_if(groups.begin(), groups.end(), std::not_fn(has_name)), groups.end());
+      const auto found = std::find_if(groups.begin(), groups.end(), [&](int a) {
+        return std::all_of(groups.begin(), groups.end(), [&](int b) { return is_part(a, b); });
+      });
+      regions.push_back(found == groups.end() ? -1 : *found);
+    }
+    return regions;
   }
 
   /// The index of a name, which is appended if it is new.
@@ -362,15 +389,8 @@ class MshBuilder {
         if (known.emplace(face, name).second) add_face(element, face, name);
       }
     }
-    if (inside_.empty()) return;
-    const std::vector<std::string> others(inside_.begin() + 1, inside_.end());
-    fail(
-        "{} of the physical group \"{}\" lies inside of the mesh, where a boundary cannot be{}; if {}, list {} among "
-        "the "
-        "fractures; boundaries are {}",
-        first_inside_, inside_[0], others.empty() ? "" : ", as do " + base::quoted_list(others),
-        others.empty() ? "it is a fracture" : "these are fractures", base::quoted_list(inside_),
-        mesh_.boundary_names.empty() ? "none" : base::quoted_list(mesh_.boundary_names));
+    const auto wrong = wrong_fractures(inner_, mesh_.fracture_names, mesh_.boundary_names);
+    if (!wrong.empty()) fail("{}", wrong);
   }
 
   bool is_grouped_face(const Element& element) const {
@@ -383,11 +403,14 @@ class MshBuilder {
     const auto& fractures = mesh_.fracture_names;
     const auto fracture = std::find(fractures.begin(), fractures.end(), name);
     const auto where = [&] { return text(centre(face)); };
+    if (neighbour_[face] >= 0) {
+      const auto [inner, is_new] = inner_.try_emplace(face);
+      if (is_new) inner->second.element = fmt::format("element {} at {}", element.tag, where());
+      inner->second.groups.insert(name);
+    }
     if (fracture == fractures.end()) {
       if (neighbour_[face] < 0)
         mesh_.boundary_faces.push_back({index_of(name, mesh_.boundary_names), cell, local_face});
-      else if (index_of(name, inside_) == 0 && first_inside_.empty())
-        first_inside_ = fmt::format("element {} at {}", element.tag, where());
       return;
     }
     if (neighbour_[face] < 0)
@@ -396,10 +419,6 @@ class MshBuilder {
           "sides",
           element.tag, where(), name);
     const auto index = static_cast<int>(fracture - fractures.begin());
-    const auto [known, is_new] = fracture_at_.emplace(face, index);
-    if (!is_new)
-      fail("element {} at {} is in the fractures \"{}\" and \"{}\"; a face belongs to one fracture", element.tag,
-           where(), fractures[known->second], name);
     marked_.push_back({index, cell, local_face, single_of(element, index)});
   }
 

@@ -63,9 +63,13 @@ void Network::Random::describe(base::Section& s) {
 
 void Network::Set::describe(base::Section& s) {
   s.entry(file, "file", "-", "CSV or .fab of FracMan; relative to the scene's file");
-  s.choice(format, "format", {"lines", "polygons", "ellipses", "fab"},
-           "of the file, a line each: id,x0,y0,x1,y1; x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree; "
-           "without it fab by the ending .fab, else lines in 2D and polygons in 3D");
+  s.choice(
+      format, "format", {"points", "lines", "polygons", "ellipses", "fab"},
+      "of the file, a line each: id,x,y (3D: id,x,y,z), a point of the fracture id; id,x0,y0,x1,y1; "
+      "x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree; without it fab by the ending .fab, points by "
+      "their columns, else lines in 2D and polygons in 3D");
+  s.entry(layers, "layers", "-", "of a drawing or a GeoPackage: those with the fractures; absent: all");
+  s.entry(unit, "unit", "m", base::positive(), "of coordinates in the file, such as 1 mm; absent: 1 m");
   s.named_sections(lines, "lines", "2D: polylines");
   s.named_sections(polygons, "polygons", "3D: plane polygons, convex or not");
   s.named_sections(ellipses, "ellipses", "3D: ellipses and discs");
@@ -98,6 +102,9 @@ void Network::describe(base::Section& s) {
           "fractures that meet at a smaller angle are refused");
   s.entry(most_cells, "most cells", "-", base::at_least(1),
           "sizes that ask for more cells than this, by estimate, are refused before the mesh is made");
+  s.choice(unusable, "unusable fractures", {"refused", "left out"},
+           "those outside of the domain, shorter than \"tolerance\" or \"minimum distance\", or without geometry in "
+           "their file: an error, or left out and listed by the report");
   if (s.complete() && fractures.empty()) s.fail("fractures", "missing; a network needs a set of fractures");
 }
 

@@ -50,6 +50,8 @@ struct Network {
   struct Set {
     std::optional<std::string> file;  ///< relative to the scene's file
     std::optional<std::string> format;
+    std::vector<std::string> layers;  ///< of the file; empty: all
+    std::optional<Real> unit;         ///< of coordinates in the file, in metres
     std::map<std::string, Points> lines, polygons;
     std::map<std::string, Ellipse> ellipses;
     std::optional<Random> random;
@@ -65,6 +67,7 @@ struct Network {
   std::optional<Real> tolerance, minimum_distance;
   Real minimum_angle = 2;
   int most_cells = 10000000;
+  std::string unusable = "refused";  ///< or "left out"
   void describe(base::Section& section);
 
   /// Makes names of files absolute, which are relative to `folder`.

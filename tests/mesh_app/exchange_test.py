@@ -156,7 +156,7 @@ class ExchangeTest(ProgramTest):
         self.refused(self.write_by_ogr("ESRI Shapefile", "degrees.shp", 4326), "WGS 84", "in degrees")
         self.refused(self.write_by_ogr("ESRI Shapefile", "feet.shp", 2263), "US survey foot")
         drawing = self.write_by_ogr("DXF", "net.dxf")
-        self.refused(self.in_unit(drawing, 4), "in the unit 4 of DXF", "set $INSUNITS to 6")
+        self.refused(self.in_unit(drawing, 4), "in the unit 4 of DXF", "give \"unit\" of its set, as \"1 mm\"")
         for unit in (6, 0):
             self.expect_traces(exchange.read(self.in_unit(drawing, unit), 2), names=False)
 

@@ -93,6 +93,47 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
   }
 }
 
+/// Fracture "c" ends on the north side at x = 4. Values that jump there differ by sides, all others are those at nodes.
+TEST(Constraints, GiveEachSideOfAFractureItsLimit) {
+  for (const auto& cell : mesh::testing::all_cells)
+    for (const int order : {1, 2}) {
+      auto box = crossed(cell);
+      box.order = order;
+      const auto global = mesh::make_box(box);
+      const auto mesh = mesh::make_distributed(global, Tpetra::getDefaultComm());
+      const int dim = mesh->dim();
+      const fields::Layout layout({"displacement", fields::Entity::node, dim, "m"}, *mesh);
+      const auto& names = mesh->boundary_names;
+      const int north = static_cast<int>(std::find(names.begin(), names.end(), "north") - names.begin());
+      const auto given = [&](const std::string& formula) {
+        std::vector<std::optional<base::Expression>> values(dim);
+        values[0] = text(formula);
+        Constraints constraints(*mesh, layout, {{"lid", "displacement", north, values}});
+        constraints.evaluate(0.5);
+        std::vector<std::array<Real, 3>> found;  // x, the mean x of cells of the node's side, value
+        const int n = mesh->nodes_per_cell();
+        for (const auto& entry : constraints.entries()) {
+          Real side = 0;
+          for (LocalIndex k = 0; k < static_cast<LocalIndex>(mesh->cells.size()); ++k)
+            if (mesh->cells[k] == entry.unknown / dim) side += mesh::cell_centre(*mesh, k / n)[0] - entry.x[0];
+          found.push_back({entry.x[0], side, constraints.values()(entry.unknown)});
+        }
+        return found;
+      };
+      for (const std::string step : {"x > 4 ? 2*t+x : -1", "x >= 4 ? 2*t+x : -1"})
+        for (const auto& [x, side, value] : given(step))
+          EXPECT_NEAR(value, x > 4 || (x == 4 && side > 0) ? 1 + x : -1, 1e-14) << cell << " " << order;
+      for (const auto& [x, side, value] : given("sqrt(abs(x-4))")) EXPECT_EQ(value, std::sqrt(std::abs(x - 4)));
+      for (const auto& [x, side, value] : given("1e9+x/3")) EXPECT_EQ(value, 1e9 + x / 3);
+      for (const auto& [x, side, value] : given("x > 3 ? 1 : 0")) EXPECT_EQ(value, x > 3);  // no fracture ends at 3
+      std::vector<std::optional<base::Expression>> step(dim);
+      step[0] = text("x > 4 ? 2 : -1");
+      const auto error = prescribed_error(*mesh, layout, {{"lid", "displacement", north, step}}, 0);
+      const auto values = error.getLocalViewHost(Tpetra::Access::ReadOnly);
+      for (LocalIndex i = 0; i < layout.n_owned(); ++i) EXPECT_NEAR(values(i, 0), 0, 1e-14);
+    }
+}
+
 /// Faces have edges of 1, so a function with second derivative g'' along one of them exceeds its linear interpolant by
 /// -g''/12 in the mean, on triangles, too; where two boundaries meet, by what lies between theirs.
 TEST(Constraints, MissCurvedValuesBetweenNodes) {

@@ -53,6 +53,40 @@ TEST(Units, numbers_are_what_the_exponent_makes_of_them) {
   }
 }
 
+TEST(Units, spellings_that_people_type) {
+  EXPECT_EQ(value_of("2700 kg/m3", "kg/m^3"), 2700);
+  EXPECT_EQ(value_of("2.7 t/m3", "kg/m^3"), 2700);
+  EXPECT_EQ(value_of("2.7 g/cm3", "kg/m^3"), 2700);
+  EXPECT_EQ(value_of("2.7 g/cm\u00b3", "kg/m^3"), 2700);
+  EXPECT_EQ(value_of("2700 kg\u00b7m\u207b\u00b3", "kg/m^3"), 2700);
+  EXPECT_EQ(value_of("50 N/mm2", "Pa"), 5e7);
+  EXPECT_EQ(value_of("50 kN/mm\u00b2", "Pa"), 5e10);
+  EXPECT_EQ(value_of("9.81 m/s2", "m/s^2"), 9.81);
+  EXPECT_EQ(value_of("3 m2/m", "m"), 3);
+  EXPECT_EQ(value_of("1 mPa.s", "Pa*s"), 1e-3);
+  EXPECT_EQ(value_of("1 ksi", "Pa"), value_of("1000 psi", "Pa"));
+  EXPECT_EQ(value_of("1 darcy", "m^2"), value_of("1 D", "m^2"));
+  EXPECT_EQ(value_of("1 md", "m^2"), value_of("1 mD", "m^2"));
+  EXPECT_EQ(value_of("1 mdarcy", "m^2"), value_of("1 mD", "m^2"));
+  EXPECT_EQ(value_of("200 micron", "m"), 2e-4);
+  EXPECT_EQ(value_of("1 week", "s"), 7 * 86400);
+  EXPECT_EQ(value_of("1 yr", "s"), 365.25 * 86400);
+  EXPECT_EQ(value_of("3 hr", "s"), 10800);
+  EXPECT_EQ(value_of("1 t", "kg"), 1000);
+}
+
+/// A scale with a zero of its own: its degrees are those of K, so that it only stands for a level.
+TEST(Units, degrees_of_celsius) {
+  EXPECT_EQ(value_of("77 \u00b0C", "K"), 350.15);
+  EXPECT_EQ(value_of("-10 degC", "K"), 263.15);
+  const auto refusal = [](const std::string& text, const std::string& unit) {
+    return message_of([&] { value_of(text, unit); });
+  };
+  EXPECT_CONTAINS(refusal("3 W/(m*\u00b0C)", "W/(m*K)"), "\"\u00b0C\" can only stand alone, for an entry in K");
+  EXPECT_CONTAINS(refusal("77 \u00b0C", "Pa"), "\"\u00b0C\" can only stand alone");
+  EXPECT_CONTAINS(refusal("77 m", "K"), "allowed are \"K\", \"\u00b0C\"");
+}
+
 TEST(Units, times_and_angles) {
   EXPECT_EQ(value_of("10 days", "s"), 864000);
   EXPECT_EQ(value_of("1.5 h", "s"), 5400);
@@ -84,8 +118,8 @@ TEST(Units, what_measures_something_else_is_refused) {
 TEST(Units, texts_that_are_no_units) {
   for (const char* unit : {"Pa", "kg/m^3", "N*m", "m^-2", "(m/s)^2", "N / m ^ 2", "((m))"})
     EXPECT_EQ(defect_of_unit(unit), "") << unit;
-  for (const char* unit :
-       {"", "/m", "m/", "m^", "m^x", "m^0", "m3", "m m", "(m", "m)", "kdeg", "mday", "2", "m^12", "x"})
+  for (const char* unit : {"", "/m", "m/", "m^", "m^x", "m^0", "m0", "m 3", "m m", "m.", "m\u00b2\u00b2", "m/\u00b0C",
+                           "(m", "m)", "kdeg", "mday", "2", "m^12", "x"})
     EXPECT_NE(defect_of_unit(unit), "") << unit;
   EXPECT_NE(defect_of_unit(std::string(100000, '(')), "");
   EXPECT_EQ(defect_of_unit("gpa"), "unknown unit \"gpa\". Did you mean \"GPa\"?");
@@ -168,7 +202,12 @@ TEST(Units, errors_name_the_entry_the_value_and_what_is_allowed) {
             "f: R > \"modulus\": is \"30 GPaa\", not a number: unknown unit \"GPaa\". Did you mean \"GPa\"?");
   EXPECT_EQ(refusal("stiffness", "string", "30 GPaa/m"),
             "f: R > \"stiffness\": is \"30 GPaa/m\", neither an expression nor a number with a unit: unknown unit "
-            "\"GPaa\". Did you mean \"GPa\"?");
+            "\"GPaa\". Did you mean \"GPa\"?; allowed are \"Pa/m\", \"kPa/m\", \"MPa/m\", \"GPa/m\", \"bar/m\", "
+            "\"psi/m\" and what "
+            "else measures the same");
+  EXPECT_EQ(refusal("end", "string", "1 fortnight"),
+            "f: R > \"end\": is \"1 fortnight\", no number with a unit: unknown unit \"fortnight\"; allowed are \"s\", "
+            "\"min\", \"h\", \"day\", \"year\" and what else measures the same");
   EXPECT_CONTAINS(refusal("corner", "Array(double)", "{0, 3 s}"), "\"corner\"[1]: is \"3 s\", has the unit \"s\"");
   EXPECT_CONTAINS(refusal("traction", "Array(string)", "{3 m, x}"), "\"traction\"[0]: is \"3 m\", has the unit \"m\"");
   EXPECT_CONTAINS(refusal("path", "Array(double)", "{1 mm, 2 mm}"), "\"path\"[1]: is \"2 mm\", has the unit \"mm\"");
