@@ -1,10 +1,12 @@
 // Models: steps, fields in place, and what a state tells.
 #include "own_module.hpp"
+#include "ranks.hpp"
 #include "scene_handle.hpp"
 
 #include "assembly/geometry.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "base/over_ranks.hpp"
+#include "base/xml.hpp"
 #include "model/fracture_table.hpp"
 #include "model/results.hpp"
 #include "model/steps.hpp"
@@ -39,6 +41,13 @@ struct Interrupt {
 py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces);
 py::dict local_mesh(const mesh::Mesh& mesh) { return mesh_of(mesh, mesh.n_fracture_faces()); }
 
+/// What must be the same on all ranks.
+std::string text_of(const SceneHandle& scene, const std::optional<std::pair<bool, Real>>& host_fluid) {
+  model::Scene copy = scene.scene();
+  const auto fluid = host_fluid ? fmt::format("pressure of a host {} {}", host_fluid->first, host_fluid->second) : "";
+  return base::to_xml(base::effective(copy, "Sprekk")) + fluid;
+}
+
 /// A model with what must not end before it.
 class ModelHandle {
  public:
@@ -46,6 +55,8 @@ class ModelHandle {
               const py::object& modules)
       : comm_(std::move(comm)) {
     const auto ranks = comm_of(comm_);
+    check_thread(*ranks);
+    check_same(*ranks, scene.origin(), text_of(scene, host_fluid));
     has_modules_ = py::len(modules) > 0;
     const auto more_modules = own_modules(modules, local_mesh, failure_);
     const py::gil_scoped_release free;
@@ -64,7 +75,13 @@ class ModelHandle {
 
   const py::object& comm() const { return comm_; }
 
+  ~ModelHandle() {
+    const Alone alone;
+    model_.reset();
+  }
+
   void change(const SceneHandle& changed) {
+    check_same(*(*this)->mesh().comm, changed.origin(), text_of(changed, {}));
     auto own = changed.scene();
     own.host_fluid = (*this)->scene().host_fluid;
     own.solver.should_stop = Interrupt{failure_};
@@ -107,7 +124,10 @@ py::array_t<Real> view_of(Model& model, const std::string& name) {
     fields::BlockVector unknowns;
   };
   auto* owner = new Owner{model.field(name), model.state()};
-  const py::capsule held(owner, [](void* p) { delete static_cast<Owner*>(p); });
+  const py::capsule held(owner, [](void* p) {
+    const Alone alone;
+    delete static_cast<Owner*>(p);
+  });
   const auto& values = owner->field.values;
   return py::array_t<Real>({values.extent(0), values.extent(1)}, values.data(), held);
 }
@@ -404,111 +424,156 @@ void bind_runs(py::module_& m) {
       .def(py::init([](ModelHandle& model) {
              return std::unique_ptr<StepsHandle>(new StepsHandle{model, model::Steps(*model)});
            }),
-           py::keep_alive<1, 2>())
+           py::keep_alive<1, 2>(), py::call_guard<Alone>())
       .def("any", [](const StepsHandle& self) { return self.steps.any(); })
       .def("share_done", [](const StepsHandle& self) { return self.steps.share_done(); })
-      .def("take", &StepsHandle::take, py::call_guard<py::gil_scoped_release>());
+      .def("take", &StepsHandle::take, py::call_guard<Alone, py::gil_scoped_release>());
   py::class_<Results>(m, "Results")
       .def(py::init([](ModelHandle& model, const std::string& folder) {
              return freely([&] { return std::make_unique<Results>(*model, model->scene(), folder); });
            }),
-           py::keep_alive<1, 2>())
-      .def("add_step", &Results::add_step, py::call_guard<py::gil_scoped_release>())
+           py::keep_alive<1, 2>(), py::call_guard<Alone>())
+      .def("add_step", &Results::add_step, py::call_guard<Alone, py::gil_scoped_release>())
       .def("take_warnings", &Results::take_warnings)
-      .def("finish", &Results::finish, py::call_guard<py::gil_scoped_release>());
+      .def("finish", &Results::finish, py::call_guard<Alone, py::gil_scoped_release>());
 }
 
 }  // namespace
 
 void bind_model(py::module_& m) {
+  const py::call_guard<Alone> one_at_a_time;
   bind_reports(m);
   py::class_<CheckpointHandle>(m, "Checkpoint", "All that the next step depends on.")
       .def_property_readonly(
           "time", [](const CheckpointHandle& self) { return self.checkpoint.content.at("time").get<Real>(); })
-      .def("write",
-           [](const CheckpointHandle& self, const std::string& folder) {
-             freely([&] {
-               io::Checkpoints all(self.comm, folder);
-               all.clear();
-               all.write(self.checkpoint);
-             });
-           })
-      .def_static("read", [](const std::string& folder, py::object comm) {
-        auto handle = std::make_unique<CheckpointHandle>();
-        handle->comm = comm_of(comm);
-        handle->ranks = std::move(comm);
-        std::vector<std::string> damage;
-        handle->checkpoint = io::Checkpoints(handle->comm, folder).read(damage);
-        for (const auto& line : damage)
-          if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1)) throw py::error_already_set();
-        return handle;
-      });
+      .def(
+          "write",
+          [](const CheckpointHandle& self, const std::string& folder) {
+            freely([&] {
+              io::Checkpoints all(self.comm, folder);
+              all.clear();
+              all.write(self.checkpoint);
+            });
+          },
+          one_at_a_time)
+      .def_static(
+          "read",
+          [](const std::string& folder, py::object comm) {
+            auto handle = std::make_unique<CheckpointHandle>();
+            handle->comm = comm_of(comm);
+            handle->ranks = std::move(comm);
+            std::vector<std::string> damage;
+            handle->checkpoint = io::Checkpoints(handle->comm, folder).read(damage);
+            for (const auto& line : damage)
+              if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1)) throw py::error_already_set();
+            return handle;
+          },
+          one_at_a_time);
 
   py::class_<ModelHandle>(m, "Model")
-      .def(py::init<const SceneHandle&, py::object, const std::optional<std::pair<bool, Real>>&, const py::object&>())
-      .def("close", &ModelHandle::close)
+      .def(py::init<const SceneHandle&, py::object, const std::optional<std::pair<bool, Real>>&, const py::object&>(),
+           one_at_a_time)
+      .def("close", &ModelHandle::close, one_at_a_time)
       .def_property_readonly("comm", &ModelHandle::comm)
-      .def_property_readonly("time", [](ModelHandle& self) { return self->time(); })
-      .def("step_to",
-           [](ModelHandle& self, Real t) {
-             return freely([&] {
-               const auto report = self->step_to(t);
-               self.check();
-               return report;
-             });
-           })
-      .def("find_equilibrium",
-           [](ModelHandle& self) {
-             return freely([&] {
-               const auto report = self->find_equilibrium();
-               self.check();
-               return report;
-             });
-           })
-      .def("take_back", [](ModelHandle& self) { freely([&] { self->take_back(); }); })
-      .def("change", [](ModelHandle& self, const SceneHandle& scene) { freely([&] { self.change(scene); }); })
-      .def("warnings", [](ModelHandle& self) { return freely([&] { return self->warnings(); }); })
-      .def("save",
-           [](ModelHandle& self) {
-             auto handle = std::make_unique<CheckpointHandle>();
-             freely([&] { handle->checkpoint = self->save(); });
-             handle->comm = self->mesh().comm;
-             handle->ranks = self.comm();
-             return handle;
-           })
-      .def("restore",
-           [](ModelHandle& self, const CheckpointHandle& from) { freely([&] { self->restore(from.checkpoint); }); })
-      .def("fields", [](ModelHandle& self) { return fields_of(*self); })
-      .def("field", [](ModelHandle& self, const std::string& name) { return view_of(*self, name); })
-      .def("outputs", [](ModelHandle& self) { return dict_of(freely([&] { return outputs_of(*self); })); })
-      .def("mesh", [](ModelHandle& self) { return mesh_of(self->mesh(), self->mesh().n_owned_fracture_faces); })
-      .def("fracture_table",
-           [](ModelHandle& self, bool singles) {
-             return table_of(*self, freely([&] { return outputs_of(*self); }), singles);
-           })
-      .def("described_singles", [](ModelHandle& self) { return model::described_singles(self->mesh()).dump(); })
-      .def("reactions", [](ModelHandle& self) { return reactions_of(*self); })
-      .def("totals", [](ModelHandle& self) { return totals_of(*self); })
-      .def("set_fluid_pressure", [](ModelHandle& self, const std::vector<Real>& cells,
-                                    const std::vector<Real>& faces) { set_fluid_pressure(*self, cells, faces); })
-      .def("blocks", [](ModelHandle& self) { return blocks_of(*self); })
-      .def("residual_at",
-           [](ModelHandle& self, const py::list& x, Real t, Real dt) {
-             const auto found = residual_at(*self, x, t, dt);
-             self.check(false);
-             return found;
-           })
-      .def("jacobian_errors",
-           [](ModelHandle& self, const py::list& x, Real t, Real dt) {
-             const auto found = jacobian_errors(*self, x, t, dt);
-             self.check(false);
-             return found;
-           })
-      .def("jacobian_at", [](ModelHandle& self, const py::list& x, Real t, Real dt) {
-        const auto found = jacobian_at(*self, x, t, dt);
-        self.check(false);
-        return found;
-      });
+      .def_property_readonly(
+          "time", [](ModelHandle& self) { return self->time(); }, one_at_a_time)
+      .def(
+          "step_to",
+          [](ModelHandle& self, Real t) {
+            return freely([&] {
+              check_same(*self->mesh().comm, "the time of a step", fmt::format("{:.17g}", t));
+              const auto report = self->step_to(t);
+              self.check();
+              return report;
+            });
+          },
+          one_at_a_time)
+      .def(
+          "find_equilibrium",
+          [](ModelHandle& self) {
+            return freely([&] {
+              const auto report = self->find_equilibrium();
+              self.check();
+              return report;
+            });
+          },
+          one_at_a_time)
+      .def(
+          "take_back", [](ModelHandle& self) { freely([&] { self->take_back(); }); }, one_at_a_time)
+      .def(
+          "change", [](ModelHandle& self, const SceneHandle& scene) { freely([&] { self.change(scene); }); },
+          one_at_a_time)
+      .def(
+          "warnings", [](ModelHandle& self) { return freely([&] { return self->warnings(); }); }, one_at_a_time)
+      .def(
+          "save",
+          [](ModelHandle& self) {
+            auto handle = std::make_unique<CheckpointHandle>();
+            freely([&] { handle->checkpoint = self->save(); });
+            handle->comm = self->mesh().comm;
+            handle->ranks = self.comm();
+            return handle;
+          },
+          one_at_a_time)
+      .def(
+          "restore",
+          [](ModelHandle& self, const CheckpointHandle& from) { freely([&] { self->restore(from.checkpoint); }); },
+          one_at_a_time)
+      .def(
+          "fields", [](ModelHandle& self) { return fields_of(*self); }, one_at_a_time)
+      .def(
+          "field", [](ModelHandle& self, const std::string& name) { return view_of(*self, name); }, one_at_a_time)
+      .def(
+          "outputs", [](ModelHandle& self) { return dict_of(freely([&] { return outputs_of(*self); })); },
+          one_at_a_time)
+      .def(
+          "mesh", [](ModelHandle& self) { return mesh_of(self->mesh(), self->mesh().n_owned_fracture_faces); },
+          one_at_a_time)
+      .def(
+          "fracture_table",
+          [](ModelHandle& self, bool singles) {
+            return table_of(*self, freely([&] { return outputs_of(*self); }), singles);
+          },
+          one_at_a_time)
+      .def(
+          "described_singles", [](ModelHandle& self) { return model::described_singles(self->mesh()).dump(); },
+          one_at_a_time)
+      .def(
+          "reactions", [](ModelHandle& self) { return reactions_of(*self); }, one_at_a_time)
+      .def(
+          "totals", [](ModelHandle& self) { return totals_of(*self); }, one_at_a_time)
+      .def(
+          "set_fluid_pressure",
+          [](ModelHandle& self, const std::vector<Real>& cells, const std::vector<Real>& faces) {
+            set_fluid_pressure(*self, cells, faces);
+          },
+          one_at_a_time)
+      .def(
+          "blocks", [](ModelHandle& self) { return blocks_of(*self); }, one_at_a_time)
+      .def(
+          "residual_at",
+          [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+            const auto found = residual_at(*self, x, t, dt);
+            self.check(false);
+            return found;
+          },
+          one_at_a_time)
+      .def(
+          "jacobian_errors",
+          [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+            const auto found = jacobian_errors(*self, x, t, dt);
+            self.check(false);
+            return found;
+          },
+          one_at_a_time)
+      .def(
+          "jacobian_at",
+          [](ModelHandle& self, const py::list& x, Real t, Real dt) {
+            const auto found = jacobian_at(*self, x, t, dt);
+            self.check(false);
+            return found;
+          },
+          one_at_a_time);
   bind_runs(m);
 }
 

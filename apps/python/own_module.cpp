@@ -195,6 +195,15 @@ class OwnModule final : public assembly::Module {
       assembly::Declaration d;
       for (const auto& unknown : python_.attr("unknowns"))
         d.unknowns.push_back(unknown_of(py::reinterpret_borrow<py::object>(unknown)));
+      for (const auto& unknown : d.unknowns) {
+        const auto& field = unknown.field;
+        if (field.entity == Entity::facet) continue;  // which files of fields have none of
+        assembly::Summary summary;
+        if (field.entity == Entity::fracture_face)
+          summary = {assembly::Summary::mean, field.name, field.n_components > 1 ? "local" : ""};
+        d.outputs.push_back({{field.name, field.unit, field.entity, field.n_components, summary},
+                             [this, field](const State& state) { return values(state, field); }});
+      }
       for (const auto& block : blocks_)
         for (const auto& row : block.row_names) d.couplings.push_back({block.loop, row, block.column_names});
       for (const auto& [history, kind] :
@@ -207,6 +216,7 @@ class OwnModule final : public assembly::Module {
   }
 
   void bind(const assembly::Context& context) override {
+    mesh_ = context.mesh();
     in_python(name_, [&] {
       for (auto& block : blocks_) {
         for (const auto& row : block.row_names) {
@@ -263,6 +273,18 @@ class OwnModule final : public assembly::Module {
   }
 
  private:
+  /// An own unknown on owned entities, or on all local nodes.
+  std::vector<Real> values(const State& state, const fields::Field& field) const {
+    const auto& x = state.x[numbers_.at(field.name)];
+    const bool on_nodes = field.entity == Entity::node;
+    const LocalIndex n = on_nodes ? mesh_->n_nodes() : fields::n_entities(*mesh_, field.entity, false);
+    std::vector<Real> values;
+    for (LocalIndex e = 0; e < n; ++e)
+      for (int i = 0; i < field.n_components; ++i)
+        values.push_back(x((on_nodes ? mesh_->free_node(e) : e) * field.n_components + i));
+    return values;
+  }
+
   /// Runs work() unless something has failed before; remembers what fails.
   template <class Work>
   void attempt(const Work& work) const {
@@ -288,7 +310,8 @@ class OwnModule final : public assembly::Module {
   py::object python_;
   std::string name_;
   Failure failure_;
-  mutable std::vector<Block> blocks_;   // which keep positions once they are known
+  mutable std::vector<Block> blocks_;  // which keep positions once they are known
+  RCP<const mesh::Mesh> mesh_;
   std::map<std::string, int> numbers_;  // of own fields
   std::vector<std::string> history_names_;
 };

@@ -1,4 +1,5 @@
 // Scenes, points of joints, and what is known of their entries.
+#include "ranks.hpp"
 #include "scene_handle.hpp"
 
 #include "base/text.hpp"
@@ -21,9 +22,20 @@ using Teuchos::ParameterList;
 
 namespace {
 
+std::string type_of(const py::handle& value) { return py::str(py::type::of(value).attr("__name__")); }
+
+bool is_number(const py::handle& value) { return py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value); }
+
+double number_of(const std::string& name, const py::handle& value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (!PyErr_Occurred()) return number;
+  PyErr_Clear();
+  throw Error(fmt::format("\"{}\" is an integer that no number holds, must be below 1.8e308 in size", name));
+}
+
 /// Whether it is an integer that an int can hold; larger ones are taken as doubles.
-bool is_int(const py::handle& value) {
-  return py::isinstance<py::int_>(value) && !py::isinstance<py::bool_>(value) && std::abs(value.cast<double>()) < 2e9;
+bool is_int(const std::string& name, const py::handle& value) {
+  return py::isinstance<py::int_>(value) && !py::isinstance<py::bool_>(value) && std::abs(number_of(name, value)) < 2e9;
 }
 
 /// A list of numbers, quantities ("1 mm") or words; numbers may stand among quantities.
@@ -31,10 +43,13 @@ void set_array(ParameterList& list, const std::string& name, const py::sequence&
   bool integers = true, numbers = true;
   std::vector<std::string> texts;
   for (const auto& value : values) {
-    integers = integers && is_int(value);
-    numbers = numbers && (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value));
+    if (!is_number(value) && !py::isinstance<py::str>(value))
+      throw py::type_error(
+          fmt::format("\"{}\" has a {} in its list, must have numbers or texts there", name, type_of(value)));
+    integers = integers && is_int(name, value);
+    numbers = numbers && is_number(value);
     texts.push_back(py::isinstance<py::str>(value) ? value.cast<std::string>()
-                                                   : base::number_text(value.cast<double>()));
+                                                   : base::number_text(number_of(name, value)));
   }
   if (integers) {
     list.set(name, Array<int>(values.cast<std::vector<int>>()));
@@ -56,21 +71,26 @@ void set_entry(ParameterList& list, const std::string& name, const py::handle& v
     fill(list.sublist(name), py::reinterpret_borrow<py::dict>(value));
   else if (py::isinstance<py::bool_>(value))
     list.set(name, value.cast<bool>());
-  else if (is_int(value))
+  else if (is_int(name, value))
     list.set(name, value.cast<int>());
-  else if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value))
-    list.set(name, value.cast<double>());
+  else if (is_number(value))
+    list.set(name, number_of(name, value));
   else if (py::isinstance<py::str>(value))
     list.set(name, value.cast<std::string>());
   else if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value))
     set_array(list, name, py::reinterpret_borrow<py::sequence>(value));
   else
-    throw py::type_error(fmt::format("\"{}\" is a {}, must be a number, a text, a list of these, or a dict", name,
-                                     std::string(py::str(py::type::of(value).attr("__name__")))));
+    throw py::type_error(
+        fmt::format("\"{}\" is a {}, must be a number, a text, a list of these, or a dict", name, type_of(value)));
 }
 
 void fill(ParameterList& list, const py::dict& entries) {
-  for (const auto& [name, value] : entries) set_entry(list, name.cast<std::string>(), value);
+  for (const auto& [name, value] : entries) {
+    if (!py::isinstance<py::str>(name))
+      throw py::type_error(fmt::format("{} is the name of an entry and a {}, must be a text",
+                                       std::string(py::repr(name)), type_of(name)));
+    set_entry(list, name.cast<std::string>(), value);
+  }
 }
 
 ParameterList list_of(const py::dict& entries) {
@@ -157,6 +177,13 @@ py::dict columns_of(const model::PointCurve& curve) {
   return all;
 }
 
+/// The scene of entries that are the same on all ranks.
+model::Scene scene_of_all(const Comm& comm, const ParameterList& entries, const std::string& origin,
+                          const std::string& folder, const std::vector<std::string>& overrides) {
+  check_same(comm, origin, fmt::format("{}{}", base::to_xml(entries), fmt::join(overrides, "\n")));
+  return model::scene_of(comm, entries, origin, folder, overrides);
+}
+
 std::string folder_of(const std::string& path) { return std::filesystem::path(path).parent_path().string(); }
 
 }  // namespace
@@ -166,65 +193,89 @@ SceneHandle::SceneHandle(ParameterList entries, std::string origin, std::string 
     : entries_(std::move(entries)),
       origin_(std::move(origin)),
       folder_(std::move(folder)),
-      scene_(model::scene_of(comm, entries_, origin_, folder_, overrides)) {
+      scene_(scene_of_all(comm, entries_, origin_, folder_, overrides)) {
   base::apply_overrides(entries_, origin_, overrides);
 }
 
 void bind_scene(py::module_& m) {
   using Overrides = std::vector<std::string>;
+  const py::call_guard<Alone> one_at_a_time;
   py::class_<SceneHandle, std::shared_ptr<SceneHandle>>(m, "Scene")
-      .def_static("from_file",
-                  [](const std::string& path, const Overrides& overrides, const py::object& comm) {
-                    const auto ranks = comm_of(comm);
-                    auto list = base::read_xml(*ranks, path, "Sprekk", base::Defects::keep);
-                    return std::make_shared<SceneHandle>(std::move(list), path, folder_of(path), overrides, *ranks);
-                  })
+      .def_static(
+          "from_file",
+          [](const std::string& path, const Overrides& overrides, const py::object& comm) {
+            const auto ranks = comm_of(comm);
+            auto list = base::read_xml(*ranks, path, "Sprekk", base::Defects::keep);
+            return std::make_shared<SceneHandle>(std::move(list), path, folder_of(path), overrides, *ranks);
+          },
+          one_at_a_time)
       .def_static(
           "from_text",
           [](const std::string& text, const std::string& origin, const Overrides& overrides, const py::object& comm) {
+            const auto ranks = comm_of(comm);
+            check_same(*ranks, origin, text);
             auto list = base::parse_xml(text, origin, "Sprekk", base::Defects::keep);
-            return std::make_shared<SceneHandle>(std::move(list), origin, "", overrides, *comm_of(comm));
-          })
-      .def_static("from_entries",
-                  [](const py::dict& entries, const std::string& origin, const std::string& folder,
-                     const Overrides& overrides, const py::object& comm) {
-                    return std::make_shared<SceneHandle>(list_of(entries), origin, folder, overrides, *comm_of(comm));
-                  })
-      .def("entries", [](const SceneHandle& self) { return dict_of(self.entries()); })
-      .def("effective",
-           [](const SceneHandle& self) {
-             model::Scene copy = self.scene();
-             return dict_of(base::effective(copy, "Sprekk"));
-           })
-      .def("xml", [](const SceneHandle& self) { return base::to_xml(self.entries()); })
-      .def("effective_xml",
-           [](const SceneHandle& self) {
-             model::Scene copy = self.scene();
-             return base::to_xml(base::effective(copy, "Sprekk"));
-           })
-      .def("times", [](const SceneHandle& self) { return self.scene().time.times(); })
+            return std::make_shared<SceneHandle>(std::move(list), origin, "", overrides, *ranks);
+          },
+          one_at_a_time)
+      .def_static(
+          "from_entries",
+          [](const py::dict& entries, const std::string& origin, const std::string& folder, const Overrides& overrides,
+             const py::object& comm) {
+            const auto ranks = comm_of(comm);
+            ParameterList list;
+            from_python(*ranks, [&] { list = list_of(entries); });
+            return std::make_shared<SceneHandle>(std::move(list), origin, folder, overrides, *ranks);
+          },
+          one_at_a_time)
+      .def(
+          "entries", [](const SceneHandle& self) { return dict_of(self.entries()); }, one_at_a_time)
+      .def(
+          "effective",
+          [](const SceneHandle& self) {
+            model::Scene copy = self.scene();
+            return dict_of(base::effective(copy, "Sprekk"));
+          },
+          one_at_a_time)
+      .def(
+          "xml", [](const SceneHandle& self) { return base::to_xml(self.entries()); }, one_at_a_time)
+      .def(
+          "effective_xml",
+          [](const SceneHandle& self) {
+            model::Scene copy = self.scene();
+            return base::to_xml(base::effective(copy, "Sprekk"));
+          },
+          one_at_a_time)
+      .def(
+          "times", [](const SceneHandle& self) { return self.scene().time.times(); }, one_at_a_time)
       .def_property_readonly("origin", &SceneHandle::origin)
       .def_property_readonly("folder", &SceneHandle::folder);
 
   m.def("specification", [] { return described(base::specification<model::Scene>("Sprekk")); });
   m.def("point_specification", [] { return described(base::specification<model::PointScene>("Sprekk")); });
-  m.def("drive", [](const py::dict& entries, const std::string& origin, const Overrides& overrides) {
-    const auto scene = model::point_scene_of(list_of(entries), origin, overrides);
-    std::vector<model::PointCurve> curves;
-    {
-      const py::gil_scoped_release free;
-      curves = model::drive_points(scene);
-    }
-    py::list all;
-    for (auto& curve : curves) {
-      const auto specimen = std::exchange(curve.specimen, "");  // a column of texts
-      all.append(py::make_tuple(specimen, columns_of(curve), curve.failure));
-    }
-    return all;
-  });
-  m.def("read_entries", [](const std::string& path, const py::object& comm) {
-    return dict_of(base::read_xml(*comm_of(comm), path, "Sprekk", base::Defects::refuse));
-  });
+  m.def(
+      "drive",
+      [](const py::dict& entries, const std::string& origin, const Overrides& overrides) {
+        const auto scene = model::point_scene_of(list_of(entries), origin, overrides);
+        std::vector<model::PointCurve> curves;
+        {
+          const py::gil_scoped_release free;
+          curves = model::drive_points(scene);
+        }
+        py::list all;
+        for (auto& curve : curves) {
+          const auto specimen = std::exchange(curve.specimen, "");  // a column of texts
+          all.append(py::make_tuple(specimen, columns_of(curve), curve.failure));
+        }
+        return all;
+      },
+      one_at_a_time);
+  m.def(
+      "read_entries",
+      [](const std::string& path, const py::object& comm) {
+        return dict_of(base::read_xml(*comm_of(comm), path, "Sprekk", base::Defects::refuse));
+      },
+      one_at_a_time);
   m.def("materials", [] { return physics::library_markdown(); });
 }
 

@@ -72,6 +72,8 @@ class PointDriver {
   static constexpr Real resolution = 1e-9;  // of the time at which slip jumps, in steps
   static constexpr Real least_jump = 1e-6;  // of the slip of the step
   static constexpr int samples = 32;        // of the slip of a step
+  static constexpr const char* not_converged = "Newton's method does not converge";
+  static constexpr Real of_controls = 0;  // stands for the constants of the projection by the controls
 
   /// What a step changes.
   struct Memory {
@@ -177,7 +179,7 @@ class PointDriver {
     std::string reason;
     for (Start start :
          {Start{.elastic = true}, {}, {.released = true}, {.damped = true, .released = true}, {.beyond = true}}) {
-      for (Real factor : {1.0, 1e2, 1e-2, 1e4, 1e6}) {
+      for (Real factor : {of_controls, 1.0, 1e2, 1e-2, 1e4, 1e6}) {
         for (int i = 0; i < 2 * dim; ++i)
           x_[i] = !start.released ? old[i] : i < dim && control(i) != "traction" ? rest_[i] + d_[i] : 0;
         if (start.elastic && !stretch()) break;
@@ -260,15 +262,38 @@ class PointDriver {
     }
   }
 
+  /// The constants of the projection by what is prescribed. A column is in series with the joint. A jump decides alone
+  /// whether the joint slides: c_t is so large that |c_t (p - p_old)| is far above any traction. A traction decides
+  /// alone whether it is pressed: c_n is so small that c_n times the distance of the faces is far below it.
+  laws::Augmentation augmentation_of_controls(Real c) const {
+    constexpr Real far = 1e3;
+    Real length = 1e-300, moved = 0, stress = 0;
+    bool slides = true, column = true;
+    for (int i = 0; i < dim; ++i) {
+      length = std::max({length, std::abs(x_[i]), std::abs(d_[i]) * (control(i) == "traction" ? 0 : 1)});
+      stress = std::max(stress, std::abs(x_[dim + i]));
+      if (i == 0) continue;
+      moved = std::hypot(moved, x_[i] - p_old_[i - 1]);
+      slides = slides && control(i) == "jump";
+      column = column && control(i) == "column";
+    }
+    Real c_t = column ? stiffness_[1] : c;
+    if (slides && moved > 0) c_t = std::max(c, far * stress / moved);
+    Real c_n = control(0) == "column" ? stiffness_[0] : c;
+    if (control(0) == "traction" && d_[0] < 0) c_n = std::min(c, -d_[0] / (far * length));
+    return {laws::augmentation(law_, c_n).normal, laws::augmentation(law_, c_t).tangential};
+  }
+
   /// Moves x to the state at the prescribed values; returns why there is none, or nothing. The constants of the
-  /// projection are those of the typical stiffness times the factor; a damped step is halved until the residual falls.
+  /// projection are those of the typical stiffness times the factor, or of the controls; a damped step is halved until
+  /// the residual falls.
   std::string solve(Real factor, bool damped) {
     const Real c = typical_stiffness();
-    c_ = laws::augmentation(law_, c * factor);
     for (int i = 0; i < dim; ++i) {
       if (control(i) == "jump") x_[i] = rest_[i] + d_[i];
       if (control(i) == "traction") x_[dim + i] = d_[i];
     }
+    c_ = factor == of_controls ? augmentation_of_controls(c) : laws::augmentation(law_, c * factor);
     Real f[2 * dim], J[4 * dim * dim], scale[2 * dim];
     for (int iteration = 0; iteration < 50; ++iteration) {
       const auto state = evaluate(f, J);
@@ -291,7 +316,7 @@ class PointDriver {
       }
       if (change <= 1e-12) return {};
     }
-    return "Newton's method does not converge";
+    return not_converged;
   }
 
   /// The residual, each of its entries in its unit over that unit's size.
@@ -307,14 +332,21 @@ class PointDriver {
   /// Why the equations of a contact state do not determine jump and traction.
   std::string undetermined(laws::ContactState state) const {
     const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
-    if (state == laws::ContactState::open) return "an open joint bears no traction, its jump has no bound";
+    const bool pressed = control(0) == "traction" && d_[0] < 0;
+    if (state == laws::ContactState::open && !pressed) return "an open joint bears no traction, its jump has no bound";
     if (state == laws::ContactState::slip && pulled)
       return "the shear traction exceeds the friction bound, the joint slides without bound";
     if (control(0) == "jump" && law_.gap.closure.initial_compliance() == 0)
       return "the faces touch and do not close, the normal jump does not determine the normal traction";
-    if (state == laws::ContactState::stick && law_.elastic.initial_compliance() == 0)
-      return "a rigid joint sticks, the jump does not determine the shear traction";
-    return "the prescribed values do not determine jump and traction";
+    return not_converged;
+  }
+
+  /// Whether the jump of a rigid joint is prescribed as it was at the end of the last step: then any traction that
+  /// friction bears obeys the law, and the joint keeps the last one.
+  bool rests(int i) const {
+    if (i == 0 || control(i) != "jump" || law_.elastic.initial_compliance() > 0) return false;
+    const Real jump = rest_[i] + d_[i], last = p_old_[i - 1];
+    return std::abs(jump - last) <= 1e-14 * std::max(std::abs(jump), std::abs(last));
   }
 
   /// f and its column-major Jacobian J at x.
@@ -328,6 +360,7 @@ class PointDriver {
     }
     const auto state = laws::contact_residual<dim>(law_, c_, w, lambda, p_old_, R, {kept_.data()});
     for (int i = 0; i < dim; ++i) {
+      if (state == laws::ContactState::stick && rests(i)) R[i] = lambda[i] - x_[dim + i];
       const Fad moved = w[i] - rest_[i];
       const Fad controlled = control(i) == "jump"       ? Fad(moved - d_[i])
                              : control(i) == "traction" ? Fad(lambda[i] - d_[i])

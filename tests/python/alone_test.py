@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import threading
 import unittest
 from pathlib import Path
 
@@ -225,6 +226,66 @@ class Points(unittest.TestCase):
         found = sprekk.fit(entries, measured, "jump_t", "traction_t",
                            {path: (0.6, 0.1, 1), "Materials.joint.tangential stiffness": (1e10, 1e8, 1e11)})
         np.testing.assert_allclose(list(found.parameters.values()), [0.45, 7e9], rtol=1e-6)
+
+
+    def test_fit_names_what_is_wrong(self):
+        path, curve = "Materials.joint.friction coefficient", sprekk.drive(CYCLES)
+        good = {path: (0.5, 0.1, 2)}
+        lost = curve.copy()
+        lost.loc[2, "traction_t"] = np.nan
+        for measured, along, match, parameters, words in (
+                (curve, "time", "traction_t", good, 'no column "time", but t, state, jump_n'),
+                (curve, "t", ["traction_t", "slip"], good, 'no column "slip"'),
+                (curve, "t", [], good, "match: names no column"),
+                (lost, "t", "traction_t", good, '"traction_t" is nan in row 2, must be finite'),
+                ({"t": [1, 2], "traction_t": [1]}, "t", "traction_t", good, "has 1 rows, others have 2"),
+                ({"t": [1, 2], "own": [1, 2]}, "t", "own", good, 'the point has no column "own"'),
+                ({"t": ["a"], "traction_t": [1]}, "t", "traction_t", good, "must have numbers"),
+                (curve, "t", "traction_t", {}, "parameters: has none"),
+                (curve, "t", "traction_t", {path: (0.5, 2, 0.1)}, "low < high"),
+                (curve, "t", "traction_t", {path: (3, 0.1, 2)}, "start 3, low 0.1, high 2"),
+                (curve, "t", "traction_t", {path: (np.nan, 0.1, 2)}, "start nan"),
+                (curve, "t", "traction_t", {path: 0.5}, "must have numbers (start, low, high)")):
+            with self.assertRaises(sprekk.Error) as raised:
+                sprekk.fit(CYCLES, measured, along, match, parameters)
+            self.assertIn(words, str(raised.exception))
+
+
+class Threads(unittest.TestCase):
+    def test_models_in_threads_take_turns(self):
+        """Each with a callback, which has the interpreter while others wait: the result is that of a model alone."""
+        def work(found):
+            model = sprekk.Model(sprekk.Scene(PUSH, {"Time.steps": 4}))
+            model.run(lambda model, step: {"slip": float(np.max(model.output("slip")))})
+            found.append(np.array(model.output("displacement")))
+        alone, found = [], []
+        work(alone)
+        for _ in range(3):
+            threads = [threading.Thread(target=work, args=[found]) for _ in range(3)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        self.assertEqual(len(found), 9)
+        for one in found:
+            np.testing.assert_array_equal(one, alone[0])
+
+
+class Wrong(unittest.TestCase):
+    def test_entries_that_are_none(self):
+        for entries, error, words in (({1: 2}, TypeError, "1 is the name of an entry and a int, must be a text"),
+                                      ({"Time": {"end": 10**400}}, sprekk.Error, '"end" is an integer that no number holds'),
+                                      ({"Time": {"schedule": [1, 10**400]}}, sprekk.Error, '"schedule" is an integer'),
+                                      ({"Time": {"schedule": [[1]]}}, TypeError, '"schedule" has a list in its list'),
+                                      ({"Time": {"end": object()}}, TypeError, '"end" is a object')):
+            with self.assertRaisesRegex(error, words):
+                sprekk.Scene(entries)
+
+    def test_accuracy_is_refused(self):
+        model = sprekk.Model(sprekk.Scene(ROOT / "xml/accuracy/fault_2d.xml"))
+        with self.assertRaisesRegex(sprekk.Error, "Accuracy: a Model has one mesh.*`./sprekk run` does"):
+            model.run()
+        self.assertEqual(model.time, 0)
 
 
 def opening(model):

@@ -4,6 +4,7 @@ A block of 1 m with a joint, as in apps/hosts/time_loop.cpp: pressed down until 
 import gc
 import sys
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 
@@ -210,6 +211,80 @@ class Block(unittest.TestCase):
         self.model.run(output=folder)
         self.assertTrue((Path(folder) / "results.json").exists())
         self.assertTrue((Path(folder) / "bulk.pvd").exists())
+
+
+@unittest.skipIf(COMM.size == 1, "on one rank nothing differs")
+class Ranks(unittest.TestCase):
+    """What differs between ranks is an Error on all of them, and none waits for another."""
+
+    def refuse(self, words, act):
+        with self.assertRaisesRegex(sprekk.Error, words):
+            act()
+        self.assertEqual(COMM.allreduce(1), COMM.size)
+
+    def test_scenes_that_differ(self):
+        differs = "differs between ranks, must be the same on all: rank 0 has .*rank 1 has "
+        steps = {"Time.steps": 2 + COMM.rank}
+        self.refuse(differs, lambda: sprekk.Scene(BLOCK, steps))
+        self.refuse(differs, lambda: sprekk.Scene(BLOCK | {"Time": {"end": 2, "steps": 2 + COMM.rank}}))
+        alone = sprekk.Scene(BLOCK, steps, comm=MPI.COMM_SELF)
+        self.refuse(differs + ".*steps", lambda: sprekk.Model(alone))
+        self.refuse(differs, lambda: sprekk.Scene(alone.to_xml()))
+        self.refuse(differs, lambda: sprekk.Model(sprekk.Scene(BLOCK), given_pressure=COMM.rank))
+
+    def test_entries_that_are_wrong_on_one_rank(self):
+        wrong = BLOCK | {"Time": {"end": 10**400 if COMM.rank == 1 else 2}}
+        self.refuse("no number holds", lambda: sprekk.Scene(wrong))
+
+    def test_changes_that_differ(self):
+        model = sprekk.Model(sprekk.Scene(BLOCK))
+        path = "Materials.smooth.friction coefficient"
+        self.refuse("differs between ranks", lambda: model.change({path: 0.5 + 0.1 * COMM.rank}))
+        self.refuse("differs between ranks", lambda: model.change(sprekk.Scene(BLOCK, {path: 0.5 + 0.1 * COMM.rank},
+                                                                               comm=MPI.COMM_SELF)))
+        model.change({path: 0.4})
+        model.step(1)
+
+    def test_times_that_differ(self):
+        model = sprekk.Model(sprekk.Scene(BLOCK))
+        self.refuse("the time of a step: differs between ranks", lambda: model.step(1 + 0.1 * COMM.rank))
+        model.step(1)
+
+    def test_a_second_thread_is_refused(self):
+        sprekk.Model(sprekk.Scene(BLOCK))
+        found = []
+
+        def work():
+            try:
+                sprekk.Model(sprekk.Scene(BLOCK))
+            except sprekk.Error as error:
+                found.append(str(error))
+        thread = threading.Thread(target=work)
+        thread.start()
+        thread.join()
+        self.assertIn("is used by a second thread", found[0])
+
+
+class Views(unittest.TestCase):
+    def test_ordinary_arrays_of_a_field_are_read_only(self):
+        model = sprekk.Model(sprekk.Scene(BLOCK))
+        field = model.field("displacement")
+        view = np.asarray(field)
+        field[0] = 1e-3
+        field.T[1, :2] = 2e-3
+        field[1:3][:, 0] += 1e-3
+        field += 1e-4
+        np.testing.assert_allclose(view[0], [1.1e-3, 2.1e-3])
+        np.testing.assert_allclose(model.field("displacement")[:3, 0], [1.1e-3, 1.1e-3, 1.1e-3])
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            view[0] = 0
+        last = view.copy()
+        model.change({"Materials.smooth.friction coefficient": 0.4})
+        model.field("displacement")[:] = 0
+        np.testing.assert_array_equal(view.shape, last.shape)
+        for use in (lambda: field.T.__setitem__(0, 0), lambda: field.fill(0), lambda: field + 1):
+            with self.assertRaises(sprekk.StaleField):
+                use()
 
 
 if __name__ == "__main__":

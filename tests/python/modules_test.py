@@ -1,5 +1,7 @@
 """Own time loops, modules and laws, and derivatives, on any number of ranks: modules_test.py ROOT"""
+import json
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -93,6 +95,27 @@ class Laws(unittest.TestCase):
             whole, known = together.gather(name), alone.gather(name)
             if COMM.rank == 0:
                 np.testing.assert_allclose(whole, known, atol=1e-9 * np.max(np.abs(known)), err_msg=name)
+
+    def test_outputs_have_what_a_law_bears(self):
+        """In results.json, the files of fractures, the table of fractures and outputs, as the joint's own traction."""
+        model = sprekk.Model(square(0), modules=[Viscous(1e11)])
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = COMM.bcast(scratch)
+            model.run(output=folder)
+            results = json.loads((Path(folder) / "results.json").read_text())
+            files = sorted(Path(folder).glob("fractures*/*.vtu")) or sorted(Path(folder).rglob("fractures*.vtu"))
+            with_it = [b'Name="own shear"' in file.read_bytes() for file in files]
+            COMM.barrier()
+        shear, mesh = np.asarray(model.field("own shear"))[:, 0], model.mesh
+        area = mesh.face_area[:len(shear)]
+        mean = COMM.allreduce(float(shear @ area)) / COMM.allreduce(float(np.sum(area)))
+        self.assertGreater(abs(mean), 1e5)
+        np.testing.assert_array_equal(model.output("own shear"), shear)
+        self.assertEqual(model.units()["own shear"], "Pa")
+        self.assertTrue(with_it and all(with_it))
+        told = results["steps"][-1]["fractures"]["fracture"]["mean_own_shear"]
+        self.assertAlmostEqual(np.ravel(told)[0] / mean, 1, delta=1e-9)
+        self.assertIn("mean_own_shear", " ".join(model.fractures().columns))
 
     def test_derivatives_of_a_law(self):
         model = sprekk.Model(square(0), modules=[Viscous(1e11)])

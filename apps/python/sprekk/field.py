@@ -13,27 +13,37 @@ class Epoch:
 
 class Field(np.ndarray):
     """A field in place: what is written counts in the model's next step. What is computed from it is an ordinary
-    array. Raises StaleField once the model has other equations; its memory stays."""
+    array; np.asarray() gives one that is read-only, so that nothing is written in vain. A Field raises StaleField once
+    the model has other equations; the memory of views stays, with the last values."""
 
     def __new__(cls, values, epoch):
-        field = np.asarray(values).view(cls)
-        field._epoch = epoch
+        values = np.asarray(values)
+        field = values.view(cls)
+        field._epoch, field._memory = epoch, values
+        field.flags.writeable = False
         return field
 
     def __array_finalize__(self, source):
-        self._epoch = getattr(source, "_epoch", None)
+        self._epoch, self._memory = getattr(source, "_epoch", None), getattr(source, "_memory", None)
 
     def _check(self):
         if self._epoch is not None and self._epoch.over:
             raise StaleField("the model has been changed or closed since this array was asked for; ask for it again")
+
+    def _writable(self):
+        """The same as an ordinary array that may be written."""
+        self._check()
+        if self.flags.writeable or self._memory is None:
+            return self.view(np.ndarray)
+        offset = self.ctypes.data - self._memory.ctypes.data
+        return np.ndarray(self.shape, self.dtype, self._memory, offset, self.strides)
 
     def __getitem__(self, key):
         self._check()
         return super().__getitem__(key)
 
     def __setitem__(self, key, value):
-        self._check()
-        super().__setitem__(key, value)
+        self._writable()[key] = ordinary(value)
 
     def __iter__(self):
         self._check()
@@ -41,12 +51,15 @@ class Field(np.ndarray):
 
     def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
         if out is not None:
-            options["out"] = tuple(ordinary(array) for array in out)
+            options["out"] = tuple(array._writable() if isinstance(array, Field) else array for array in out)
         result = getattr(ufunc, method)(*(ordinary(array) for array in inputs), **options)
         return out[0] if out is not None and len(out) == 1 else result
 
     def __array_function__(self, function, types, arguments, options):
         return function(*ordinary_all(arguments), **{name: ordinary_all(value) for name, value in options.items()})
+
+    def fill(self, value):
+        self._writable().fill(value)
 
     def __repr__(self):
         return repr(ordinary(self))

@@ -86,7 +86,11 @@ class Model:
         progress  show a bar (tqdm)
         output    a folder for results.json and the files of fields, as `./sprekk run` writes them
 
-        Returns a table, pandas.DataFrame, with a row for each step: time, dt, and what it cost."""
+        Returns a table, pandas.DataFrame, with a row for each step: time, dt, and what it cost. A scene with the
+        section Accuracy needs several meshes and models, which `./sprekk run` makes; here it is an Error."""
+        if "Accuracy" in self.scene.entries:
+            raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so that run() cannot reach an '
+                                'error that is asked for; `./sprekk run` does. Leave the section out to run on this mesh')
         steps = _sprekk.Steps(self._handle)
         results = _sprekk.Results(self._handle, os.fspath(output)) if output is not None else None
         rows = []
@@ -129,7 +133,7 @@ class Model:
 
     def field(self, name):
         """Unknowns or a history in place, [entity that this rank owns, component]: no copy. Valid until the model is
-        changed; the memory lives as long as the array."""
+        changed; then it raises StaleField. np.asarray() of it is a read-only view, whose memory lives on."""
         return Field(self._handle.field(name), self._epoch)
 
     @property

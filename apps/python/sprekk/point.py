@@ -50,8 +50,10 @@ def fit(scene, measured, along, match, parameters):
     Returns an Estimate: values, intervals of 95 % confidence, correlation; its `curve` is the fitted one."""
     from . import estimate
     entries, _ = point_entries(scene)
-    x = np.asarray(measured[along], float)
     match = [match] if isinstance(match, str) else list(match)
+    check_measured(measured, [along, *match])
+    check_parameters(parameters)
+    x = np.asarray(measured[along], float)
     scale = {name: np.ptp(np.asarray(measured[name], float)) or 1 for name in match}
 
     def residuals(values):
@@ -64,8 +66,50 @@ def fit(scene, measured, along, match, parameters):
                                for name in match])
 
     start = {path: value[0] for path, value in parameters.items()}
-    drive(entries, start)  # what is wrong is told here
+    curve = drive(entries, start)  # what is wrong is told here
+    if isinstance(curve, dict):
+        raise _sprekk.Error("the scene has several specimens, must have one Point")
+    for name in (along, *match):
+        if name not in curve:
+            raise _sprekk.Error(f'the point has no column "{name}", but ' + ", ".join(curve.columns))
     found = estimate.fit(residuals, [estimate.Parameter(path, *limits) for path, limits in parameters.items()])
     found.parameters = dict(zip(parameters, found.values))
     found.curve = drive(entries, found.parameters)
     return found
+
+
+def check_measured(measured, names):
+    """That the columns of these names are there, as finite numbers of one length."""
+    length = None
+    for name in names:
+        try:
+            values = np.asarray(measured[name], float)
+        except (KeyError, IndexError, TypeError):
+            known = ", ".join(map(str, measured))
+            raise _sprekk.Error(f'measured: has no column "{name}", but {known or "none"}') from None
+        except ValueError as error:
+            raise _sprekk.Error(f'measured: the column "{name}" must have numbers: {error}') from None
+        if values.ndim != 1 or len(values) == 0:
+            raise _sprekk.Error(f'measured: the column "{name}" has the shape {values.shape}, must be a list of numbers')
+        if not np.all(np.isfinite(values)):
+            row = int(np.argmin(np.isfinite(values)))
+            raise _sprekk.Error(f'measured: the column "{name}" is {values[row]} in row {row}, must be finite')
+        length = length or len(values)
+        if len(values) != length:
+            raise _sprekk.Error(f'measured: the column "{name}" has {len(values)} rows, others have {length}')
+    if len(names) < 2:
+        raise _sprekk.Error("match: names no column, must name one or more")
+
+
+def check_parameters(parameters):
+    """That each is (start, low, high) with low < high and start between them."""
+    if not parameters:
+        raise _sprekk.Error("parameters: has none, must have one or more: {path of an entry: (start, low, high)}")
+    for path, limits in parameters.items():
+        try:
+            start, low, high = (float(limit) for limit in limits)
+        except (TypeError, ValueError):
+            raise _sprekk.Error(f'parameters: "{path}" has {limits!r}, must have numbers (start, low, high)') from None
+        if not (np.isfinite(start) and low < high and low <= start <= high):
+            raise _sprekk.Error(f'parameters: "{path}" has start {start:g}, low {low:g}, high {high:g}; must be numbers with '
+                                'low < high and the start between them')
