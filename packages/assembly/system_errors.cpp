@@ -95,6 +95,12 @@ Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
   const Real begin = t - dt;
   const auto scales = scales_;  // the step to t may not be taken
   const auto first = loads(x, begin, dt), last = loads(x, t, dt);
+  std::vector<Real> noise;  // rounding of loads that do not change
+  for (std::size_t b = 0; b < last.size(); ++b) {
+    const auto& block = blocks_[b % blocks_.size()];
+    const Real size = b < blocks_.size() ? block.residual_scale : block.kinematic_scale;
+    noise.push_back(1e-12 * (first[b]->norm2() + size * std::sqrt(static_cast<Real>(first[b]->getGlobalLength()))));
+  }
   for (std::size_t b = 0; b < last.size(); ++b) last[b]->update(-1, *first[b], 1);
   std::vector<Real> bend(last.size(), 0);
   const Real off = std::sqrt(0.15);  // of points of Gauss, which periods of loads meet by chance alone
@@ -109,7 +115,7 @@ Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
   Real largest = 0;
   for (std::size_t b = 0; b < last.size(); ++b) {
     load_change_[b] = std::max({load_change_[b], static_cast<Real>(last[b]->norm2()), bend[b]});
-    if (load_change_[b] > 0) largest = std::max(largest, bend[b] / load_change_[b]);
+    if (bend[b] > noise[b]) largest = std::max(largest, bend[b] / load_change_[b]);
   }
   return largest;
 }
