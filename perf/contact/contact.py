@@ -4,13 +4,8 @@
 A step is one that the scene asks for; its Newton iterations are those of all its substeps, rejected ones too."""
 import argparse
 import csv
-import json
-import os
 import re
-import shutil
-import subprocess
 import sys
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,13 +14,13 @@ sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/krylov")]
 
 import numpy as np  # noqa: E402
 
+import drawn_runs  # noqa: E402
 import linear  # noqa: E402
+import program_run  # noqa: E402
 import violation  # noqa: E402
 from scenes import scenes  # noqa: E402
 
-TIME_LIMIT = 120  # seconds of a processor, of one scene on each rank; those on the clock depend on what else runs
-PATIENCE = 900   # on the clock
-STOPPED = (124, 137, -9)  # statuses after these limits
+LIMITS = program_run.Limits(processor=120, clock=900)
 BOUNDS = {"median": 5, "p90": 12, "worst_violation": 1e-8}  # what --quick as a test demands
 COLUMNS = ("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures", "residual", "violation", "error", "undirected", "seconds")
 SMALL = ("residual", "violation", "error")
@@ -73,19 +68,10 @@ class Run:
 def start(options, scene, ranks):
     """Runs the scene; the status is None after the time limit."""
     directory = options.output / re.sub(r"[^\w.+-]+", "_", scene.name) / f"{ranks}"
-    shutil.rmtree(directory, ignore_errors=True)
-    command = ["prlimit", f"--cpu={TIME_LIMIT}", str(options.binary), "run", str(ROOT / "xml" / scene.file), "--output", str(directory)]
-    command += [word for entry in scene.sets for word in ("--set", entry)]
-    if ranks > 1:
-        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
-    run, begin = Run(scene, directory, ranks), time.monotonic()
-    done = subprocess.run(["timeout", "--kill-after=5", str(PATIENCE), *command], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    run.words, status = done.stdout + done.stderr, None if done.returncode in STOPPED else done.returncode
-    run.seconds = time.monotonic() - begin
-    if (directory / "results.json").is_file():
-        run.results = json.loads((directory / "results.json").read_text())
-    return run, status
+    words = [word for entry in scene.sets for word in ("--set", entry)]
+    ended = program_run.run(options.binary, ROOT / "xml" / scene.file, directory, ranks, words, LIMITS)
+    run = Run(scene, directory, ranks, ended.seconds, ended.words, ended.results)
+    return run, ended.status
 
 
 def judge(run, status):
@@ -94,10 +80,11 @@ def judge(run, status):
     if scene.refused:
         said = re.search(scene.refused, run.results.get("reason", ""), re.IGNORECASE)
         if status in (0, None) or not said:
-            run.failures.append(f"not refused as it should be: status {status}, {last_line(run.words)}")
+            run.failures.append(f"not refused as it should be: status {status}, {program_run.last_line(run.words)}")
         return run
     if status != 0:
-        run.failures.append(f"no end within {TIME_LIMIT} s of a processor" if status is None else f"status {status}: {last_line(run.words)}")
+        run.failures.append(f"no end within {LIMITS.processor} s of a processor" if status is None
+                            else f"status {status}: {program_run.last_line(run.words)}")
     if not run.steps:
         return run
     if (run.directory / "fractures.pvd").is_file():
@@ -112,10 +99,6 @@ def judge(run, status):
     if scene.newton and max(run.newton) > scene.newton:
         run.failures.append(f"{max(run.newton)} Newton iterations in a step, allowed are {scene.newton}")
     return run
-
-
-def last_line(words):
-    return (words.strip().splitlines() or ["no word"])[-1]
 
 
 def compare(run, other):
@@ -198,9 +181,7 @@ def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf contact", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a third of the scenes; the status is 1 above a stated bound, too, without --only")
     parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
-    parser.add_argument("--random", type=linear.count, metavar="N", help="N scenes drawn at random, instead; every tenth on 2 ranks, too")
-    parser.add_argument("--seed", type=int, default=1, help="of these; scene k depends on the seed and on k alone")
-    parser.add_argument("--jobs", type=linear.count, default=2, metavar="J", help="of these, run J at a time")
+    drawn_runs.add_options(parser)
     linear.add_only(parser, "scenes")
     parser.add_argument("--output", type=Path, default=Path("output/perf/contact"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")

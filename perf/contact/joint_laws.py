@@ -105,7 +105,11 @@ class JointLaw:
 
     def closed_gap(self, faces):
         """g of (14), m."""
-        return self.gap + self.left(faces)[1] * self._dilation(faces) - self._closure(faces)
+        return self.gap + self.lifted(faces) - self._closure(faces)
+
+    def lifted(self, faces):
+        """By how much slip has opened the faces, m."""
+        return self.left(faces)[1] * self._dilation(faces)
 
     def _dilation(self, faces):
         kind, u = self.kinds["dilation"], faces.slip

@@ -8,10 +8,8 @@ def written(value):
         kinds = {written(v)[0] for v in value}
         kind = "string" if "string" in kinds else "double" if "double" in kinds else "int"
         return f"Array({kind})", "{" + ", ".join(written(v)[1] for v in value) + "}"
-    if isinstance(value, bool):
-        return "bool", str(value).lower()
-    kind = {str: "string", int: "int", float: "double"}[type(value)]
-    return kind, value if kind == "string" else repr(value)
+    kind = {str: "string", bool: "bool", int: "int", float: "double"}[type(value)]
+    return kind, value if kind == "string" else str(value).lower() if kind == "bool" else repr(value)
 
 
 def section(name, content):

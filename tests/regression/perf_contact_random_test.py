@@ -216,7 +216,7 @@ class Verdicts(ProgramTest):
         done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         kept = list((self.folder / "out/failures").iterdir())
-        self.assertRegex(done.stdout.splitlines()[-1], "^scenes=1 failures=1 refused=0 hangs=0 newton_median=nan newton_p90=nan rank_differences=0$")
+        self.assertRegex(done.stdout.splitlines()[-1], "^failures=1 hangs=0 violations=0 rank_differences=0 newton_median=nan newton_p90=nan$")
         self.call("check", kept[0])
         self.assertIn("status 5: no good", kept[0].read_text().splitlines()[0])
         self.assertEqual(len((self.folder / "out/random.csv").read_text().splitlines()), 2)

@@ -1,0 +1,87 @@
+"""Runs all scenes of a seed, a few at a time, and keeps those that are wrong with what is wrong with them."""
+import csv
+import shutil
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+import linear  # of perf/krylov
+
+VERDICTS = ("ok", "refused", "failed", "hang", "violation")
+
+
+@dataclass
+class Outcome:
+    """What is kept of a scene once it has been run and judged."""
+    name: str
+    line: str                 # of the table that is printed
+    row: list                 # of the CSV
+    verdict: str = "ok"       # one of VERDICTS
+    what: list = field(default_factory=list)   # is wrong
+    ranks: list = field(default_factory=list)  # differences between numbers of ranks
+    newton: list = field(default_factory=list)  # iterations of each step
+    notes: list = field(default_factory=list)
+
+    @property
+    def is_wrong(self):
+        return bool(self.what or self.ranks)
+
+
+def add_options(parser):
+    parser.add_argument("--random", type=linear.count, metavar="N", help="N scenes drawn at random; scene k depends on the seed and on k alone")
+    parser.add_argument("--seed", type=int, default=1, help="of these")
+    parser.add_argument("--jobs", type=linear.count, default=2, metavar="J", help="of these, run J at a time")
+
+
+def keep_or_remove(output, scene, results, wrong):
+    """The scene moves to failures, with what is wrong in its first line, or goes with what the run wrote."""
+    files = sorted(scene.parent.glob(f"{scene.stem}.*"))
+    if wrong:
+        words = "; ".join(wrong).replace("--", "- -")
+        scene.write_text(scene.read_text().replace(" -->\n", f"; {words} -->\n", 1))
+    for file in files:
+        if wrong and file.suffixes in ([".xml"], [".msh"]):
+            file.replace(output / "failures" / file.name)
+        else:
+            file.unlink()
+    shutil.rmtree(results, ignore_errors=True)
+
+
+def summary(outcomes):
+    """The numbers of the last line, and whether something is wrong."""
+    counted = [o.newton for o in outcomes if o.newton and o.verdict != "refused"] or [[np.nan]]
+    verdicts = [o.verdict for o in outcomes]
+    total = {"failures": verdicts.count("failed"), "hangs": verdicts.count("hang"), "violations": verdicts.count("violation"),
+             "rank_differences": sum(bool(o.ranks) for o in outcomes),
+             "newton_median": np.median([np.median(n) for n in counted]),
+             "newton_p90": np.percentile([max(n) for n in counted], 90, method="higher")}
+    return total, any(total[key] for key in ("failures", "hangs", "violations", "rank_differences"))
+
+
+def run_all(options, names, run_one, title, columns, again):
+    """`names`: by the numbers of scenes; run_one(options, k) is an Outcome; `again`: the command that runs one again, but for
+    its name. Returns the exit status."""
+    chosen = linear.matching(options, list(names), names.get)
+    del options.refuse  # a method of the parser, which cannot be sent to another process
+    for folder in ("drawn", "failures"):
+        (options.output / folder).mkdir(parents=True, exist_ok=True)
+    print(title)
+    outcomes = []
+    with ProcessPoolExecutor(options.jobs) as pool, open(options.output / "random.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow([*columns, "verdict", "what failed", "on several ranks"])
+        for outcome in pool.map(partial(run_one, options), chosen):
+            outcomes.append(outcome)
+            table.writerow([*outcome.row, outcome.verdict, "; ".join(outcome.what), "; ".join(outcome.ranks)])
+            file.flush()
+            lines = [f"{outcome.line}  {outcome.verdict}"] + [f"  {what}" for what in outcome.what + outcome.ranks]
+            if outcome.is_wrong:
+                lines.append(f'  again: {again} --only "{outcome.name}"')
+            print("\n".join(lines + outcome.notes), flush=True)
+    total, wrong = summary(outcomes)
+    refused = sum(outcome.verdict == "refused" for outcome in outcomes)
+    print(f"\n{len(outcomes)} scenes{f', {refused} of them refused rightly' * bool(refused)}; random.csv, and the scenes that failed, in {options.output}")
+    print(" ".join(f"{key}={value:g}" for key, value in total.items()))
+    return 1 if wrong else 0

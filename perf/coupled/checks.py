@@ -1,0 +1,99 @@
+"""What must hold for a run of a coupled scene, from the files that it wrote. Each check returns lines that say what is wrong."""
+import re
+
+import numpy as np
+
+import violation  # of perf/contact
+from balances import Balances
+
+BALANCE = 1e-6      # of the largest flow of the run
+OVERSHOOT = 1e-3    # of the span of the given temperatures
+CONTACT = 1e-8      # of displacement or traction, see perf/contact
+DIFFERENCE = 1e-8   # between two runs of one scene
+ROUNDING = 1e-12    # of an aperture, by the displacement
+SAYS_OVERSHOOT = re.compile(r"warning: .*temperature.*(beyond|outside|overshoot|above|below|exceed)", re.IGNORECASE)
+
+
+def balances(written):
+    """(lines, largest surplus of fluid and of energy relative to what is allowed besides)"""
+    lines, worst, own = [], [], Balances(written)
+    for what, steps in (("fluid", own.of_fluid()), ("energy", own.of_energy())):
+        scale = max((step.scale for step in steps), default=0)
+        off = [(max(abs(step.surplus) - step.unknown, 0) / scale, step) for step in steps] if scale > 0 else []
+        most, step = max(off, key=lambda pair: pair[0], default=(0.0, None))
+        worst.append(most if steps else None)
+        if not most <= BALANCE:
+            lines.append(f"balance of {what}: {step.surplus:.3e} per s more is stored at t = {step.time:g} than comes in, {most:.1e} of "
+                         f"the largest flow, {scale:.3e}")
+    return lines, worst
+
+
+def given_temperatures(written):
+    """The least and the largest over the run of those that the scene gives, or None where it gives heat, too."""
+    entries = written.entries
+    heat = entries["Heat"]
+    conditions = entries.get("Boundary conditions", {}).values()
+    if heat.get("source", "0") not in ("0", "0.0") or heat.get("heat of friction") == "true" or any(c.get("heat flux") for c in conditions):
+        return None
+    texts = [c["temperature"] for c in conditions if c.get("temperature")]
+    texts += [c["temperature"] for c in entries.get("Regions", {}).values() if isinstance(c, dict) and c.get("temperature")]
+    texts += [c["temperature"] for c in heat.get("Wells", {}).values()]
+    times = [0.0] + [step["time"] for step in written.results["steps"]]
+    values = [written.value(heat["initial temperature"])] + [written.value(text, t) for text in texts for t in times]
+    return min(values), max(values)
+
+
+def temperatures(written, log):
+    """Within the given ones, unless the run says that they are not."""
+    given = given_temperatures(written) if "Heat" in written.entries else None
+    if given is None:
+        return [], None
+    low, high = given
+    worst, where = 0.0, ""
+    for state in written.states:
+        for grid, name in ((state.bulk, "temperature"), (state.fractures, "fracture temperature")):
+            if grid:
+                T = grid.cell_data[name]
+                for beyond in (T.max() - high, low - T.min()):
+                    if beyond > worst:
+                        worst, where = beyond, f'"{name}" at t = {state.time:g}'
+    share = worst / max(high - low, 1e-6 * high)
+    if share <= OVERSHOOT or SAYS_OVERSHOOT.search(log):
+        return [], share
+    return [f"{where} is {worst:.3g} K beyond the given temperatures, {low:.6g} to {high:.6g} K, {share:.1%} of their span"], share
+
+
+def apertures(written):
+    lines = []
+    for state in written.states:
+        if not state.fractures:
+            continue
+        data = state.fractures.cell_data
+        size = np.abs(data["jump"]).max(initial=0) if "jump" in data else 0
+        for name in ("aperture", "hydraulic aperture"):
+            least = data[name].min(initial=0) if name in data else 0
+            if not least >= -ROUNDING * max(size, 1e-3):
+                lines.append(f'"{name}" is {least:.3e} m at t = {state.time:g}')
+    return lines[:1]
+
+
+def finite(written):
+    for state in written.states:
+        for grid in (state.bulk, state.fractures):
+            for name, values in {**grid.cell_data, **grid.point_data}.items() if grid else ():
+                if not np.isfinite(values).all():
+                    return [f'"{name}" at t = {state.time:g} has values that are no numbers']
+    return []
+
+
+def contact(written):
+    """(lines, violation) of the laws of contact and friction."""
+    first = written.states[0].fractures if written.states else None
+    if first is None or "traction local" not in first.cell_data:
+        return [], None
+    input_ = violation.Input(written.directory / "effective_input.xml")
+    *_, worst, _ = violation.largest(written.directory, written.results, input_)
+    k = int(worst.argmax())
+    if worst.max() <= CONTACT:
+        return [], float(worst.max())
+    return [f"laws of contact: {violation.PARTS[k]} {worst[k]:.1e}"], float(worst.max())

@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""Robustness of flow, heat and the rock that they deform: runs scenes drawn at random, and checks what they wrote."""
+import argparse
+import re
+import shutil
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact")]
+
+import xml.etree.ElementTree as xml  # noqa: E402
+
+import checks  # noqa: E402
+import coupled_scenes  # noqa: E402
+import differences  # noqa: E402
+import drawn_runs  # noqa: E402
+import linear  # noqa: E402
+import program_run  # noqa: E402
+from scene_file import save  # noqa: E402
+from written import Written  # noqa: E402
+
+LIMITS = program_run.Limits(processor=60, clock=600)
+COLUMNS = ("scene", "cells", "steps", "median", "max", "cuts", "fluid", "energy", "overshoot", "contact", "difference", "also", "seconds")
+AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k runs in the way k of these, too
+ATTEMPTS = 10
+NO_SCENE = ("slip would do work", "a well as wide as", "the hydraulic aperture is")  # such scenes are drawn anew
+
+
+@dataclass
+class Judged:
+    """A scene that has been run. `numbers`: of COLUMNS from "fluid" on."""
+    ended: object
+    written: object = None
+    wrong: list = field(default_factory=list)      # failures
+    violations: list = field(default_factory=list)
+    ranks: list = field(default_factory=list)
+    numbers: dict = field(default_factory=dict)
+
+
+def judge(ended, directory):
+    """Exit status, balances, bounds and laws of one run."""
+    run = Judged(ended)
+    if ended.status is None:
+        run.wrong.append(f"no end within {LIMITS.processor} s of a processor")
+    elif ended.status != 0:
+        run.wrong.append(f"status {ended.status}: {ended.results.get('reason') or ended.last_line}")
+    if not ended.results.get("steps") or not (directory / "bulk.pvd").is_file():
+        return run
+    run.written = Written(directory, ended.results)
+    if not run.written.states or ended.status is None:
+        return run
+    log = (directory / "log.txt").read_text()
+    run.violations += checks.finite(run.written) + checks.apertures(run.written)
+    if ended.status == 0:
+        lines, (run.numbers["fluid"], run.numbers["energy"]) = checks.balances(run.written)
+        run.violations += lines
+    lines, run.numbers["overshoot"] = checks.temperatures(run.written, log)
+    run.violations += lines
+    lines, run.numbers["contact"] = checks.contact(run.written)
+    run.violations += lines
+    return run
+
+
+def again(options, way, scene, directory, run):
+    """Runs the scene in another way; the largest difference, and what is wrong."""
+    other = directory.with_name(re.sub(r"\W", "_", way))
+    ranks, words, rename = 1, [], str
+    if way.endswith("ranks"):
+        ranks = int(way[0])
+    elif way == "renumbered":
+        words = ["--set", "Mesh.renumbering seed=7"]
+    elif way == "renamed":
+        scene, rename = renamed(scene)
+    elif way == "restart":
+        return restarted(options, scene, directory, run)
+    ended = program_run.run(options.binary, scene, other, ranks, words, LIMITS)
+    if ended.status != run.ended.status:
+        return None, [f"{way}: status {ended.status} instead of {run.ended.status}: {ended.results.get('reason') or ended.last_line}"]
+    return compared(way, run, Written(other, ended.results), 0.0 if way == "repeated" else checks.DIFFERENCE, rename)
+
+
+def restarted(options, scene, directory, run):
+    """The last step once more, from the checkpoint before it: bit for bit the same."""
+    other = directory.with_name("restart")
+    shutil.copytree(directory, other)
+    checkpoints = sorted((folder for folder in (other / "checkpoints").iterdir() if folder.is_dir() and folder.name.isdigit()),
+                         key=lambda folder: int(folder.name))
+    if len(checkpoints) < 2:
+        return None, [f"restart: {len(checkpoints)} checkpoints after {len(run.ended.results['steps'])} steps"]
+    shutil.rmtree(checkpoints[-1])
+    ended = program_run.run(options.binary, scene, other, 1, [*CHECKPOINTS, "--restart"], LIMITS, anew=False)
+    if ended.status != 0 or not ended.results.get("restarts"):
+        return None, [f"restart: status {ended.status}: {ended.last_line}"]
+    return compared("restart", run, Written(other, ended.results), 0.0)
+
+
+def compared(way, run, other, allowed, rename=str):
+    size, what = differences.largest(run.written, other, rename)
+    wrong = [] if size <= allowed else [f"{way}: {what} differs by {size:.1e} of the largest"]
+    return size, wrong
+
+
+def renamed(scene):
+    """A copy of the scene whose fractures have other names, in the opposite order; and the way back."""
+    tree = xml.parse(scene)
+    names = [node.get("name") for node in tree.getroot().find("ParameterList[@name='Fractures']")]
+    new = {name: f"g{len(names) - k:02}" for k, name in enumerate(names)}
+    for path in ("ParameterList[@name='Fractures']", "ParameterList[@name='Mesh']/ParameterList[@name='fractures']"):
+        for node in tree.getroot().findall(f"{path}/ParameterList"):
+            node.set("name", new[node.get("name")])
+    for node in tree.getroot().iter("Parameter"):
+        if node.get("name") == "fracture":
+            node.set("value", new[node.get("value")])
+        elif node.get("name") == "cuts":
+            node.set("value", "{" + ", ".join(new[name.strip()] for name in node.get("value").strip("{}").split(",")) + "}")
+    copy = scene.with_suffix(".renamed.xml")
+    tree.write(copy)
+    back = {value: key for key, value in new.items()}
+    return copy, lambda name: back.get(name, name)
+
+
+CHECKPOINTS = ["--set", "Output.checkpoints.steps=1"]
+
+
+def ways(options, k, run):
+    """In which other ways scene k is run."""
+    chosen = AGAIN if options.all_ways else AGAIN[k % len(AGAIN):][:1]
+    no_fractures, one_step = run.written.states[0].fractures is None, len(run.ended.results["steps"]) < 2
+    return [way for way in chosen if not (way == "renamed" and no_fractures or way == "restart" and one_step)]
+
+
+def draw_and_run(options, k):
+    """Scene k of the seed, its file and its run."""
+    for attempt in range(ATTEMPTS):
+        drawn = coupled_scenes.draw_scene(options.seed, k, attempt)
+        scene = options.output / "drawn" / f"{drawn.name}.xml"
+        save(drawn.tree, scene, drawn.comment)
+        directory = options.output / "runs" / drawn.name / "first"
+        words = CHECKPOINTS if options.all_ways or AGAIN[k % len(AGAIN)] == "restart" else []
+        ended = program_run.run(options.binary, scene, directory, 1, words, LIMITS)
+        if ended.status != 1 or not any(words in ended.words for words in NO_SCENE):
+            break
+    return drawn, scene, directory, ended
+
+
+def run_one(options, k):
+    """Draws, runs and judges scene k; keeps its file if something is wrong."""
+    drawn, scene, directory, ended = draw_and_run(options, k)
+    try:
+        run = judge(ended, directory)
+        run.numbers["also"] = []
+        if not run.wrong and run.written:
+            for way in ways(options, k, run):
+                size, lines = again(options, way, scene, directory, run)
+                run.numbers["also"].append(way)
+                run.numbers["difference"] = max(size or 0.0, run.numbers.get("difference") or 0.0)
+                (run.ranks if way.endswith("ranks") else run.violations).extend(lines)
+    except Exception as error:  # files that cannot be read, say; the other scenes go on
+        if options.jobs == 1 and options.trace:
+            raise
+        run = Judged(ended, wrong=[f"could not be judged: {type(error).__name__}: {error}"])
+    row = values(drawn.name, run)
+    verdict = "hang" if ended.status is None else "failed" if run.wrong else "violation" if run.violations else "ok"
+    outcome = drawn_runs.Outcome(drawn.name, line(row), row, verdict, run.wrong + run.violations, run.ranks, ended.newton)
+    drawn_runs.keep_or_remove(options.output, scene, directory.parent, outcome.what + outcome.ranks)
+    return outcome
+
+
+def values(name, run):
+    """Of COLUMNS."""
+    steps, newton = run.ended.results.get("steps", []), run.ended.newton or [0]
+    counts = [run.ended.results.get("mesh", {}).get("cells"), len(steps), sorted(newton)[len(newton) // 2], max(newton),
+              sum(step["cuts"] for step in steps)]
+    also = ", ".join(run.numbers.get("also", []))
+    return [name, *counts, *(run.numbers.get(key) for key in COLUMNS[6:11]), also, run.ended.seconds]
+
+
+def line(row):
+    words = [v if isinstance(v, str) else "-" if v is None else f"{v:.1f}" if column == "seconds" else f"{v:.0e}" if column in COLUMNS[6:11]
+             else f"{v:g}" for column, v in zip(COLUMNS, row)]
+    return f"{words[0]:24}" + "".join(f"{word:>{max(7, len(COLUMNS[k + 1]) + 2)}}" for k, word in enumerate(words[1:11])) + f"  {words[11]:12}{words[12]:>6}"
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="sprekk perf coupled", description=__doc__)
+    drawn_runs.add_options(parser)
+    parser.set_defaults(random=100)
+    parser.add_argument("--all-ways", action="store_true", help="run each scene in all other ways, too: on ranks, from a checkpoint, renamed, ...")
+    parser.add_argument("--trace", action="store_true", help="with --jobs 1: end at an error of the checks themselves")
+    linear.add_only(parser, "scenes")
+    parser.add_argument("--output", type=Path, default=Path("output/perf/coupled"), metavar="DIR")
+    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
+    return parser.parse_args(words)
+
+
+def main(words):
+    options = arguments(words)
+    options.binary = options.binary.resolve()
+    names = {k: coupled_scenes.draw_scene(options.seed, k).name for k in range(options.random)}
+    command = f"./sprekk perf coupled --random {options.random} --seed {options.seed}"
+    return drawn_runs.run_all(options, names, run_one, line(COLUMNS) + "  verdict", COLUMNS, command)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,120 @@
+"""By how much the results of two runs of one scene differ, relative to what is largest in the first: cells and faces are matched
+by their places, fractures by their names."""
+import numpy as np
+
+LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
+STRESSES = ("stress", "traction", "largest compression")
+LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "slip tendency", "error of damage history")
+NEAR = 1e-9  # of the limit between two states: there a face may have either
+
+
+class Scales:
+    """The largest values of a run, by the kind of an array."""
+
+    def __init__(self, written):
+        self.start = {"pressure": _start(written, "Flow", "initial pressure"), "temperature": _start(written, "Heat", "initial temperature")}
+        self.largest = {}
+        for state in written.states:
+            for grid in (state.bulk, state.fractures):
+                for name, values in {**grid.cell_data, **grid.point_data}.items() if grid else ():
+                    kind = kind_of(name)
+                    size = np.abs(values - self.start.get(kind, 0)).max(initial=0)
+                    self.largest[kind] = max(self.largest.get(kind, 0), size, 1e-5 * abs(self.start.get(kind, 0)))
+        self._least_fluxes(written)
+        if self.start["pressure"]:  # what the initial pressure makes of stresses
+            self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
+
+    def _least_fluxes(self, written):
+        """Flows are known to the rounding of pressures times what conducts it."""
+        first = written.states[0]
+        edge = (first.bulk.sizes.min()) ** (1 / first.bulk.dim)
+        level = abs(self.start["pressure"]) + self.largest.get("pressure", 0)
+        mobility = max((float(word) for m in written.entries["Materials"].values()
+                        for word in m.get("permeability", "{}").strip("{}").split(",") if word.strip()), default=0)
+        mu = written.number("Flow", "viscosity", default=1e-3)
+        apertures = [state.fractures.cell_data.get("hydraulic aperture", np.zeros(1)).max() for state in written.states if state.fractures]
+        open_ = max(apertures, default=0) ** 3 / 12
+        for kind, conducts in (("Darcy velocity", mobility), ("fluid flux", open_)):
+            if kind in self.largest:
+                self.largest[kind] = max(self.largest[kind], 1e-7 * level * conducts / mu / edge)
+
+    def of(self, name):
+        return self.largest.get(kind_of(name), 0) or 1.0
+
+
+def _start(written, section, entry):
+    text = written.text(section, entry, default="0")
+    try:
+        return written.value(text)
+    except Exception:
+        return 0.0
+
+
+def kind_of(name):
+    for kind in ("pressure", "temperature"):
+        if kind in name:
+            return kind
+    if any(word in name for word in STRESSES):
+        return "stress"
+    if name.startswith("damage history") or any(word in name for word in LENGTHS):
+        return "length"
+    return name
+
+
+def order(grid, names=()):
+    """The order of cells by their places, and by the names of their fractures."""
+    extent = max(np.ptp(grid.points, axis=0).max(), 1e-300)
+    place = np.round(grid.centres / extent * 1e6 + 0.3123).astype(np.int64)
+    keys = [place[:, 2], place[:, 1], place[:, 0]]
+    if names:
+        numbers = grid.cell_data["fracture"].astype(int)
+        keys.append(np.argsort(np.argsort(names))[numbers])
+    return np.lexsort(keys)
+
+
+def largest(one, other, rename=lambda name: name, scales=None):
+    """(relative difference, what) of two runs; `rename`: from a name of a fracture in the other run to that in the first."""
+    if len(one.states) != len(other.states):
+        return np.inf, f"{len(one.states)} states are written, and {len(other.states)}"
+    scales, worst = scales or Scales(one), (0.0, "")
+    for a, b in zip(one.states, other.states):
+        pairs = [(a.bulk, b.bulk, (), ())]
+        if a.fractures:
+            pairs.append((a.fractures, b.fractures, one.fracture_names, [rename(name) for name in other.fracture_names]))
+        for left, right, names, others in pairs:
+            i, j = order(left, names), order(right, others)
+            for name, values in left.cell_data.items():
+                if name not in LEFT_OUT:
+                    size = np.abs(values[i] - right.cell_data[name][j]).max(initial=0) / scales.of(name)
+                    worst = max(worst, (size, f'"{name}" at t = {a.time:g}'))
+    return max(worst, of_numbers(one, other, rename, scales))
+
+
+def of_numbers(one, other, rename, scales):
+    """The same of wells and of what comes in."""
+    worst = 0.0, ""
+    steps = list(zip(one.results["steps"], other.results["steps"]))
+    for key in ("inflows", "heat_inflows"):
+        size = max((abs(v) for a, _ in steps for v in a.get(key, {}).values()), default=0)
+        worst = max([worst] + [(abs(v - b[key][name]) / max(size, _least(one, scales, key)), f"{key} of {name} at t = {a['time']:g}")
+                               for a, b in steps for name, v in a.get(key, {}).items()])
+    rates = max((abs(well["rate"]) for a, _ in steps for well in a.get("wells", {}).values()), default=0)
+    for a, b in steps:
+        for name, well in a.get("wells", {}).items():
+            there = {_own(key, rename): v for key, v in b["wells"][name].items()}
+            for key, value in well.items():
+                size = scales.of("pressure") if key == "pressure" else scales.of("temperature") if key == "temperature" else \
+                    max(rates, 1e-300) * (one.number("Heat", "fluid heat capacity", default=1) * scales.of("temperature") if key == "heat" else 1)
+                worst = max(worst, (abs(value - there[key]) / size, f"{key} of well {name} at t = {a['time']:g}"))
+    return worst
+
+
+def _own(key, rename):
+    return "in " + rename(key[3:]) if key.startswith("in ") and key != "in rock" else key
+
+
+def _least(written, scales, key):
+    """A flow through the whole boundary that is next to nothing."""
+    bulk = written.states[0].bulk
+    area = bulk.sizes.sum() ** (1 - 1 / bulk.dim)
+    return scales.of("Darcy velocity" if key == "inflows" else "heat flux") * area
