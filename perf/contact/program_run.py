@@ -6,6 +6,7 @@ import subprocess
 import time
 from dataclasses import dataclass, field
 
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # without a daemon of Open MPI
 STOPPED = (124, 137, -9)  # statuses after these limits
 
 
@@ -45,7 +46,7 @@ def run(binary, scene, directory, ranks=1, words=(), limits=Limits(), anew=True)
         command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
     begin = time.monotonic()
     done = subprocess.run(["timeout", "--kill-after=5", str(limits.clock), *command], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1", **(ALONE if ranks == 1 else {})})
     ended = Ended(None if done.returncode in STOPPED else done.returncode, done.stdout + done.stderr, time.monotonic() - begin)
     if (directory / "results.json").is_file():
         ended.results = json.loads((directory / "results.json").read_text())

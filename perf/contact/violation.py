@@ -19,6 +19,7 @@ HISTORIES = ("accumulated slip", "opening by slip", "largest compression", "dama
              "error of damage history", "damage of friction", "damage of dilation")
 FIRST_KINDS = {"friction": "Coulomb", "closure": "Barton-Bandis", "dilation": "constant angle", "tangential elasticity": "linear",
                "bond": "none", "damage": "none", "damage driver": "slip"}
+TINY = 1e-300  # scales of a run in which nothing moves
 BULK_STEPS = 20  # of the steps written, as many are looked at for the largest displacement
 
 
@@ -194,7 +195,7 @@ def history(directory, input_, laws=None):
     of = (input_.laws, extent) if laws is None else (laws, extent, "single fracture")
     steps = [faces(time, file, *of) for time, file in read.written_steps(directory, "fractures")]
     traction = max(max(np.linalg.norm(step.traction, axis=1).max(), np.abs(step.pressure).max()) for step in steps)
-    return steps, Scales(length, max(traction, 1e-9 * input_.modulus * length / extent), extent)
+    return steps, Scales(max(length, TINY), max(traction, 1e-9 * input_.modulus * length / extent, TINY), extent)
 
 
 def violation(step, before, scales, laws=(), path=None):

@@ -204,7 +204,7 @@ class Balances:
         """[face] For which fluid is stored."""
         k = self.k
         least = k.least if self.flows else 1e-9 * np.ptp(self.run.states[0].bulk.points, axis=0).max()
-        return np.maximum(k.start_aperture, least) + opening - k.start_opening
+        return np.maximum(k.start_aperture + opening - k.start_opening, least)
 
     def rates(self, factor, now, old, older):
         nu, beta = factor
