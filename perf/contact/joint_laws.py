@@ -87,6 +87,16 @@ class JointLaw:
         raise ValueError(f'friction "{kind}" is not known here')
 
     @property
+    def least_friction(self):
+        """A coefficient that the joint has after any slip, under any load, without its bond."""
+        kind = self.kinds["friction"]
+        if "Barton-Choubey" in kind:
+            least = math.tan(math.radians(self.entry("residual friction angle", None)))
+        else:
+            least = self.number({"Coulomb": "friction coefficient", "slip weakening": "residual friction coefficient"}.get(kind, "basic friction coefficient"))
+        return least * (1 if self.kinds["damage"] == "none" else self.entry("residual part of friction", 0))
+
+    @property
     def roughness(self):
         """JRC, JCS of the joint."""
         roughness, strength = self.entry("joint roughness coefficient", None), self.entry("joint wall strength", None)

@@ -60,6 +60,7 @@ class Motions:
         held, components = [[] for _ in range(parts.count)], {}
         for name in loads.input.names("Boundary conditions"):
             fixed = [i for i, text in enumerate(loads.texts("Boundary conditions", name, "displacement")) if text != "free"]
+            fixed += [i for i, text in enumerate(loads.texts("Boundary conditions", name, "foundation stiffness")) if float(text) > 0]
             components.setdefault(loads.input.text("Boundary conditions", name, "boundary"), []).extend(fixed)
         for face in parts.boundaries:
             for i in components.get(face.name, ()):
@@ -129,7 +130,7 @@ def admissible(input_, rock, time):
         return True
     given = sum(motions.work(piece, place, force[:, None]) for piece, place, force in forces)
     given /= max(np.linalg.norm(force) for *_, force in forces)
-    friction = dict(zip(names, (joint.friction for joint in input_.joints)))
+    friction = dict(zip(names, (law.least_friction for law in input_.laws)))
     columns = [np.zeros((motions.count, 1))]
     for face in parts.fractures:
         if face.pieces[0] != face.pieces[1]:

@@ -9,10 +9,12 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from random_joints import any_joint
 from scene_file import save
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("west", "east", "south", "north", "bottom", "top")
+WORK = "slip would do work"  # in the refusal of a joint whose dilation takes more than friction bears
 ATTEMPTS = 10  # networks that cannot be meshed are drawn anew
 
 
@@ -35,6 +37,8 @@ class Draw:
         self.modulus = 10 ** rng.uniform(-2, 13) if wild else 10 ** rng.uniform(9, 11)
         self.strain = 10 ** rng.uniform(-6, -2.5)
         self.steps = rng.randint(2, 6)
+        self.stiffer = 1.0  # the rock's modulus over that which loads are relative to
+        self.other_laws = not wild and rng.random() < 0.35
         self.tables = {}
 
     def chance(self, p):
@@ -53,6 +57,8 @@ class Draw:
 # Materials
 
 def joint(draw):
+    if draw.other_laws:
+        return any_joint(draw, draw.modulus * draw.strain)
     friction = 0.0 if draw.chance(0.1) else draw.rng.uniform(0.05, 0.9)
     law = {"type": "joint", "friction coefficient": friction}
     if draw.chance(0.5):  # no more than friction, or sliding would yield work
@@ -71,7 +77,7 @@ def finish(draw, mesh, fractures, conditions, bulk=None, pressure=0.0, contrast=
     """The whole scene. `pressure`: the scale of fluid pressures, 0 for none; `contrast`: of the rock of a region "other"."""
     rng = draw.rng
     ratio = 0.5 - draw.power(-5, -1) if draw.chance(0.1) else rng.uniform(0, 0.4)
-    rock = {"type": "elastic", "Young's modulus": draw.modulus, "Poisson's ratio": ratio}
+    rock = {"type": "elastic", "Young's modulus": draw.modulus * draw.stiffer, "Poisson's ratio": ratio}
     materials = {"rock": rock, "joint": joint(draw)}
     if draw.chance(0.3):
         materials["other joint"] = joint(draw)
@@ -85,8 +91,10 @@ def finish(draw, mesh, fractures, conditions, bulk=None, pressure=0.0, contrast=
     used = {joints[name]["material"] for name in fractures} | {"rock"}
     tree = {**mesh, "Materials": {name: law for name, law in materials.items() if name in used}}
     if contrast:
-        tree["Materials"]["other"] = {**rock, "Young's modulus": draw.modulus * contrast}
+        tree["Materials"]["other"] = {**rock, "Young's modulus": draw.modulus * draw.stiffer * contrast}
         tree["Regions"] = {"other": {"material": "other"}}
+    if draw.chance(0.1):
+        tree["Solver"] = {"Linear solver": {"type": "iterative"}}
     return tree | {"Bulk": {"material": "rock", **(bulk or {})}, "Fractures": joints, "Boundary conditions": conditions,
                    "Tables": draw.tables, "Time": {"end": float(draw.steps), "steps": draw.steps}}
 
@@ -187,6 +195,12 @@ def weight(draw, top, bottom):
     return {"conditions": conditions, "bulk": bulk}
 
 
+def stiffen(draw):
+    """Four in ten have rock that is stiff beside the loads, as masonry is."""
+    if draw.chance(0.4):
+        draw.stiffer = draw.power(0, 4)
+
+
 # Boxes
 
 def box(high, cells, cell, fractures, **more):
@@ -214,19 +228,25 @@ def turned(draw):
     return angle if draw.dim == 2 else angle | {"rotation axis": [draw.rng.gauss(0, 1) for _ in range(3)]}
 
 
+def random_fractures(draw, high, cells, most, through=None):
+    """Corners of two and more fractures, each of which goes through the box in a direction with the chance `through`."""
+    rng, dim = draw.rng, draw.dim
+    through = rng.choice((0.1, 0.5, 1)) if through is None else through
+    planes = [(axis, plane) for axis in range(dim) for plane in range(1, cells[axis])]
+    fractures = {}
+    for k, (axis, plane) in enumerate(rng.sample(planes, min(len(planes), rng.randint(2, most)))):
+        extents = [(0, n) if draw.chance(through) else sorted(rng.sample(range(n + 1), 2)) for n in cells]
+        fractures[f"f{k}"] = rectangle(high, cells, axis, plane, extents)
+    return fractures
+
+
 def random_box(draw):
     """Plane fractures that cross, abut and end in a box."""
     rng, dim = draw.rng, draw.dim
     order = 2 if draw.chance(0.25) else 1
     cells = [rng.randint(6, 16 // order) if dim == 2 else rng.randint(3, 6 if order == 1 else 4) for _ in range(dim)]
     high = [draw.size * rng.choice((1, 1, rng.uniform(0.5, 2))) for _ in range(dim)]
-    planes = [(axis, plane) for axis in range(dim) for plane in range(1, cells[axis])]
-    chosen = rng.sample(planes, min(len(planes), rng.randint(2, 8 if dim == 2 else 5)))
-    through = rng.choice((0.1, 0.5, 1))
-    fractures = {}
-    for k, (axis, plane) in enumerate(chosen):
-        extents = [(0, n) if draw.chance(through) else sorted(rng.sample(range(n + 1), 2)) for n in cells]
-        fractures[f"f{k}"] = rectangle(high, cells, axis, plane, extents)
+    fractures = random_fractures(draw, high, cells, 8 if dim == 2 else 5, rng.choice((0.1, 0.5, 1)))
     sides, more, contrast = SIDES[:2 * dim], {"order": order}, None
     if draw.chance(0.15):
         middle = high[0] * (cells[0] // 2) / cells[0]
@@ -253,6 +273,7 @@ def random_box(draw):
 
 def blocks(draw):
     """A box cut into blocks by planes from side to side, under its weight or given stress; some blocks are one cell wide."""
+    stiffen(draw)
     rng, dim = draw.rng, draw.dim
     cells = [rng.randint(3, 10 if dim == 2 else 5) for _ in range(dim)]
     high = [draw.size * n / cells[0] for n in cells]
@@ -274,6 +295,7 @@ def blocks(draw):
 
 def masonry(draw):
     """Courses of bricks in running bond, the sides free."""
+    stiffen(draw)
     rng, dim = draw.rng, draw.dim
     courses, bricks = rng.randint(3, 6), rng.randint(2, 4)
     fine = rng.choice((1, 2)) if dim == 2 else 1
@@ -343,6 +365,7 @@ def network(draw):
 
 def arch(draw):
     """Voussoirs between two springings, under their weight and a load on a part of the back."""
+    stiffen(draw)
     rng, size = draw.rng, draw.size
     stones, span = rng.randint(3, 11), math.radians(rng.uniform(60, 180))
     inner, outer = size * rng.uniform(0.6, 0.92), size
@@ -374,32 +397,49 @@ FAMILIES = {  # (function, dimension, share)
     "arch": (arch, 2, 6), "layers-2d": (layers, 2, 3), "layers-3d": (layers, 3, 2)}
 
 
+def families():
+    import random_families
+    return FAMILIES | random_families.FAMILIES
+
+
 def draw_scene(seed, k, attempt=0):
-    """Scene k of a seed; further attempts are for networks that cannot be meshed."""
-    rng = random.Random(f"{seed}/{k}")
-    family, = rng.choices(list(FAMILIES), [share for *_, share in FAMILIES.values()])
+    """Scene k of a seed; further attempts are for networks that cannot be meshed, and for joints that are refused."""
+    rng, all_ = random.Random(f"{seed}/{k}"), families()
+    family, = rng.choices(list(all_), [share for *_, share in all_.values()])
     if attempt:
         rng = random.Random(f"{seed}/{k}/{attempt}")
-    function, dim, _ = FAMILIES[family]
+    function, dim, _ = all_[family]
     tree, kind = function(Draw(rng, dim))
     return Drawn(f"{family}-{k:04}", kind, f"Scene {k} of seed {seed}, written by perf/contact", tree, tree.get("Mesh file"))
 
 
 def write(seed, k, folder, binary):
-    """Writes scene k into the folder, a network with its mesh; returns what was drawn, or words on why there is no mesh."""
+    """Writes scene k into the folder, a network with its mesh; returns what was drawn, or words on why there is no such scene."""
     for attempt in range(ATTEMPTS):
         drawn = draw_scene(seed, k, attempt)
-        scene = folder / f"{drawn.name}.xml"
-        if not drawn.network:
-            save(drawn.tree, scene, drawn.comment)
+        refusal = write_one(drawn, folder, binary)
+        if not refusal:
             return drawn, ""
+    return drawn, f"no scene in {ATTEMPTS} attempts: {refusal}"
+
+
+def write_one(drawn, folder, binary):
+    """Words on why there is no mesh, or why the joints are refused."""
+    scene = folder / f"{drawn.name}.xml"
+    if drawn.network:
         mesh, network_scene = scene.with_suffix(".msh"), scene.with_suffix(".network.xml")
         save(drawn.tree, network_scene, drawn.comment)
         command = [sys.executable, "-B", ROOT / "apps/mesh", network_scene, "-o", mesh, "--program", binary, "--quiet"]
         done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        if done.returncode == 0:
-            file = {"path": mesh.name, "order": drawn.network.get("order", 1),
-                    "fractures": {name: {} for name in drawn.network["network"]["fractures"]}}
-            save(drawn.tree | {"Mesh file": file}, scene, drawn.comment)
-            return drawn, ""
-    return drawn, f"no mesh in {ATTEMPTS} attempts: {done.stderr.strip()}"
+        if done.returncode != 0:
+            return done.stderr.strip()
+        names = drawn.network["network"]["fractures"]
+        file = {"path": mesh.name, "order": drawn.network.get("order", 1), "fractures": {name: {} for name in names}}
+        save(drawn.tree | {"Mesh file": file}, scene, drawn.comment)
+    else:
+        save(drawn.tree, scene, drawn.comment)
+    if any(key in law for law in drawn.tree["Materials"].values() for key in ("friction", "dilation", "damage")):
+        checked = subprocess.run([binary, "check", scene], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        if checked.returncode == 1 and WORK in checked.stderr:
+            return checked.stderr.strip()
+    return ""

@@ -246,7 +246,8 @@ def largest(directory, results, input_):
         before = steps[k - 1] if k else None
         if number == 0:
             before = Faces.at_rest(step)
-        known = number == last + 1 and results["steps"][number]["substeps"] == 1
+        excavated = before is not None and len(before.state) != len(step.state)
+        known = number == last + 1 and results["steps"][number]["substeps"] == 1 and not excavated
         path = [*path, _segment(step, before, laws, path)] if known and path is not None else None
         worst = np.maximum(worst, violation(step, before if known else None, scales, laws, path))
         skipped, last = skipped + (not known), number
