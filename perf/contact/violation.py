@@ -177,7 +177,7 @@ def faces(time, file, laws, extent, group="fracture"):
 
 @dataclass
 class Scales:
-    length: float    # largest displacement of a node in the run
+    length: float    # largest displacement of a node or jump of a face in the run
     traction: float  # largest traction or fluid pressure on a face in the run, at least 1e-9 E u/L
     extent: float
 
@@ -194,6 +194,7 @@ def history(directory, input_, laws=None):
         length = max(length, np.linalg.norm(displacement, axis=1).max())
     of = (input_.laws, extent) if laws is None else (laws, extent, "single fracture")
     steps = [faces(time, file, *of) for time, file in read.written_steps(directory, "fractures")]
+    length = max(length, max(np.linalg.norm(step.jump, axis=1).max() for step in steps))
     traction = max(max(np.linalg.norm(step.traction, axis=1).max(), np.abs(step.pressure).max()) for step in steps)
     return steps, Scales(max(length, TINY), max(traction, 1e-9 * input_.modulus * length / extent, TINY), extent)
 

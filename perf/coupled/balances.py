@@ -22,7 +22,7 @@ from joint_laws import JointLaw  # of perf/contact
 from violation import FIRST_KINDS, HISTORIES
 from written import number, numbers
 
-NEIGHBOURS = 10  # the flow against oscillations out of a cell, by what the change of its pressure would make it store
+NEIGHBOURS = 40  # the flow against oscillations out of a cell, by what the change of its pressure would make it store
 ROUNDING = 1e-9  # of what is stored per step: 1e-6 of that is more than what the digits of the files leave
 LONGER = 2.4  # a step so many times as long as that before is one of implicit Euler
 
@@ -280,6 +280,9 @@ class Balances:
         if not self.uniform_biot and self.k.alpha:
             self.notes.append("Biot's coefficient is not uniform: no balance of fluid")
             return all_
+        if self.k.alpha and any(self.run.faces.beyond_nodes(state.bulk.point_data.get("tip displacement")) for state in self.run.states):
+            self.notes.append("a crack tip is beside the boundary: no balance of fluid")
+            return all_
         for number, factor, state, now, old, older in self.steps_with_states():
             step = self.steps[number]
             cells, faces, rock = self.fluid_rates(factor, now, old, older)
@@ -376,8 +379,13 @@ class Balances:
         p = [self.k.p_start, *(state.bulk.cell_data["pressure"] for state in self.run.states[:number + 1])]
         rise, (E, nu) = p[-1] - p[-2], (self._of_cells(name) for name in ("Young's modulus", "Poisson's ratio"))
         softness = k.alpha**2 * k.volume * (1 + nu) * (1 - 2 * nu) / (E * (1 - nu))
-        flows = NEIGHBOURS * (softness * abs(rise - rise.mean())).sum() * factor[0] + abs(bubbles).sum()
-        return float(self.c * np.ptp(now.T) * flows)
+        t = [state.time for state in self.run.states[:number + 1]][-2:]
+        given = [abs(self.run.value(c["pressure"], t[-1]) - (self.run.value(c["pressure"], t[-2]) if number else p[0].mean()))
+                 for c in self.run.entries.get("Boundary conditions", {}).values() if c.get("pressure")]
+        steepest = max(abs(rise).max(), *given, 0.0)  # of pressures in cells and on boundaries
+        flows = NEIGHBOURS * softness.sum() * steepest * factor[0] + abs(bubbles).sum()
+        temperatures = np.concatenate([now.T, now.T_faces, [self.T_i]])
+        return float(self.c * np.ptp(temperatures) * flows)
 
 
 def water_density(T):

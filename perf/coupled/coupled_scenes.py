@@ -71,7 +71,7 @@ class Draw(random_scenes.Draw):
         if not self.chance(p):
             return value
         first = value if start is None else start
-        return self.over_time(name, [first] + [first + (value - first) * self.rng.uniform(-0.3, 1) for _ in self.ends])
+        return self.over_time(name, [first] + [first + (value - first) * self.rng.uniform(0, 1) for _ in self.ends])
 
 
 # Rock and joints
@@ -167,7 +167,7 @@ def heat(draw):
 
 
 def other_temperature(draw):
-    return draw.temperature + draw.rng.choice((-20, -60, 30, -5)) * draw.rng.uniform(0.3, 1)
+    return max(280.0, draw.temperature + draw.rng.choice((-20, -60, 30, -5)) * draw.rng.uniform(0.3, 1))
 
 
 def of_fluid(draw, side):
@@ -292,6 +292,13 @@ def normal_component(stress, dim, i, j):
 
 # The whole
 
+def tip_beside_boundary(ends, high, cells):
+    """Whether a fracture that ends inside of the box has an end in a cell at the boundary."""
+    spans = [[round(v / h * n) for v in pair] for *pair, h, n in zip(*ends, high, cells)]
+    inside = any(a != b and (a > 0 or b < n) for (a, b), n in zip(spans, cells))
+    return inside and any(a <= 1 or b >= n - 1 for (a, b), n in zip(spans, cells))
+
+
 def scene(draw):
     rng, dim = draw.rng, draw.dim
     order = 2 if draw.deforms and draw.chance(0.15) else 1
@@ -307,7 +314,8 @@ def scene(draw):
     draw.fractured = bool(fractures)
     draw.bdf = draw.chance(0.4)
     draw.set_times()
-    more = {"order": order} | ({"tips": "plain"} if draw.chance(0.3) else {})
+    beside = any(tip_beside_boundary(ends, high, cells) for ends in fractures.values())  # the balance of fluid is not known there
+    more = {"order": order} | ({"tips": "plain"} if draw.chance(0.75 if beside else 0.3) else {})
     stress = initial_stress(draw) if draw.deforms and draw.chance(0.75) else None
     if not draw.deforms:
         more |= turned(draw)

@@ -97,6 +97,14 @@ class Faces:
         self.fracture = np.array([of_fracture.get(key, -1) for key in rounded(centres, extent)])  # its face; -1: none
         self.outer = (count[inverse.reshape(-1)] == 1) & (self.fracture < 0)
 
+        regular = x.mean(axis=1) if self.nodes.shape[1] == n_corners else None
+        middle = regular if regular is not None else bulk.points[self.nodes[:, n_corners:]].mean(axis=1)
+        self.bent = self.outer & (np.linalg.norm(middle - centres, axis=1) > 1e-9 * extent)  # nodes at quarters of edges
+
+    def beyond_nodes(self, tips):
+        """Whether the outer boundary moves beyond its nodes, at crack tips; `tips`: the points' coefficients there, or None."""
+        return bool(self.bent.any()) or tips is not None and bool(np.abs(tips[self.nodes[self.outer]]).any())
+
     def swept(self, displacement):
         """[face] The volume between a face and where it was, m^3, to first order."""
         return (np.einsum("k,fki->fi", self.weights, displacement[self.nodes]) * self.area).sum(axis=1)

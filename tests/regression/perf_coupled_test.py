@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Random scenes of perf/coupled: perf_coupled_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+
+The same scenes for the same seed; balances that are known to be exact; files that are wrong are seen to be."""
+import subprocess
+import sys
+
+import program
+from program import ROOT, ProgramTest, main
+
+if ROOT:
+    sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact", "perf/coupled")]
+try:
+    import numpy as np
+    import balances
+    import checks
+    import coupled_scenes
+    import differences
+    import program_run
+    from scene_file import save
+    from written import Written
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+JOINT = {"type": "joint", "friction coefficient": 0.6, "initial aperture": 1e-3, "residual aperture": 1e-5, "normal stiffness": 1e10,
+         "maximum closure": 5e-4, "dilation angle": 3.0}
+ROCK = {"type": "elastic", "Young's modulus": 2e10, "Poisson's ratio": 0.2, "permeability": [1e-16], "porosity": 0.1,
+        "compressibility of pores": 1e-11, "Biot coefficient": 0.0, "thermal conductivity": [2.0], "volumetric heat capacity": 2e6,
+        "thermal expansion": 1e-5}
+
+
+def doublet(cell, **entries):
+    """Cold water into a fracture, warm water out of a side that is open, in rock that deforms under a stress."""
+    sides = {name: {"boundary": name, "displacement": [0.0, 0.0]} for name in ("west", "east", "south", "north")}
+    sides["east"] |= {"pressure": 5e6, "temperature": 350.0}
+    lines = {"f": {"lower corner": [20.0, 50.0], "upper corner": [80.0, 50.0]}, "g": {"lower corner": [50.0, 30.0], "upper corner": [50.0, 70.0]}}
+    tree = {"Mesh": {"cell": cell, "lower corner": [0.0, 0.0], "upper corner": [100.0, 100.0], "cells": [10, 10], "tips": "plain", "fractures": lines},
+            "Materials": {"rock": dict(ROCK), "joint": dict(JOINT)}, "Bulk": {"material": "rock", "initial stress": [-2e7, -2.5e7, -2e7, 2e6]},
+            "Fractures": {name: {"material": "joint"} for name in lines}, "Boundary conditions": sides,
+            "Flow": {"initial pressure": 5e6, "compressibility": 4.5e-10, "Wells": {"w": {"points": [30.0, 50.0], "radius": 0.1, "rate": 1e-5}}},
+            "Heat": {"initial temperature": 350.0, "fluid heat capacity": 4.2e6, "fluid thermal expansion": 5e-4,
+                     "Wells": {"w": {"temperature": 320.0}}},
+            "Time": {"schedule": [1e5, 2e5, 5e5]}}
+    for path, value in entries.items():
+        *sections, name = path.split(".")
+        section = tree
+        for key in sections:
+            section = section.setdefault(key, {})
+        section[name] = value
+    return tree
+
+
+class Coupled(ProgramTest):
+    def ran(self, tree, name="scene", status=0):
+        path = self.folder / f"{name}.xml"
+        save(tree, path, "test")
+        ended = program_run.run(program.PROGRAM, path, self.folder / name)
+        self.assertEqual(ended.status, status, ended.words)
+        return Written(self.folder / name, ended.results)
+
+    def test_a_scene_depends_on_seed_and_number_alone(self):
+        drawn = [coupled_scenes.draw_scene(3, k) for k in range(60)]
+        self.assertEqual(drawn[59], coupled_scenes.draw_scene(3, 59))
+        self.assertNotEqual(drawn[5].tree, coupled_scenes.draw_scene(4, 5).tree)
+        self.assertEqual({one.loads for one in drawn}, set(coupled_scenes.PHYSICS))
+
+    def test_balances_are_exact(self):
+        """Of fluid and energy, in steps of both schemes; with a Biot coefficient of fluid alone."""
+        for cell, scheme, biot, kind in (("triangle", "implicit Euler", 0.0, "constant"), ("quadrilateral", "BDF2", 0.0, "water"),
+                                         ("quadrilateral", "implicit Euler", 0.8, "constant")):
+            more = {"Heat.fluid": kind} | ({"Heat.fluid thermal expansion": 0.0, "Heat.reference temperature": 350.0} if kind == "water" else {})
+            run = self.ran(doublet(cell, **{"Time.scheme": scheme, "Materials.rock.Biot coefficient": biot}, **more))
+            lines, (fluid, energy) = checks.balances(run)
+            self.assertEqual((lines, balances.Balances(run).notes), ([], []))
+            self.assertLess(fluid, 1e-9, (cell, scheme))
+            self.assertLess(energy, 1e-7)
+            self.assertEqual([step.unknown > 0 for step in balances.Balances(run).of_energy()], [biot > 0] * 3)
+
+    def test_what_is_wrong_is_seen(self):
+        run = self.ran(doublet("quadrilateral"))
+        log = (self.folder / "scene/log.txt").read_text()
+        self.assertEqual(checks.temperatures(run, log)[0] + checks.apertures(run) + checks.finite(run) + checks.contact(run)[0], [])
+        last = run.states[-1]
+        for change, check, words in (
+                (lambda: run.results["steps"][2]["wells"]["w"].update(rate=1.00001e-5), checks.balances, "balance of fluid: .* at t = 500000"),
+                (lambda: run.results["steps"][2]["wells"]["w"].update(heat=run.results["steps"][2]["wells"]["w"]["heat"] * 1.00001),
+                 checks.balances, "balance of energy: .* at t = 500000"),
+                (lambda: add(last.fractures, "fracture temperature", 20.0), lambda r: checks.temperatures(r, log), "beyond the given temperatures"),
+                (lambda: add(last.fractures, "aperture", -1.0), lambda r: (checks.apertures(r),), '"aperture" is -'),
+                (lambda: add(last.bulk, "stress", np.nan), lambda r: (checks.finite(r),), '"stress" at t = 500000')):
+            run = self.again(run)
+            last = run.states[-1]
+            change()
+            self.assertRegex("\n".join(check(run)[0]), words)
+        run = self.again(run)
+        add(run.states[-1].fractures, "fracture temperature", 20.0)
+        self.assertEqual(checks.temperatures(run, "warning: temperatures are beyond the given ones by 20 K")[0], [])
+
+    def again(self, run):
+        """The run as it was written."""
+        return Written(run.directory, program_run.json.loads((run.directory / "results.json").read_text()))
+
+    def test_differences(self):
+        """Renamed fractures and other ranks are the same; a change of 1e-7 is none of rounding."""
+        one = self.ran(doublet("triangle"))
+        tree = doublet("triangle")
+        for path in ("Mesh.fractures", "Fractures"):
+            section = tree["Mesh"]["fractures"] if path == "Mesh.fractures" else tree["Fractures"]
+            section["a"], section["b"] = section.pop("g"), section.pop("f")
+        other = self.ran(tree, "renamed")
+        back = {"a": "g", "b": "f"}
+        size, what = differences.largest(one, other, lambda name: back.get(name, name))
+        self.assertLess(size, 1e-8, what)
+        same = self.again(one)
+        self.assertEqual(differences.largest(one, same)[0], 0)
+        add(same.states[1].bulk, "pressure", 1e-7 * np.abs(same.states[1].bulk.cell_data["pressure"] - 5e6).max())
+        size, what = differences.largest(one, same)
+        self.assertGreater(size, 1e-8)
+        self.assertIn('"pressure" at t = 200000', what)
+
+    def test_sizes_and_boundaries_of_cells(self):
+        """Every kind of cell: the volume of the box, and that which a stretch of it sweeps."""
+        for cell, dim in (("triangle", 2), ("quadrilateral", 2), ("tetrahedron", 3), ("hexahedron", 3)):
+            for order in (1, 2):
+                mesh = {"cell": cell, "lower corner": [0.0] * dim, "upper corner": [2.0, 1.0, 3.0][:dim], "cells": [2, 3, 2][:dim], "order": order}
+                sides = {side: {"boundary": side, "displacement": [f"1e-3*{'xyz'[i]}" for i in range(dim)]}
+                         for side in ("west", "east", "south", "north", "bottom", "top")[:2 * dim]}
+                run = self.ran({"Mesh": mesh, "Materials": {"rock": {"type": "elastic", "Young's modulus": 1.0, "Poisson's ratio": 0.2}},
+                                "Bulk": {"material": "rock"}, "Boundary conditions": sides}, "box")
+                volume = 2.0 if dim == 2 else 6.0
+                self.assertAlmostEqual(run.states[0].bulk.sizes.sum(), volume)
+                swept = run.faces.swept(run.states[0].bulk.point_data["displacement"])
+                self.assertAlmostEqual(swept[run.faces.outer].sum() / volume, 1e-3 * dim)
+                self.assertAlmostEqual(swept.sum() / volume, 1e-3 * dim)
+
+    def test_scenes_that_fail_are_kept(self):
+        broken = self.folder / "broken"
+        broken.write_text("#!/bin/sh\necho no good; exit 5\n")
+        broken.chmod(0o755)
+        name = coupled_scenes.draw_scene(7, 3).name
+        command = [sys.executable, "-B", ROOT / "perf/coupled/coupled.py", "--random", "12", "--seed", "7", "--only", name,
+                   "--binary", broken, "--output", self.folder / "out"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertEqual(done.stdout.splitlines()[-1], "failures=1 hangs=0 violations=0 rank_differences=0 newton_median=nan newton_p90=nan")
+        self.assertIn(f'again: ./sprekk perf coupled --random 12 --seed 7 --only "{name}"', done.stdout)
+        kept, = (self.folder / "out/failures").iterdir()
+        self.assertIn("status 5: no good", kept.read_text().splitlines()[0])
+
+
+def add(grid, name, value):
+    grid.cell_data[name] = grid.cell_data[name] + value
+
+
+if __name__ == "__main__":
+    main()
