@@ -21,6 +21,7 @@
 #include "laws/friction/composed.hpp"
 #include "laws/friction/coulomb.hpp"
 #include "laws/friction/mobilised_barton_choubey.hpp"
+#include "laws/friction/no_slip.hpp"
 #include "laws/friction/slip_weakening.hpp"
 #include "laws/shear/linear.hpp"
 #include "laws/shear/power.hpp"
@@ -42,7 +43,8 @@ using FrictionKinds = Kinds<
     BartonChoubeyFriction,
     MobilisedBartonChoubeyFriction,
     ComposedFriction,
-    SlipWeakeningFriction>;
+    SlipWeakeningFriction,
+    NoSlip>;
 
 /// How slip opens the joint: T opening(Contact<T>), m.
 using DilationKinds = Kinds<

@@ -158,6 +158,14 @@ std::string give_one_of(const std::vector<std::string>& names) {
   return text;
 }
 
+/// `, or friction "no slip"`: the kinds of a role that need no entry.
+std::string or_without_entries(const Role& role) {
+  std::string text;
+  for (const auto& one : role.kinds)
+    if (one.entries.empty()) text += fmt::format(", or {} \"{}\"", role.name, one.name);
+  return text;
+}
+
 /// `friction "Barton-Choubey", required`, `dilation "mobilised"` and so on: whose entry it is, but for roles all of
 /// whose kinds have it.
 std::string owners_of(const std::string& entry, bool tell_required) {
@@ -352,7 +360,7 @@ std::vector<std::array<std::string, 2>> JointMaterial::missing(const std::string
     for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
       if (!needed || (!only.empty() && role.name != only) || !given.empty()) return;
       if (names.size() > 1)
-        all.push_back({"", give_one_of(names)});
+        all.push_back({"", give_one_of(names) + or_without_entries(role)});
       else
         all.push_back({names[0], fmt::format("missing; it is required with {} \"{}\"", role.name, this->*role.chosen)});
     });
@@ -415,7 +423,7 @@ laws::HydraulicAperture JointMaterial::walls(const Point& x) const {
 std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Real largest) const {
   const auto& role =
       *std::find_if(roles().begin(), roles().end(), [](const auto& one) { return one.name == "friction"; });
-  bool known = true;
+  bool known = friction != laws::NoSlip::name;
   for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
     for (const auto& name : given) known = known && entry(name)->is_constant();
     known = known && !(needed && given.empty());

@@ -225,8 +225,7 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
   std::vector<Doubt> all;
   if (const Real mu = number(joint, "friction coefficient"); mu > 1.5)
     all.push_back({"friction coefficient", fmt::format("is {:.4g}", mu), "rock has 0.2 to 1.2",
-                   "for faces that must not slip make the joint stiff, or leave the fracture out; an angle is a "
-                   "\"friction angle\""});
+                   "for faces that must not slip give friction \"no slip\"; an angle is a \"friction angle\""});
   for (const char* entry : {"friction angle", "residual friction angle", "basic friction angle", "dilation angle"})
     if (const Real angle = number(joint, entry); angle > 0 && angle < 0.02 * (entry[0] == 'd' ? 1 : 50))
       all.push_back({entry, fmt::format("is {:.4g} degrees", angle),

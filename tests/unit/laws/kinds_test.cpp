@@ -272,6 +272,25 @@ TEST(JointLaw, LawsKeepNumbersOfAFace) {
   }
 }
 
+/// Faces that touch follow their elastic law however large the shear traction is; open ones bear none.
+TEST(JointLaw, NoSlipIsElasticAlone) {
+  constexpr Real K = 2;
+  const JointLaw<LinearShear, NoSlip> law{{1 / K}, {}};
+  const Real zero[1] = {}, old[1] = {};
+  for (const Real shear : {-300.0, -1e-3, 0.7, 1e4}) {
+    const Real w[] = {0, shear / K}, lambda[] = {-0.3, shear};
+    Real R[2];
+    EXPECT_EQ(contact_residual<2>(law, {1, 1e-6}, w, lambda, old, R, {zero, 0}), ContactState::stick);
+    EXPECT_NEAR(R[0], 0, 1e-12);
+    EXPECT_NEAR(R[1], 0, 1e-12 * std::abs(shear));
+  }
+  const Real w[] = {0.1, 5}, none[] = {0, 0};
+  Real R[2];
+  EXPECT_EQ(contact_residual<2>(law, {1, 1e-6}, w, none, old, R, {zero, 0}), ContactState::open);
+  EXPECT_NEAR(R[0], 0, 1e-12);
+  EXPECT_NEAR(R[1], 0, 1e-12);
+}
+
 /// Where slip weakens the joint, a bound that goes on to negative slip rises there. Neither it nor the bound of slip
 /// that a face would undo by sticking makes a state.
 TEST(JointLaw, NoStateSlidesBackwardsOrSticksForItsSlip) {

@@ -1,0 +1,23 @@
+// Faces that do not slip while they touch.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/kinds.hpp"
+
+namespace sprekk::laws {
+
+/// A bound on |lambda_t| that no shear traction reaches, Pa: b = -1e6 lambda_n. 0 where faces do not touch.
+struct NoSlip {
+  static constexpr Real coefficient = 1e6;
+
+  static constexpr const char *name = "no slip",
+                              *meaning = "faces that touch never slip: a joint that is elastic alone, without a number";
+  static std::vector<Parameter<NoSlip>> parameters() { return {}; }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    return -coefficient * at.lambda_n;
+  }
+};
+
+}  // namespace sprekk::laws
