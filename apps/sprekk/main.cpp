@@ -105,7 +105,7 @@ std::string message(const CLI::ParseError& error, const Arguments& arguments) {
 
 /// Runs the scene until a signal asks to stop; the exit status.
 int run_scene(const Arguments& arguments, RCP<const Comm> comm) {
-  handle_stop_signals(comm->getRank() == 0 ? ask_to_stop_aloud : ask_to_stop);
+  if (!stop_asked) handle_stop_signals(comm->getRank() == 0 ? ask_to_stop_aloud : ask_to_stop);
   auto options = arguments.options;
   options.prints_log = !arguments.quiet;
   options.should_stop = [] { return stop_asked != 0; };
@@ -211,7 +211,8 @@ int main(int argc, char** argv) {
   base::keep_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files becomes an error of writing
   std::signal(SIGPIPE, SIG_IGN);  // a run goes on, with log.txt, when the reader of its log ends
-  int n_libraries_may_read = 1;   // Kokkos would answer --help, too
+  if (argc > 1 && std::string(argv[1]) == "run") handle_stop_signals(ask_to_stop);  // while MPI starts, too
+  int n_libraries_may_read = 1;                                                     // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
   const int status = run_command(argc, argv, Tpetra::getDefaultComm());
   handle_stop_signals(SIG_DFL);  // mpirun ends the ranks that are still there when one has ended with an error

@@ -55,6 +55,7 @@ class IterativeSolver : public LinearSolver {
       : options_(options.preconditioner),
         blocks_(blocks),
         reproducible_(options.reproducible.value_or(false)),
+        should_stop_(options.should_stop),
         parameters_("iterative") {
     check_krylov(options.belos);
     preconditioner_ = make_preconditioner(options_, blocks_);
@@ -282,8 +283,13 @@ class IterativeSolver : public LinearSolver {
     const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
     if (!scale_.is_null()) M = rcp(new ScaledOperator(inverse_, unscale_));
+    std::function<void()> watch;
+    if (should_stop_)
+      watch = [this, n = 0]() mutable {
+        if (n++ % products_between_stops == 0 && base::any_rank(*comm_, should_stop_)) throw Stopped();
+      };
     const auto solve_once = [&] {
-      return solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most);
+      return solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most, watch);
     };
     auto end = solve_once();
     if (end.indefinite) x.putScalar(0);
@@ -298,6 +304,8 @@ class IterativeSolver : public LinearSolver {
   PreconditionerOptions options_;
   std::vector<Block> blocks_;
   bool reproducible_;
+  std::function<bool()> should_stop_;
+  static constexpr int products_between_stops = 4;
   ParameterList parameters_;
   std::unique_ptr<LinearSolver> coarse_;  // instead of all that follows; or null
   std::unique_ptr<Preconditioner> preconditioner_;

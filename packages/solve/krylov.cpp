@@ -41,11 +41,34 @@ void check_krylov(const ParameterList& given) {
   check_names(ParameterList(given).setName("Belos"), lists);
 }
 
+namespace {
+
+/// A that calls a function before each product.
+class Watched : public Operator {
+ public:
+  Watched(const RCP<const Operator>& A, const std::function<void()>& before) : A_(A), before_(before) {}
+  RCP<const fields::Map> getDomainMap() const override { return A_->getDomainMap(); }
+  RCP<const fields::Map> getRangeMap() const override { return A_->getRangeMap(); }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, Real alpha, Real beta) const override {
+    before_();
+    A_->apply(x, y, mode, alpha, beta);
+  }
+
+ private:
+  RCP<const Operator> A_;
+  std::function<void()> before_;
+};
+
+}  // namespace
+
 KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, const ParameterList& parameters,
-                 const std::string& usual, const Vector& b, Vector& x, Real tolerance, int most) {
+                 const std::string& usual, const Vector& b, Vector& x, Real tolerance, int most,
+                 const std::function<void()>& before_product) {
   using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
+  RCP<const Operator> watched = A;
+  if (before_product) watched = rcp(new Watched(A, before_product));
   const auto problem =
-      rcp(new Problem(A, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
+      rcp(new Problem(watched, Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b)));
   problem->setRightPrec(M);
   problem->setProblem();
   const auto list = rcp(new ParameterList(parameters));

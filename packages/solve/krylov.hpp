@@ -1,6 +1,7 @@
 // Krylov methods of Belos.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "fields/types.hpp"
@@ -20,10 +21,11 @@ struct KrylovEnd {
 };
 
 /// Solves A x = b from x on, M about A^-1 from the right, by the "Solver Type" of the parameters, or by `usual`, to the
-/// relative residual `tolerance` unless they have one, with at most `most` iterations, or theirs where it is 0. Throws
-/// what Belos throws. Collective.
+/// relative residual `tolerance` unless they have one, with at most `most` iterations, or theirs where it is 0.
+/// `before_product`, if there is one, is called before each product with A and may throw. Throws what Belos throws.
+/// Collective.
 KrylovEnd krylov(const RCP<const fields::Operator>& A, const RCP<const fields::Operator>& M,
                  const Teuchos::ParameterList& parameters, const std::string& usual, const fields::Vector& b,
-                 fields::Vector& x, Real tolerance, int most = 0);
+                 fields::Vector& x, Real tolerance, int most = 0, const std::function<void()>& before_product = {});
 
 }  // namespace sprekk::solve

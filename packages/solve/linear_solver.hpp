@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -28,9 +29,14 @@ struct LinearSolverOptions {
   std::optional<bool> reproducible;    ///< ranks do not share the factors of a matrix; absent: they may
   Teuchos::ParameterList mumps, belos;
   PreconditionerOptions preconditioner;
+  /// No entry. If it is not empty: asked on every rank every few iterations; true on any ends the solve by Stopped.
+  std::function<bool()> should_stop;
 
   void describe(base::Section& section);
 };
+
+/// Thrown out of a solve that is to stop, on every rank at once. No std::exception, so that no library reports it.
+struct Stopped {};
 
 /// How a solve went. Converged means that the true relative residual is at most acceptable_linear_residual, or ten
 /// times the tolerance if that is more: what is then missing of the tolerance is for the next Newton iteration.

@@ -175,10 +175,29 @@ void NewtonOptions::describe(base::Section& section) {
   check_methods(section, nox);
 }
 
+namespace {
+
+/// Linear solves stop with Newton's method, and only within it.
+LinearSolverOptions stopping(LinearSolverOptions options, const std::function<bool()>& should_stop,
+                             const bool& solving) {
+  if (should_stop) options.should_stop = [&solving, should_stop] { return solving && should_stop(); };
+  return options;
+}
+
+/// Sets a flag until it is destroyed.
+struct While {
+  explicit While(bool& flag) : flag(flag) { flag = true; }
+  ~While() { flag = false; }
+  bool& flag;
+};
+
+}  // namespace
+
 Newton::Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Timers> timers)
     : problem_(problem),
       options_(options),
-      linear_(std::make_unique<CondensedSolve>(problem, options.linear_solver, timers)),
+      linear_(std::make_unique<CondensedSolve>(problem, stopping(options.linear_solver, options.should_stop, solving_),
+                                               timers)),
       model_(std::make_unique<ThyraModel>(problem, *linear_)) {}
 
 Newton::~Newton() = default;
@@ -195,13 +214,20 @@ NewtonReport Newton::solve(BlockVector& x) {
   const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, search, report));
   const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
   RCP<NOX::Solver::Generic> solver;
-  report.converged = solve_by(solver, group, test, parameters) == NOX::StatusTest::Converged;
+  try {
+    const While solving(solving_);
+    report.converged = solve_by(solver, group, test, parameters) == NOX::StatusTest::Converged;
+  } catch (const Stopped&) {
+    report.stopped = true;
+    report.reason = "interrupted";
+  }
   picard.reset();
-  if (!report.stopped) refuse_unread(options_.nox, *parameters, "Sprekk > Solver > NOX");
-  fields::copy(solution_of(solver->getSolutionGroup()), x);
   report.linear_solves = model_->linear_history();
-  for (auto& linear : report.linear_solves) linear.used = report.converged;
   report.iterations = static_cast<int>(report.linear_solves.size());
+  if (report.stopped) return report;
+  refuse_unread(options_.nox, *parameters, "Sprekk > Solver > NOX");
+  fields::copy(solution_of(solver->getSolutionGroup()), x);
+  for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {
     const bool damped = base::on_any_rank(*problem_.comm(), search.damped);
     factors_ = damped ? Factors::damped : Factors::good;

@@ -64,6 +64,7 @@ class Newton {
  private:
   BlockProblem& problem_;
   NewtonOptions options_;
+  bool solving_ = false;  // where a linear solve may be stopped
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ThyraModel> model_;
   /// What answer() finds: the last Jacobian, an older one than the matrix holds, one with damping.

@@ -83,6 +83,21 @@ class Launcher(ProgramTest):
                 run.communicate()
                 shutil.rmtree(self.folder / "out")
 
+    def test_interrupted_while_the_mesh_is_made(self):
+        mesher = self.folder / "apps/mesh/__main__.py"
+        mesher.parent.mkdir(parents=True)
+        mesher.write_text("import time\ntime.sleep(60)\n")
+        run = subprocess.Popen(["./sprekk", "run", str(ROOT / "xml/networks/random_2d_100.xml"), "--output", "out"],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **self.surroundings)
+        while not (self.folder / "out/.lock").exists():
+            self.assertIsNone(run.poll())
+            time.sleep(0.01)
+        time.sleep(0.3)
+        run.send_signal(signal.SIGTERM)
+        _, words = run.communicate(timeout=program.TIME_LIMIT)
+        self.assertEqual(run.returncode, 4, words)
+        self.assertIn("stopped before the first step", words)
+
     def test_words_that_are_refused(self):
         for words in ([], ["walk"], ["run"], ["run", PUSH, PUSH], ["run", PUSH, "--ranks"], ["run", PUSH, "--ranks", "0"],
                       ["run", PUSH, "--ranks", "two"], ["run", PUSH, "--rank", "2"], ["check", PUSH, "--ranks", "2"],

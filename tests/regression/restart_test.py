@@ -231,6 +231,42 @@ class Restart(ProgramTest):
                     self.assertIn("interrupted in the first step; there is nothing to go on from", words)
                     self.assertEqual(self.results()["steps"], [])
 
+    def test_interrupted_in_a_linear_solve(self):
+        """One that would take for ever: nothing is close enough."""
+        solver = [f"Solver.Linear solver.{entry}" for entry in (
+            "type=iterative", "forcing=false", "Belos.Solver Type=Pseudo Block CG", "Belos.Convergence Tolerance=1e-300",
+            "Belos.Maximum Iterations=1000000000")]
+        slow = ["Solver.Blocks.displacement.type=Ifpack2", "Solver.Blocks.displacement.Ifpack2.type=RELAXATION"]
+        scene = [CYCLIC, "Mesh.cells={120, 120}", *solver, *slow, EVERY_STEP, QUIET]
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                run = self.start(*scene, ranks=ranks)
+                time.sleep(0.5)
+                run.send_signal(signal.SIGTERM if ranks == 1 else signal.SIGUSR1)
+                words = run.stderr.read()
+                self.assertEqual(run.wait(timeout=20), 4, words)
+                self.assertIn("interrupted in the first step; there is nothing to go on from", words)
+                self.assertEqual(self.results()["status"], "interrupted")
+                shutil.rmtree(self.folder / "out")
+
+    def test_interrupted_before_the_first_step(self):
+        """At any time from the first line of the program on: while MPI starts, the scene is read, the mesh is made."""
+        for delay in (0, 0.02, 0.05, 0.1, 0.2, 0.3):
+            with self.subTest(delay=delay):
+                run = subprocess.Popen(self.command(CYCLIC, "Mesh.cells={100, 100}", QUIET), cwd=self.folder,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+                self.addCleanup(run.kill)
+                while not self.catches(run.pid, signal.SIGTERM):
+                    self.assertIsNone(run.poll())
+                time.sleep(delay)
+                run.send_signal(signal.SIGTERM)
+                self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 4)
+
+    def catches(self, pid, number):
+        """Whether a process has a function for a signal."""
+        with open(f"/proc/{pid}/status") as status:
+            return any(line.startswith("SigCgt:") and int(line.split()[1], 16) >> (number - 1) & 1 for line in status)
+
     def test_two_runs_into_one_directory(self):
         """The second is refused, and the first does not notice."""
         scene = [CYCLIC, "Time.steps=100000", EVERY_STEP, QUIET]
