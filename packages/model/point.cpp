@@ -18,15 +18,25 @@ PointCurve drive(const PointPath& path, const Material& material, const Time& ti
   PointCurve curve;
   const auto times = time.times();
   std::string step;
+  std::string apart;  // why there has been no state, since faces fly apart; empty: there is one
   try {
     PointDriver<dim> driver(path, material);
     curve.initial = driver.initial(time.start);
     Real last = time.start;
-    for (std::size_t k = 0; k < times.size(); ++k) {
+    for (std::size_t k = 0; k < times.size(); last = times[k], ++k) {
       step = fmt::format("step {} of {}, ", k + 1, times.size());
-      for (auto& state : driver.advance(last, times[k])) curve.states.push_back(std::move(state));
-      last = times[k];
+      try {
+        auto states = driver.advance(last, times[k]);
+        if (!apart.empty()) states.front().remark = apart + "; the faces are apart until they are pressed again";
+        apart.clear();
+        for (auto& state : states) curve.states.push_back(std::move(state));
+      } catch (const Error& error) {
+        if (!driver.is_pulled(times[k])) throw;
+        if (apart.empty()) apart = step + error.what();
+        driver.part(times[k]);
+      }
     }
+    curve.failure = apart;
   } catch (const Error& error) {
     curve.failure = step + error.what();
   }

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::model {
 
@@ -62,6 +63,28 @@ class PointDriver {
     }
     states.push_back(step(t));
     return states;
+  }
+
+  /// Whether a tension is prescribed at t: where there is no state, the faces fly apart.
+  bool is_pulled(Real t) const { return control(0) == "traction" && point_.path[0]({0, 0, 0}, t) > 0; }
+  /// Goes to faces that are far apart and bear nothing, at the jumps along them that are prescribed at t.
+  void part(Real t) {
+    for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
+    auto at = at_rest();
+    at.open = true;
+    at.separation = std::numeric_limits<Real>::max();
+    for (int i = 1; i < dim; ++i) {
+      if (control(i) == "jump") at.plastic_jump[i - 1] = rest_[i] + d_[i];
+      if (control(i) == "column") at.plastic_jump[i - 1] = rest_[i] + d_[i] + base_[i] / stiffness_[i];
+    }
+    Real now[dim - 1];
+    std::copy_n(at.plastic_jump, dim - 1, now);
+    at.slip_of_step = distance(now, p_old_);
+    at.plastic_slip = laws::norm(now);
+    law_.commit(at, {kept_.data()});
+    std::copy_n(now, dim - 1, p_old_);
+    std::fill_n(x_, 2 * dim, 0);
+    std::copy_n(now, dim - 1, x_ + 1);
   }
 
   /// How often the law was evaluated so far with its derivatives, once for each iteration of Newton's method.
@@ -263,11 +286,13 @@ class PointDriver {
   }
 
   /// The constants of the projection by what is prescribed. A column is in series with the joint. A jump decides alone
-  /// whether the joint slides: c_t is so large that |c_t (p - p_old)| is far above any traction. A traction decides
-  /// alone whether it is pressed: c_n is so small that c_n times the distance of the faces is far below it.
+  /// whether the joint slides or parts: c_t is so large that |c_t (p - p_old)| is far above any traction, and c_n so
+  /// that c_n times the distance of the faces is far above the strength of a bond. A traction decides alone whether it
+  /// is pressed: c_n is so small that c_n times the distance of the faces is far below it.
   laws::Augmentation augmentation_of_controls(Real c) const {
     constexpr Real far = 1e3;
-    Real length = 1e-300, moved = 0, stress = 0;
+    const auto bond = law_.cohesion(at_rest());
+    Real length = 1e-300, moved = 0, stress = std::max(bond.shear, bond.strength);
     bool slides = true, column = true;
     for (int i = 0; i < dim; ++i) {
       length = std::max({length, std::abs(x_[i]), std::abs(d_[i]) * (control(i) == "traction" ? 0 : 1)});
@@ -278,8 +303,9 @@ class PointDriver {
       column = column && control(i) == "column";
     }
     Real c_t = column ? stiffness_[1] : c;
-    if (slides && moved > 0) c_t = std::max(c, far * stress / moved);
+    if (slides && moved > 0) c_t = far * std::max(c, stress / moved);
     Real c_n = control(0) == "column" ? stiffness_[0] : c;
+    if (control(0) == "jump") c_n = std::max(c, far * bond.strength / length);
     if (control(0) == "traction" && d_[0] < 0) c_n = std::min(c, -d_[0] / (far * length));
     return {laws::augmentation(law_, c_n).normal, laws::augmentation(law_, c_t).tangential};
   }

@@ -45,6 +45,53 @@ TEST(Bond, KeepsTheStatesBeforeItBreaks) {
     EXPECT_NE(curves[0].failure.find(word), std::string::npos) << curves[0].failure;
 }
 
+/// A tension above the strength, then compression: the faces fly apart, and the path goes on where they are pressed, at
+/// the jump along them that they had when the tension ended, with friction alone. tau = K_t (w - w(4)), w = 2e-6 t.
+TEST(Bond, GoesOnPastItsLoss) {
+  for (const std::string control : {"{traction, jump}", "{traction, jump, jump}"}) {
+    const bool flat = control == "{traction, jump}";
+    const auto curves = model::drive_points(
+        read("bond.xml", {"Point.control=" + control, "Time.end=8", "Time.steps=16",
+                          std::string("Point.path={12e6*sin(pi*t/4), 2e-6*t") + (flat ? "}" : ", 0}")}));
+    ASSERT_EQ(curves[0].failure, "");
+    const auto& states = curves[0].states;
+    ASSERT_EQ(states.size(), 10u);  // two before the loss at 10 MPa, and from 4.5 on
+    EXPECT_EQ(states[2].t, 4.5);
+    for (const char* word : {"step 3 of 16, t = 1.5", "exceeds the tensile strength", "apart until they are pressed"})
+      EXPECT_NE(states[2].remark.find(word), std::string::npos) << states[2].remark;
+    for (std::size_t k = 2; k + 1 < states.size(); ++k) {
+      const auto& s = states[k];
+      const Real N = -12e6 * std::sin(M_PI * s.t / 4), elastic = 1e12 * 2e-6 * (s.t - 4);
+      EXPECT_NEAR(s.traction[0], -N, 1e-6 * N) << s.t;
+      EXPECT_NEAR(s.strength, 0.5 * N, 1e-6 * N) << s.t;
+      if (elastic <= 0.5 * N) EXPECT_NEAR(s.traction[1], elastic, 1) << s.t;
+      EXPECT_LE(s.traction[1], 0.5 * N + 1) << s.t;
+    }
+  }
+}
+
+/// A rigid joint parts at its strength, and bears by its opening o T (1 - o/o_f), with o_f = 2 G/T.
+TEST(Bond, RigidJointSoftensByItsOpening) {
+  const std::vector<std::string> rigid = {"Materials.cemented joint.tangential stiffness=infinite",
+                                          "Materials.cemented joint.closure=Barton-Bandis",
+                                          "Materials.cemented joint.maximum closure=0", "Time.end=2", "Time.steps=20"};
+  for (const std::string path : {"{1e-5*t, 0}", "{1e-5*t, 1e-7*t}"}) {
+    auto overrides = rigid;
+    overrides.push_back("Point.path=" + path);
+    for (const auto& s : drive("bond.xml", overrides)) {
+      const Real slip = path == "{1e-5*t, 0}" ? 0 : 1e-7 * s.t, by_slip = slip / (2 * 200 / 20e6);
+      const Real left = 1 - 1e-5 * s.t / (2 * 50 / strength) - by_slip;
+      EXPECT_NEAR(s.traction[0], strength * std::max(left, Real(0)), 1e-9 * strength) << s.t;
+    }
+  }
+  auto column = rigid;  // parts, and is pressed again
+  column.insert(column.end(), {"Point.control={column, jump}", "Point.path={1e-4*sin(6*t), 1e-5*t}",
+                               "Point.column normal stiffness=1e11"});
+  const auto states = drive("bond.xml", column);
+  for (const auto& s : states)
+    if (std::sin(6 * s.t) < 0) EXPECT_NEAR(s.traction[0], 1e7 * std::sin(6 * s.t), 1) << s.t;
+}
+
 /// The area under the curve is the fracture energy, also with releases on the way.
 TEST(Bond, DissipatesTheFractureEnergy) {
   for (const std::string path : {"1.2e-5*t", "1.2e-5*min(1, 1.5*t) - 1.2e-5*max(0, min(t - 0.2, 0.4 - t))"}) {
