@@ -183,7 +183,7 @@ class TitledColumns(Columns):
             listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
             order = ["id", *needed] if self.kind in ("lines", "points") else SHAPE[self.kind]
             meant = next((f"; these are titles of {kind}, to be named by \"format\"" for kind, titles in SHAPE.items()
-                          if set(titles) <= set(self.titles)), "")
+                          if kind != "points" and set(titles) <= set(self.titles)), "")
             self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
                         f"all of them, and without titles are {','.join(order)}"
                         f"{',...' if self.kind == 'polygons' else ''}")
@@ -329,7 +329,8 @@ def has_points(path, dim):
     if not are_titles(words):
         return len(words) == 1 + dim
     titles = {re.sub("^(?:pt|point)_", "", parted_title(word)[0].lower()) for word in words}
-    return {"x", "y"} <= titles
+    others = {"dip", "strike", "radius", "r1"}  # of discs
+    return {"x", "y"} <= titles and not titles & others
 
 
 def kind_of(path):

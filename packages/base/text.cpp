@@ -113,9 +113,11 @@ std::string number_text(Real value) {
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 40;  // in a message; the name that is meant is given besides
   std::string text;
-  for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(name));
-  return text;
+  for (std::size_t k = 0; k < std::min(most, names.size()); ++k)
+    text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(names[k]));
+  return names.size() <= most ? text : fmt::format("{} and {} more", text, names.size() - most);
 }
 
 std::string shortened(const std::string& text) {

@@ -76,7 +76,8 @@ mesh::GlobalMesh Scene::read_mesh() const {
   for (const auto& [name, fracture] : mesh_file->fractures) {
     auto& orientation = options.fractures[name];
     orientation.swap_sides = fracture.swap_sides;
-    if (!fracture.reference_normal) continue;
+    const auto n = fracture.reference_normal ? fracture.reference_normal->size() : 0;
+    if (n != 2 && n != 3) continue;  // of another length it is refused below
     orientation.reference.emplace();
     std::copy_n(fracture.reference_normal->begin(), std::min<std::size_t>(3, fracture.reference_normal->size()),
                 orientation.reference->begin());
@@ -92,6 +93,14 @@ mesh::GlobalMesh Scene::read_mesh() const {
                "Sprekk > Mesh file > \"path\": {} has cells of order 2, must have order 1 with \"Accuracy\"; \"order\" "
                "raises it",
                mesh_file->path);
+  for (const auto& [name, fracture] : mesh_file->fractures) {
+    const auto n = fracture.reference_normal ? fracture.reference_normal->size() : 0;
+    SPREKK_CHECK(
+        n == 0 || static_cast<int>(n) == result.dim(),
+        "Sprekk > Mesh file > fractures > {} > \"reference normal\": has {} components, needs {} as {} has that "
+        "dimension",
+        name, n, result.dim(), mesh_file->path);
+  }
   return mesh::tie_periodic(result, pairs);
 }
 

@@ -142,6 +142,14 @@ class MapsTest(ProgramTest):
                            ("x,y\n1,0\n", "lack one of id, fid, number"), ("id,x,y\n,0,0\n", "has no number of a line")):
             self.assertIn(part, self.refusal({"traces": {"file": self.file("a.csv", text)}}))
 
+    def test_discs_are_no_points(self):
+        """Titles of another kind of table are not read as points."""
+        file = self.file("a.csv", "x,y,z,dip,dip direction,radius,number\n0.5,0.5,0.5,70,60,0.2,1\n")
+        with self.assertRaises(NetworkError) as caught:
+            network(3, {"joints": {"file": file}})
+        self.assertIn("the titles of polygons lack", str(caught.exception))
+        self.assertNotIn("these are titles", str(caught.exception))
+
     def test_a_corner_a_line_in_3d(self):
         corners = [(0.2, 0.2), (0.7, 0.2), (0.7, 0.6), (0.2, 0.6)]
         rows = "".join(f"3,{x},{y},0.4\n" for x, y in corners)

@@ -621,6 +621,11 @@ class Scenes(BadInput):
         self.refuse(['Mesh file > "periodic": has "west" twice'], "check", self.scene("gmsh/crossing.xml"),
                     "--set", "Mesh file.periodic={west, east, west, north}")
 
+    def test_reference_normals_of_a_file(self):
+        for normal, n in (("{1}", 1), ("{-1, 1, 0}", 3), ("{-1, 1, 0, 1e6}", 4)):
+            self.refuse([f'Mesh file > fractures > f1 > "reference normal": has {n} components, needs 2'], "check",
+                        self.scene("gmsh/crossing.xml"), "--set", f"Mesh file.fractures.f1.reference normal={normal}")
+
 
 class Memory(BadInput):
     def test_mesh_beyond_memory(self):

@@ -102,21 +102,25 @@ class MeshFileNetworkFracture(Section):
     """sets of fractures by their names, which Fractures lists
 
     file: CSV or .fab of FracMan; relative to the scene's file
-    format: of the file, a line each: id,x0,y0,x1,y1; x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree;
-        without it fab by the ending .fab, else lines in 2D and polygons in 3D ("lines" | "polygons" | "ellipses" |
-        "fab")
+    format: of the file, a line each: id,x,y (3D: id,x,y,z), a point of the fracture id; id,x0,y0,x1,y1;
+        x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree; without it fab by the ending .fab, points by
+        their columns, else lines in 2D and polygons in 3D ("points" | "lines" | "polygons" | "ellipses" | "fab")
+    layers: of a drawing or a GeoPackage: those with the fractures; absent: all (default {})
+    unit: of coordinates in the file, such as 1 mm; absent: 1 m (m; positive)
     lines: 2D: polylines
     polygons: 3D: plane polygons, convex or not
     ellipses: 3D: ellipses and discs
     random: fractures at random (may be absent)
     """
     file: str | None
-    format: Literal["lines", "polygons", "ellipses", "fab"] | None
+    format: Literal["points", "lines", "polygons", "ellipses", "fab"] | None
+    layers: Sequence[str] | None
+    unit: float | str | None
     lines: dict[str, MeshFileNetworkFractureLine] | None
     polygons: dict[str, MeshFileNetworkFracturePolygon] | None
     ellipses: dict[str, MeshFileNetworkFractureEllipse] | None
     random: MeshFileNetworkFractureRandom | None
-    def __init__(self, *, file: str | None = ..., format: Literal["lines", "polygons", "ellipses", "fab"] | None = ..., lines: dict[str, MeshFileNetworkFractureLine] | None = ..., polygons: dict[str, MeshFileNetworkFracturePolygon] | None = ..., ellipses: dict[str, MeshFileNetworkFractureEllipse] | None = ..., random: MeshFileNetworkFractureRandom | None = ...) -> None: ...
+    def __init__(self, *, file: str | None = ..., format: Literal["points", "lines", "polygons", "ellipses", "fab"] | None = ..., layers: Sequence[str] | None = ..., unit: float | str | None = ..., lines: dict[str, MeshFileNetworkFractureLine] | None = ..., polygons: dict[str, MeshFileNetworkFracturePolygon] | None = ..., ellipses: dict[str, MeshFileNetworkFractureEllipse] | None = ..., random: MeshFileNetworkFractureRandom | None = ...) -> None: ...
 
 class MeshFileNetworkConstraintLine(Section):
     """2D: polylines
@@ -179,21 +183,25 @@ class MeshFileNetworkConstraint(Section):
     """lines (2D) or surfaces (3D) that cells keep to and that are no fractures
 
     file: CSV or .fab of FracMan; relative to the scene's file
-    format: of the file, a line each: id,x0,y0,x1,y1; x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree;
-        without it fab by the ending .fab, else lines in 2D and polygons in 3D ("lines" | "polygons" | "ellipses" |
-        "fab")
+    format: of the file, a line each: id,x,y (3D: id,x,y,z), a point of the fracture id; id,x0,y0,x1,y1;
+        x0,y0,z0,x1,y1,z1,...; cx,cy,cz,r1,r2,rake,strike,dip in degree; without it fab by the ending .fab, points by
+        their columns, else lines in 2D and polygons in 3D ("points" | "lines" | "polygons" | "ellipses" | "fab")
+    layers: of a drawing or a GeoPackage: those with the fractures; absent: all (default {})
+    unit: of coordinates in the file, such as 1 mm; absent: 1 m (m; positive)
     lines: 2D: polylines
     polygons: 3D: plane polygons, convex or not
     ellipses: 3D: ellipses and discs
     random: fractures at random (may be absent)
     """
     file: str | None
-    format: Literal["lines", "polygons", "ellipses", "fab"] | None
+    format: Literal["points", "lines", "polygons", "ellipses", "fab"] | None
+    layers: Sequence[str] | None
+    unit: float | str | None
     lines: dict[str, MeshFileNetworkConstraintLine] | None
     polygons: dict[str, MeshFileNetworkConstraintPolygon] | None
     ellipses: dict[str, MeshFileNetworkConstraintEllipse] | None
     random: MeshFileNetworkConstraintRandom | None
-    def __init__(self, *, file: str | None = ..., format: Literal["lines", "polygons", "ellipses", "fab"] | None = ..., lines: dict[str, MeshFileNetworkConstraintLine] | None = ..., polygons: dict[str, MeshFileNetworkConstraintPolygon] | None = ..., ellipses: dict[str, MeshFileNetworkConstraintEllipse] | None = ..., random: MeshFileNetworkConstraintRandom | None = ...) -> None: ...
+    def __init__(self, *, file: str | None = ..., format: Literal["points", "lines", "polygons", "ellipses", "fab"] | None = ..., layers: Sequence[str] | None = ..., unit: float | str | None = ..., lines: dict[str, MeshFileNetworkConstraintLine] | None = ..., polygons: dict[str, MeshFileNetworkConstraintPolygon] | None = ..., ellipses: dict[str, MeshFileNetworkConstraintEllipse] | None = ..., random: MeshFileNetworkConstraintRandom | None = ...) -> None: ...
 
 class MeshFileNetworkRegionFace(Section):
     """of a polyhedron: its plane faces, each a polygon
@@ -234,6 +242,8 @@ class MeshFileNetwork(Section):
     minimum_angle: fractures that meet at a smaller angle are refused (degree; between 0 and 60; default 2)
     most_cells: sizes that ask for more cells than this, by estimate, are refused before the mesh is made (at least 1;
         default 10000000)
+    unusable_fractures: those outside of the domain, shorter than "tolerance" or "minimum distance", or without geometry
+        in their file: an error, or left out and listed by the report ("refused" | "left out"; default refused)
     domain: the rock; a CSV of polygons may tell its box instead, in its first line (may be absent)
     fractures: sets of fractures by their names, which Fractures lists
     constraints: lines (2D) or surfaces (3D) that cells keep to and that are no fractures
@@ -249,11 +259,12 @@ class MeshFileNetwork(Section):
     minimum_distance: float | str | None
     minimum_angle: float | str | None
     most_cells: int | None
+    unusable_fractures: Literal["refused", "left out"] | None
     domain: MeshFileNetworkDomain | None
     fractures: dict[str, MeshFileNetworkFracture] | None
     constraints: dict[str, MeshFileNetworkConstraint] | None
     regions: dict[str, MeshFileNetworkRegion] | None
-    def __init__(self, *, relative_size: float | str | None = ..., size: float | str | None = ..., size_at_tips: float | str | None = ..., size_at_intersections: float | str | None = ..., size_at_boundary: float | str | None = ..., growth: float | str | None = ..., tolerance: float | str | None = ..., minimum_distance: float | str | None = ..., minimum_angle: float | str | None = ..., most_cells: int | None = ..., domain: MeshFileNetworkDomain | None = ..., fractures: dict[str, MeshFileNetworkFracture] | None = ..., constraints: dict[str, MeshFileNetworkConstraint] | None = ..., regions: dict[str, MeshFileNetworkRegion] | None = ...) -> None: ...
+    def __init__(self, *, relative_size: float | str | None = ..., size: float | str | None = ..., size_at_tips: float | str | None = ..., size_at_intersections: float | str | None = ..., size_at_boundary: float | str | None = ..., growth: float | str | None = ..., tolerance: float | str | None = ..., minimum_distance: float | str | None = ..., minimum_angle: float | str | None = ..., most_cells: int | None = ..., unusable_fractures: Literal["refused", "left out"] | None = ..., domain: MeshFileNetworkDomain | None = ..., fractures: dict[str, MeshFileNetworkFracture] | None = ..., constraints: dict[str, MeshFileNetworkConstraint] | None = ..., regions: dict[str, MeshFileNetworkRegion] | None = ...) -> None: ...
 
 class MeshFileFracture(Section):
     """the physical groups that are fractures, by their names; those of a network need not be listed
@@ -390,8 +401,9 @@ class Material(Section):
     friction: law of the bound on the shear traction; Coulomb: in proportion to the compression (13); Barton-Choubey:
         peak strength of a rough joint, by JRC and JCS; mobilised Barton-Choubey: of a rough joint, by JRC and JCS, that
         slip mobilises and wears; composed: of riding over asperities and of shearing through them; slip weakening:
-        falls linearly with the slip, from peak to residual ("Coulomb" | "Barton-Choubey" | "mobilised Barton-Choubey" |
-        "composed" | "slip weakening"; default Coulomb)
+        falls linearly with the slip, from peak to residual; no slip: faces that touch never slip: a joint that is
+        elastic alone, without a number ("Coulomb" | "Barton-Choubey" | "mobilised Barton-Choubey" | "composed" | "slip
+        weakening" | "no slip"; default Coulomb)
     friction_coefficient: friction "Coulomb", "slip weakening": mu of the bound (13); or give the angle (at least 0)
     friction_angle: friction "Coulomb", "slip weakening": atan(mu) (3) (degree; at least 0 and less than 90)
     joint_roughness_coefficient: friction "Barton-Choubey", "mobilised Barton-Choubey", required; dilation "mobilised",
@@ -512,7 +524,7 @@ class Material(Section):
     tangential_stiffness: float | str | None
     shear_stiffening_stress: float | str | None
     shear_stiffening_exponent: float | str | None
-    friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening"] | None
+    friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening", "no slip"] | None
     friction_coefficient: float | str | None
     friction_angle: float | str | None
     joint_roughness_coefficient: float | str | None
@@ -564,7 +576,7 @@ class Material(Section):
     residual_aperture: float | str | None
     tangential_permeability: float | str | None
     normal_permeability: float | str | None
-    def __init__(self, *, type: Literal["elastic", "joint"] | None = ..., source: str | None = ..., youngs_modulus: float | str | None = ..., poissons_ratio: float | str | None = ..., shear_modulus: float | str | None = ..., lames_first_parameter: float | str | None = ..., bulk_modulus: float | str | None = ..., density: float | str | None = ..., permeability: Sequence[float | str] | None = ..., porosity: float | str | None = ..., compressibility_of_pores: float | str | None = ..., biot_modulus: float | str | None = ..., biot_coefficient: float | str | None = ..., thermal_conductivity: Sequence[float | str] | None = ..., volumetric_heat_capacity: float | str | None = ..., thermal_expansion: float | str | None = ..., tangential_elasticity: Literal["linear", "power"] | None = ..., tangential_stiffness: float | str | None = ..., shear_stiffening_stress: float | str | None = ..., shear_stiffening_exponent: float | str | None = ..., friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening"] | None = ..., friction_coefficient: float | str | None = ..., friction_angle: float | str | None = ..., joint_roughness_coefficient: float | str | None = ..., joint_wall_strength: float | str | None = ..., residual_friction_angle: float | str | None = ..., largest_friction_angle: float | str | None = ..., joint_length: float | str | None = ..., sample_length: float | str | None = ..., peak_slip: float | str | None = ..., basic_friction_coefficient: float | str | None = ..., basic_friction_angle: float | str | None = ..., asperity_angle: float | str | None = ..., asperity_friction_coefficient: float | str | None = ..., transition_stress: float | str | None = ..., transition_exponent: float | str | None = ..., residual_friction_coefficient: float | str | None = ..., weakening_distance: float | str | None = ..., dilation: Literal["constant angle", "mobilised", "decaying angle", "limited"] | None = ..., dilation_angle: float | str | None = ..., asperity_damage_coefficient: float | str | None = ..., residual_dilation_angle: float | str | None = ..., dilation_decay_distance: float | str | None = ..., largest_dilation: float | str | None = ..., initial_gap: float | str | None = ..., closure: Literal["Barton-Bandis", "Barton-Bandis with memory", "Bandis", "power", "linear"] | None = ..., maximum_closure: float | str | None = ..., normal_stiffness: float | str | None = ..., irrecoverable_part_of_closure: float | str | None = ..., joint_aperture: float | str | None = ..., loading_cycle: float | str | None = ..., stiffening_stress: float | str | None = ..., stiffening_exponent: float | str | None = ..., bond: Literal["none", "constant cohesion", "linear softening"] | None = ..., cohesion: float | str | None = ..., opening_without_cohesion: float | str | None = ..., tensile_strength: float | str | None = ..., fracture_energy: float | str | None = ..., shear_fracture_energy: float | str | None = ..., damage: Literal["none", "isotropic", "anisotropic"] | None = ..., residual_part_of_friction: float | str | None = ..., damage_length_of_friction: float | str | None = ..., residual_part_of_dilation: float | str | None = ..., damage_length_of_dilation: float | str | None = ..., damage_driver: Literal["slip", "compression", "frictional work"] | None = ..., reference_stress: float | str | None = ..., hydraulic_aperture: Literal["mechanical", "Barton"] | None = ..., initial_aperture: float | str | None = ..., strength_reduction_factor: float | str | None = ..., residual_aperture: float | str | None = ..., tangential_permeability: float | str | None = ..., normal_permeability: float | str | None = ...) -> None: ...
+    def __init__(self, *, type: Literal["elastic", "joint"] | None = ..., source: str | None = ..., youngs_modulus: float | str | None = ..., poissons_ratio: float | str | None = ..., shear_modulus: float | str | None = ..., lames_first_parameter: float | str | None = ..., bulk_modulus: float | str | None = ..., density: float | str | None = ..., permeability: Sequence[float | str] | None = ..., porosity: float | str | None = ..., compressibility_of_pores: float | str | None = ..., biot_modulus: float | str | None = ..., biot_coefficient: float | str | None = ..., thermal_conductivity: Sequence[float | str] | None = ..., volumetric_heat_capacity: float | str | None = ..., thermal_expansion: float | str | None = ..., tangential_elasticity: Literal["linear", "power"] | None = ..., tangential_stiffness: float | str | None = ..., shear_stiffening_stress: float | str | None = ..., shear_stiffening_exponent: float | str | None = ..., friction: Literal["Coulomb", "Barton-Choubey", "mobilised Barton-Choubey", "composed", "slip weakening", "no slip"] | None = ..., friction_coefficient: float | str | None = ..., friction_angle: float | str | None = ..., joint_roughness_coefficient: float | str | None = ..., joint_wall_strength: float | str | None = ..., residual_friction_angle: float | str | None = ..., largest_friction_angle: float | str | None = ..., joint_length: float | str | None = ..., sample_length: float | str | None = ..., peak_slip: float | str | None = ..., basic_friction_coefficient: float | str | None = ..., basic_friction_angle: float | str | None = ..., asperity_angle: float | str | None = ..., asperity_friction_coefficient: float | str | None = ..., transition_stress: float | str | None = ..., transition_exponent: float | str | None = ..., residual_friction_coefficient: float | str | None = ..., weakening_distance: float | str | None = ..., dilation: Literal["constant angle", "mobilised", "decaying angle", "limited"] | None = ..., dilation_angle: float | str | None = ..., asperity_damage_coefficient: float | str | None = ..., residual_dilation_angle: float | str | None = ..., dilation_decay_distance: float | str | None = ..., largest_dilation: float | str | None = ..., initial_gap: float | str | None = ..., closure: Literal["Barton-Bandis", "Barton-Bandis with memory", "Bandis", "power", "linear"] | None = ..., maximum_closure: float | str | None = ..., normal_stiffness: float | str | None = ..., irrecoverable_part_of_closure: float | str | None = ..., joint_aperture: float | str | None = ..., loading_cycle: float | str | None = ..., stiffening_stress: float | str | None = ..., stiffening_exponent: float | str | None = ..., bond: Literal["none", "constant cohesion", "linear softening"] | None = ..., cohesion: float | str | None = ..., opening_without_cohesion: float | str | None = ..., tensile_strength: float | str | None = ..., fracture_energy: float | str | None = ..., shear_fracture_energy: float | str | None = ..., damage: Literal["none", "isotropic", "anisotropic"] | None = ..., residual_part_of_friction: float | str | None = ..., damage_length_of_friction: float | str | None = ..., residual_part_of_dilation: float | str | None = ..., damage_length_of_dilation: float | str | None = ..., damage_driver: Literal["slip", "compression", "frictional work"] | None = ..., reference_stress: float | str | None = ..., hydraulic_aperture: Literal["mechanical", "Barton"] | None = ..., initial_aperture: float | str | None = ..., strength_reduction_factor: float | str | None = ..., residual_aperture: float | str | None = ..., tangential_permeability: float | str | None = ..., normal_permeability: float | str | None = ...) -> None: ...
 
 class BulkLithostaticStress(Section):
     """initial stress of rock at rest under gravity along the last coordinate (may be absent)

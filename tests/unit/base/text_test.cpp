@@ -10,6 +10,14 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
+TEST(Text, long_lists_end_with_a_count) {
+  EXPECT_EQ(quoted_list({"a", "b"}), "\"a\", \"b\"");
+  const Strings names(1000, "n");
+  const auto text = quoted_list(names);
+  EXPECT_EQ(text.size(), 40 * 5 - 2 + std::string(" and 960 more").size());
+  EXPECT_NE(text.find("\"n\" and 960 more"), text.npos);
+}
+
 TEST(Text, numbers_are_read_whole_or_not_at_all) {
   EXPECT_EQ(parse_number("1.5"), 1.5);
   EXPECT_EQ(parse_number(" -2e-3\n"), -2e-3);
