@@ -7,6 +7,7 @@
 #include "physics/entry_of_place.hpp"
 #include "physics/flow/fluid_flux.hpp"
 #include "physics/heat/fracture_heat.hpp"
+#include "physics/heat/overshoot.hpp"
 #include "physics/heat/temperatures.hpp"
 #include "physics/heat/thermal_expansion.hpp"
 #include "physics/hybrid_diffusion.hpp"
@@ -429,20 +430,31 @@ std::vector<std::string> Heat::plausibility(const Setting& setting, const std::v
   return all;
 }
 
-/// Outside of the table water is as at its end.
-std::vector<std::string> Heat::warnings_of_state(const Setting& setting,
-                                                 const std::vector<assembly::OutputField>& outputs) {
-  const auto& [scene, mesh, start] = setting;
-  if (!is_in(scene) || scene.heat->fluid != "water") return {};
+namespace {
+
+/// Outside of the table water is as at its end. Collective.
+bool leaves_water(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs) {
   bool outside = false;
   for (const auto& output : outputs)
     if (output.name == "temperature" || output.name == "fracture temperature")
       outside = outside || !std::all_of(output.values.begin(), output.values.end(), is_water);
-  if (!base::on_any_rank(*mesh.comm, outside)) return {};
-  return {
-      fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K, beyond which "
-                  "its density and viscosity stay those of the end",
-                  scene.origin, coldest_water, warmest_water)};
+  return base::on_any_rank(*mesh.comm, outside);
+}
+
+}  // namespace
+
+std::vector<std::string> Heat::warnings_of_state(const Setting& setting,
+                                                 const std::vector<assembly::OutputField>& outputs) {
+  const auto& [scene, mesh, start] = setting;
+  std::vector<std::string> all;
+  if (!is_in(scene)) return all;
+  if (const auto warning = overshoot_warning(scene, mesh, outputs); !warning.empty()) all.push_back(warning);
+  if (scene.heat->fluid == "water" && leaves_water(mesh, outputs))
+    all.push_back(
+        fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K, beyond which "
+                    "its density and viscosity stay those of the end",
+                    scene.origin, coldest_water, warmest_water));
+  return all;
 }
 
 std::vector<std::string> Heat::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
