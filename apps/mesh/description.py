@@ -105,6 +105,8 @@ class Network:
             table = read_fab(path) if kind == "fab" else read_table(path, kind, dim)
         for row in table.fractures:
             row.points = row.points * content.get("unit", 1.0)
+        if table.box is not None:
+            table.box = np.array(table.box) * content.get("unit", 1.0)
         return table
 
     def domain_entries(self):

@@ -513,7 +513,9 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   committed_t_ = memory.t;
   committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
-  take_scales();  // without loads of a step that is taken back
+  take_scales();    // without loads of a step that is taken back
+  at_end_.clear();  // of a step that is taken back, or of another run
+  unbalanced_.clear();
   if (contact_) contact_->resume(x, memory.calibration);
   if (rate_errors_) resume_errors(x, memory.errors);
 }

@@ -301,8 +301,7 @@ View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n
 
 }  // namespace
 
-/// Of unknowns whose values are far above what they have changed by, such as absolute values of
-/// balances, or may be far above their scale.
+/// Of unknowns whose values are far above their changes, as those of balances, or may be far above their scale.
 View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
   return rounding_by_others(matrix_, b, base::n_local_elements(*blocks_[b].map), [&](int c) {
     return unknowns_[c].balance || unknowns_[c].unbounded ? rounding(x, unknowns_[c].scale) : 0;

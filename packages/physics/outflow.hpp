@@ -72,9 +72,8 @@ class Outflow {
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const { exchange_.add_jacobian(state, J); }
   /// The largest value on this rank, of a flux or of what is beyond.
   Real largest(Real t, bool beyond) const;
-  /// Appends what flows in for each condition, by boundaries.
-  /// Rates into the domain, by boundaries: of those with a coefficient such that the rows of the last step are in
-  /// balance.
+  /// Appends the rates into the domain for each condition, by boundaries: of those with a coefficient such that the
+  /// rows of the last step are in balance.
   void totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const;
 
  private:

@@ -207,7 +207,7 @@ class Convergence(ProgramTest):
                 self.assertEqual(results["status"], "completed")
                 self.assertLess(len(results["steps"]), 400)
                 for step in results["steps"]:
-                    self.assertLessEqual(step["rejected"], 30)
+                    self.assertLessEqual(step["rejected"], 5)
 
     def test_joints_give_out_no_more_fluid_than_they_hold(self):
         """Closure beyond the initial aperture: the aperture ends at its bound, and the rest has left the joint."""

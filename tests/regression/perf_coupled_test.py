@@ -95,7 +95,7 @@ class Coupled(ProgramTest):
             self.assertRegex("\n".join(check(run)[0]), words)
         run = self.again(run)
         add(run.states[-1].fractures, "fracture temperature", 20.0)
-        self.assertEqual(checks.temperatures(run, "warning: temperatures are beyond the given ones by 20 K")[0], [])
+        self.assertEqual(checks.temperatures(run, "warning: scene.xml: temperatures are more than 10 K beyond the given ones, 300 to 310 K")[0], [])
 
     def again(self, run):
         """The run as it was written."""

@@ -11,7 +11,8 @@ struct NoSlip {
   static constexpr Real coefficient = 1e6;
 
   static constexpr const char *name = "no slip",
-                              *meaning = "faces that touch never slip: a joint that is elastic alone, without a number";
+                              *meaning =
+                                  "faces under compression never slip: a joint that is elastic alone, without a number";
   static std::vector<Parameter<NoSlip>> parameters() { return {}; }
 
   template <class T>

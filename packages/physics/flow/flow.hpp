@@ -130,7 +130,7 @@ bool has_unknown_pressure(const Scene& scene);
 /// Of the fluid in rock and fractures; 0 without.
 base::Expression initial_pressure(const Scene& scene);
 
-/// The mechanical aperture (15) of a fracture face, m: at the start, but for its bound, and that bound.
+/// The mechanical aperture (15) of a fracture face, m: at the start, without its lower bound, and that bound.
 struct StartAperture {
   Real value, least;
 };

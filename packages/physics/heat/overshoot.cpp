@@ -4,6 +4,7 @@
 #include "physics/heat/temperatures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sprekk::physics {
@@ -11,7 +12,6 @@ namespace sprekk::physics {
 namespace {
 
 constexpr Real tolerance = 1e-3;  // of the span
-constexpr int n_places = 5;
 
 struct Range {
   Real low = std::numeric_limits<Real>::infinity(), high = -low;
@@ -27,21 +27,6 @@ bool has_other_heat(const Scene& scene) {
          std::any_of(conditions.begin(), conditions.end(), [](const auto& named) { return named.second.heat_flux; });
 }
 
-/// Adds the value of T; false if it depends on the time or, by samples, on the place.
-bool add_value(const mesh::Mesh& mesh, const base::Expression& T, Range& range) {
-  if (!T.constant_in_time()) return false;
-  const int dim = mesh.dim();
-  Range here;
-  for (int place = 0; place < (T.is_constant() ? 1 : n_places); ++place) {
-    std::array<Real, 3> x{};
-    const auto node = static_cast<std::size_t>(mesh.n_nodes() - 1) * place / n_places;
-    if (mesh.n_nodes() > 0) std::copy_n(&mesh.coordinates[node * dim], dim, x.begin());
-    here.add(T(x, 0));
-  }
-  range.add(here.low);
-  return here.low == here.high;
-}
-
 }  // namespace
 
 std::string overshoot_warning(const Scene& scene, const mesh::Mesh& mesh,
@@ -49,9 +34,11 @@ std::string overshoot_warning(const Scene& scene, const mesh::Mesh& mesh,
   if (has_other_heat(scene)) return "";
   Range given;
   bool known = true;
-  for_each_temperature(
-      scene, [&](const std::string&, const base::Expression& T) { known = known && add_value(mesh, T, given); });
-  if (base::on_any_rank(*mesh.comm, !known)) return "";
+  for_each_temperature(scene, [&](const std::string&, const base::Expression& T) {
+    known = known && T.is_constant();
+    if (known) given.add(T({0, 0, 0}, 0));
+  });
+  if (!known || !(given.low <= given.high)) return "";
   Range found;
   for (const auto& output : outputs)
     if (output.name == "temperature" || output.name == "fracture temperature")
@@ -60,11 +47,11 @@ std::string overshoot_warning(const Scene& scene, const mesh::Mesh& mesh,
       base::max_over_ranks(*mesh.comm, std::array<Real, 4>{given.high, -given.low, found.high, -found.low});
   const Real beyond = std::max(all[2] - all[0], all[3] - all[1]);
   if (!(beyond > tolerance * (all[0] + all[1]) && beyond > 1e-9 * all[0])) return "";
+  const Real size = std::pow(10, std::floor(std::log10(beyond)));  // few different texts, so that few are printed
   return fmt::format(
-      "{}: temperatures are up to about {:.0e} K beyond the given ones, {:.6g} to {:.6g} K, by the error of the mesh "
-      "or "
-      "of the steps: take finer cells or longer steps, and \"implicit Euler\" where steps are long",
-      scene.origin, beyond, -all[1], all[0]);
+      "{}: temperatures are more than {:.3g} K beyond the given ones, {:.6g} to {:.6g} K, by the error of the mesh "
+      "or of the steps: take finer cells, or \"implicit Euler\" where steps are long",
+      scene.origin, size, -all[1], all[0]);
 }
 
 }  // namespace sprekk::physics
