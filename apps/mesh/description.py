@@ -106,7 +106,7 @@ class Network:
         for row in table.fractures:
             row.points = row.points * content.get("unit", 1.0)
         if table.box is not None:
-            table.box = np.array(table.box) * content.get("unit", 1.0)
+            table.box = [[x * content.get("unit", 1.0) for x in corner] for corner in table.box]
         return table
 
     def domain_entries(self):

@@ -301,10 +301,12 @@ View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n
 
 }  // namespace
 
-/// Of unknowns whose values are far above their changes, as those of balances, or may be far above their scale.
+/// Of unknowns whose values are far above their changes, as those of balances, or may be far above their scale. Before
+/// the first Jacobian of an attempt the matrix may be that of a state far away: then only of balances that are carried.
 View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
   return rounding_by_others(matrix_, b, base::n_local_elements(*blocks_[b].map), [&](int c) {
-    return unknowns_[c].balance || unknowns_[c].unbounded ? rounding(x, unknowns_[c].scale) : 0;
+    const bool counts = unknowns_[c].balance && (carried_[b] || !present_.empty());
+    return counts || unknowns_[c].unbounded ? rounding(x, unknowns_[c].scale) : 0;
   });
 }
 

@@ -281,14 +281,29 @@ std::string defect_of_unit(const std::string& unit) {
   return "";
 }
 
+namespace {
+
+/// In an expression t would be the time.
+bool has_tonne(const std::string& unit) {
+  const auto is_letter = [&](std::size_t at) {
+    return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at]));
+  };
+  for (std::size_t at = 0; at < unit.size(); ++at)
+    if (unit[at] == 't' && !is_letter(at + 1) && !(at > 0 && is_letter(at - 1))) return true;
+  return false;
+}
+
+}  // namespace
+
 Real value_in(const std::string& unit, const Quantity& quantity) {
   if (quantity.unit.empty()) return quantity.value;
   if (unit == "K" && is_celsius(quantity.unit)) return quantity.value + zero_celsius;
   const Unit from = UnitParser(quantity.unit).parse();
   SPREKK_CHECK(unit != "-", "has the unit \"{}\", must be a number without a unit", quantity.unit);
   const Unit to = UnitParser(unit).parse();
-  SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and what else measures the same",
-               quantity.unit, quoted_list(offers(unit)));
+  SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and what else measures the same{}",
+               quantity.unit, quoted_list(offers(unit)),
+               has_tonne(quantity.unit) ? fmt::format("; t is the tonne here: {}", no_units_in_expressions) : "");
   return shifted(quantity.value, from.ten - to.ten) * (from.factor / to.factor);
 }
 

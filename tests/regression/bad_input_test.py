@@ -247,7 +247,7 @@ class Meshes(BadInput):
         self.refuse_mesh(['element 20 at (1, 1, 0) of the physical group "f1" is no face of a cell'], outside)
         self.refuse_mesh(['element 20 at (1, 0.5, 0) of the physical group "f1" lies inside', 'if it is a fracture, list "f1" among the fractures',
                           'boundaries are "south", "north", "outer"'], SQUARES, fractures="")
-        self.refuse(['"f1" lies inside', 'as do "f2"', 'list "f1", "f2" among', 'boundaries are "south", "east", "north", "west"'],
+        self.refuse(['of the physical group "f2" lies inside', 'as do faces of "f1"', 'list "f1", "f2" among', 'boundaries are "south", "east", "north", "west"'],
                     "mesh-info", self.scene("gmsh/crossing.msh"))
 
     def test_names_that_the_mesh_lacks(self):
@@ -383,7 +383,7 @@ class Scenes(BadInput):
         refuse(['"volumetric heat capacity": is -1, must be at least 0'], "Materials.rock.volumetric heat capacity=-1 J/(m^3*K)")
         refuse(['surface: give either "temperature" or "heat flux"'], surface + "heat flux=1")
         refuse(['"heat transfer coefficient": is -1, must be at least 0'], surface + "heat transfer coefficient=-1")
-        refuse(['unknown unit "degC"'], surface + "temperature=20 degC")
+        refuse(['unknown unit "degF"'], surface + "temperature=20 degF")
         refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
         refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
         refuse(['Materials > rock: "volumetric heat capacity" = 1-x is -', "must be at least 0"], "Materials.rock.volumetric heat capacity=1-x")

@@ -60,7 +60,7 @@ model::Scene graded_block(int dim, const Discretisation& d) {
   scene.mesh_file.emplace();
   scene.mesh_file->path = fmt::format("{}/tests/data/meshes/free_sides_{}.msh", source_dir(), d.cell);
   scene.mesh_file->order = d.order;
-  scene.mesh_file->fractures["fracture"].reference_normal = {0, 0, 0};
+  scene.mesh_file->fractures["fracture"].reference_normal = std::vector<Real>(dim, 0);
   scene.mesh_file->fractures["fracture"].reference_normal->at(dim - 1) = 1;
   if (dim == 3) scene.mesh_file->periodic = {"front", "back"};
   return scene;
