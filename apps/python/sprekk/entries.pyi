@@ -401,9 +401,9 @@ class Material(Section):
     friction: law of the bound on the shear traction; Coulomb: in proportion to the compression (13); Barton-Choubey:
         peak strength of a rough joint, by JRC and JCS; mobilised Barton-Choubey: of a rough joint, by JRC and JCS, that
         slip mobilises and wears; composed: of riding over asperities and of shearing through them; slip weakening:
-        falls linearly with the slip, from peak to residual; no slip: faces that touch never slip: a joint that is
-        elastic alone, without a number ("Coulomb" | "Barton-Choubey" | "mobilised Barton-Choubey" | "composed" | "slip
-        weakening" | "no slip"; default Coulomb)
+        falls linearly with the slip, from peak to residual; no slip: faces under compression never slip: a joint that
+        is elastic alone, without a number ("Coulomb" | "Barton-Choubey" | "mobilised Barton-Choubey" | "composed" |
+        "slip weakening" | "no slip"; default Coulomb)
     friction_coefficient: friction "Coulomb", "slip weakening": mu of the bound (13); or give the angle (at least 0)
     friction_angle: friction "Coulomb", "slip weakening": atan(mu) (3) (degree; at least 0 and less than 90)
     joint_roughness_coefficient: friction "Barton-Choubey", "mobilised Barton-Choubey", required; dilation "mobilised",
