@@ -72,9 +72,11 @@ void from_python(const Comm& comm, const std::function<void()>& work) {
 void check_thread(const Comm& comm) {
   if (comm.getSize() == 1) return;
   static const auto first = std::this_thread::get_id();
-  SPREKK_CHECK(std::this_thread::get_id() == first,
-               "a model on {} ranks is used by a second thread; models on several ranks need one and the same thread",
-               comm.getSize());
+  base::collectively(comm, [&] {
+    SPREKK_CHECK(std::this_thread::get_id() == first,
+                 "a model on {} ranks is used by a second thread; models on several ranks need one and the same thread",
+                 comm.getSize());
+  });
 }
 
 }  // namespace sprekk::python

@@ -8,8 +8,8 @@
 
 namespace sprekk::python {
 
-/// Holds the lock of the library, which is for one thread at a time: MUMPS, timers and MPI are. To be made with the
-/// interpreter's lock, which other threads may take while this one waits.
+/// Holds the lock of the library: MUMPS, timers and MPI allow one thread at a time. To be made while the interpreter's
+/// lock is held; other threads may take that one while this thread waits.
 class Alone {
  public:
   Alone();
@@ -22,11 +22,11 @@ class Alone {
 /// message. Collective.
 void check_same(const Comm& comm, const std::string& name, const std::string& text);
 
-/// Runs work(), which reads objects of Python; what it raises on a rank is an Error on the others. Collective.
+/// Runs work(), which reads objects of Python. An exception on one rank is an Error on the others. Collective.
 void from_python(const Comm& comm, const std::function<void()>& work);
 
 /// An Error unless all models on several ranks are used by the same thread: with more threads, ranks would wait for
-/// each other in different models.
+/// each other in different models. Collective.
 void check_thread(const Comm& comm);
 
 }  // namespace sprekk::python

@@ -180,8 +180,9 @@ struct State {
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
-  /// In totals(): [field](owned row) the residual at the end of the last step, zero in rows of prescribed unknowns. A
-  /// flow that is a large conductance times a small drop is that product plus this much. Empty: nothing is stored.
+  /// In totals(): [field](owned row) the residual at the end of the last step, zero in rows of prescribed unknowns.
+  /// Added to the product of a large conductance and a small drop it gives the flow without rounding. Empty: nothing is
+  /// stored.
   std::vector<ConstView<Real*>> unbalanced = {};
 };
 

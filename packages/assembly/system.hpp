@@ -64,8 +64,8 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
   /// counts for the first. Collective.
   std::vector<Reaction> reactions(const fields::BlockVector& x);
-  /// Those at the end of the last step, with all that was stored in it; of x where nothing is stored or no step has been
-  /// taken. Collective.
+  /// The reactions at the end of the last step, with the rates of storage. Without storage, or before the first step,
+  /// those at x. Collective.
   std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
   /// The same sums of any rows r. Collective.
   std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const;

@@ -113,7 +113,7 @@ std::string number_text(Real value) {
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 40;  // in a message; the name that is meant is given besides
+  constexpr std::size_t most = 40;  // in a message; the nearest name is given separately
   std::string text;
   for (std::size_t k = 0; k < std::min(most, names.size()); ++k)
     text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(names[k]));

@@ -297,7 +297,10 @@ bool has_tonne(const std::string& unit) {
 
 Real value_in(const std::string& unit, const Quantity& quantity) {
   if (quantity.unit.empty()) return quantity.value;
-  if (unit == "K" && is_celsius(quantity.unit)) return quantity.value + zero_celsius;
+  if (is_celsius(quantity.unit)) {
+    SPREKK_CHECK(unit == "K", "has the unit \"{}\", which only entries in K have{}", quantity.unit, units_like(unit));
+    return quantity.value + zero_celsius;
+  }
   const Unit from = UnitParser(quantity.unit).parse();
   SPREKK_CHECK(unit != "-", "has the unit \"{}\", must be a number without a unit", quantity.unit);
   const Unit to = UnitParser(unit).parse();

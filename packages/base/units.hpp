@@ -41,7 +41,7 @@ constexpr const char* no_units_in_expressions =
     "a unit can only follow a number, not be within an expression: write the expression in SI units";
 
 /// The number that `quantity` is in `unit`, "-" for none: 30 GPa is 3e10 in Pa, exactly the number that 30e9 is. Throws
-/// an Error that tells which units are allowed if it measures something else; angles are no pure numbers. Degrees
+/// an Error with the allowed units if it measures something else; angles are no pure numbers. Degrees
 /// Celsius become K for entries in K: all of these are levels.
 Real value_in(const std::string& unit, const Quantity& quantity);
 

@@ -25,7 +25,12 @@ Names without(const Names& a, const Names& b) {
   return result;
 }
 
-std::string listed(const Names& names) { return base::quoted_list({names.begin(), names.end()}); }
+/// All of them: a list to be copied.
+std::string listed(const Names& names) {
+  std::string text;
+  for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  return text;
+}
 
 /// The faces of each group.
 std::map<std::string, std::vector<GlobalIndex>> faces_of_groups(const InnerFaces& faces) {

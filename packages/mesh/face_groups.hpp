@@ -19,7 +19,7 @@ struct InnerFace {
 /// By faces. Each may be in several groups, of which one is a fracture; other groups do not count there.
 using InnerFaces = std::map<GlobalIndex, InnerFace>;
 
-/// What is wrong with the choice of `fractures`, and which choice is right: a face in two of them, or in none. Empty if
+/// The error in the choice of `fractures`, and a right choice: a face in two of them, or in none. Empty if
 /// each face is in one.
 std::string wrong_fractures(const InnerFaces& faces, const std::vector<std::string>& fractures,
                             const std::vector<std::string>& boundaries);

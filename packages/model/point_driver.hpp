@@ -65,8 +65,11 @@ class PointDriver {
     return states;
   }
 
-  /// Whether a tension is prescribed at t: where there is no state, the faces fly apart.
-  bool is_pulled(Real t) const { return control(0) == "traction" && point_.path[0]({0, 0, 0}, t) > 0; }
+  /// Whether a tension above the present strength is prescribed at t: without a state, the faces fly apart.
+  bool is_pulled(Real t) const {
+    const Real strength = law_.is_bonded() ? law_.cohesion(at_rest()).strength : 0;
+    return control(0) == "traction" && point_.path[0]({0, 0, 0}, t) > strength;
+  }
   /// Goes to faces that are far apart and bear nothing, at the jumps along them that are prescribed at t.
   void part(Real t) {
     for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
@@ -285,7 +288,7 @@ class PointDriver {
     }
   }
 
-  /// The constants of the projection by what is prescribed. A column is in series with the joint. A jump decides alone
+  /// The constants of the projection, from the controls. A column is in series with the joint. A jump decides alone
   /// whether the joint slides or parts: c_t is so large that |c_t (p - p_old)| is far above any traction, and c_n so
   /// that c_n times the distance of the faces is far above the strength of a bond. A traction decides alone whether it
   /// is pressed: c_n is so small that c_n times the distance of the faces is far below it.

@@ -36,11 +36,11 @@ enum class Ending {
   interrupted  ///< should_stop said so before the end of the last step
 };
 
-/// Runs the scene, from its beginning or from a checkpoint, and writes its results. With the section Accuracy it repeats
-/// the run on finer meshes; each run replaces the results before. The log is written to log.txt line by line, warnings
-/// also to the standard error. A step that did not converge is reported; the results of earlier steps remain. An
-/// interrupted run ends at its last whole step, with a checkpoint if the scene has checkpoints. Error, the same on every
-/// rank: bad input, a file that cannot be written, or a directory in use by another run, which remains untouched.
+/// Runs the scene, from its beginning or from a checkpoint, and writes its results. With the section Accuracy it
+/// repeats the run on finer meshes; each run replaces the results before. The log is written to log.txt line by line,
+/// warnings also to the standard error. A step that did not converge is reported; the results of earlier steps remain.
+/// An interrupted run ends at its last whole step, with a checkpoint if the scene has checkpoints. Error, the same on
+/// every rank: bad input, a file that cannot be written, or a directory in use by another run, which remains untouched.
 /// Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 

@@ -51,7 +51,7 @@ Real Outflow::largest(Real t, bool beyond) const {
   return largest;
 }
 
-/// [owned row] what is out of balance there over the sum of area times coefficient, U.
+/// [owned row] the residual over the sum of area times coefficient, U.
 std::map<LocalIndex, Real> Outflow::unbalanced_per_coefficient(const assembly::State& state) const {
   std::map<LocalIndex, Real> sums;
   if (state.unbalanced.empty()) return sums;

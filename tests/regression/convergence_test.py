@@ -208,6 +208,27 @@ class Convergence(ProgramTest):
                 for step in results["steps"]:
                     self.assertLessEqual(step["rejected"], 5)
 
+    def test_temperatures_beyond_the_given_ones_are_reported(self):
+        """A long first step of BDF2 overshoots after a sudden change; implicit Euler does not."""
+        for cell in ("quadrilateral", "hexahedron"):
+            dim, mesh = box(cell, 4, 10.0)
+            mesh["fractures"] = {"f": joint_in(dim, 10.0)}
+            tree = {"Mesh": mesh, "Bulk": {"material": "rock", "rigid": True}, "Fractures": {"material": "joint"},
+                    "Materials": {"rock": {"type": "elastic", "thermal conductivity": [2.0], "volumetric heat capacity": 2e6,
+                                           "permeability": [1e-16], "porosity": 0.1},
+                                  "joint": {"type": "joint", "initial aperture": 1e-3}},
+                    "Flow": {"viscosity": 1e-3, "initial pressure": 0.0},
+                    "Heat": {"initial temperature": 350.0, "fluid heat capacity": 4.2e6},
+                    "Boundary conditions": {"in": {"boundary": "west", "pressure": 1e4, "temperature": 300.0},
+                                            "out": {"boundary": "east", "pressure": 0.0}},
+                    "Time": {"end": 4e8, "steps": 4}, "Output": {"vtu": False}}
+            path = self.folder / "scene.xml"
+            for ranks in (1, 2):
+                for scheme, warns in (("BDF2", True), ("implicit Euler", False)):
+                    scene_file.save({**tree, "Time": {**tree["Time"], "scheme": scheme}}, path, "Written by convergence_test.py.")
+                    _, err = self.call("run", path, "--output", "out", ranks=ranks)
+                    self.assertEqual("K beyond the given ones, 300 to 350 K" in err, warns, f"{cell}, {ranks}, {scheme}: {err}")
+
     def test_joints_give_out_no_more_fluid_than_they_hold(self):
         """Closure beyond the initial aperture: the aperture ends at its bound, and the rest has left the joint."""
         initial, residual, length = 2e-4, 1e-5, 1.0

@@ -187,9 +187,9 @@ class Wells final : public assembly::Module {
   }
 
  private:
-  /// What is out of balance in rows of wells of given pressure, over the sum of their W(connection): Pa, of [rock,
-  /// fractures] by row. A well that conducts much better than what is around it has a pressure drop near rounding; the
-  /// balance of the row is known better than the product of both.
+  /// The residual of rows with wells of given pressure, over the sum of W(connection) of these wells, Pa: of [rock,
+  /// fractures] by row. If W is large compared with the conductances around it, the pressure drop is near rounding, and
+  /// the balance of the row is more accurate than W times the drop.
   template <class Index>
   std::array<std::map<LocalIndex, Real>, 2> unbalanced_per_index(const assembly::State& state, const Index& W) const {
     std::array<std::map<LocalIndex, Real>, 2> sums;

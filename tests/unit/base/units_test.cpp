@@ -83,7 +83,8 @@ TEST(Units, degrees_of_celsius) {
     return message_of([&] { value_of(text, unit); });
   };
   EXPECT_CONTAINS(refusal("3 W/(m*\u00b0C)", "W/(m*K)"), "\"\u00b0C\" can only stand alone, for an entry in K");
-  EXPECT_CONTAINS(refusal("77 \u00b0C", "Pa"), "\"\u00b0C\" can only stand alone");
+  EXPECT_CONTAINS(refusal("77 \u00b0C", "Pa"),
+                  "has the unit \"\u00b0C\", which only entries in K have; allowed are \"Pa\"");
   EXPECT_CONTAINS(refusal("77 m", "K"), "allowed are \"K\", \"\u00b0C\"");
 }
 
