@@ -120,7 +120,7 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
 }
 
 Results::Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier)
-    : model_(model), directory_(std::move(directory)), probes_(model) {
+    : model_(model), directory_(std::move(directory)), probes_(model), ends_{model.setting().start} {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
   base::collectively(*comm, [&] {
@@ -138,6 +138,8 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     bulk_.emplace(comm, directory_, "bulk", written);
     if (!model_.mesh().fracture_names.empty()) start_fractures(written);
   }
+  if (earlier)
+    for (const auto& entry : earlier->journal) ends_.push_back(entry.at("step").at("time"));
   if (model_.scene().accuracy) goals_.emplace(model_);
   if (model_.scene().output.error_estimate || goals_) estimator_.emplace(model_);
   if (goals_) estimator_->want_reactions();
@@ -272,8 +274,9 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
     return {0, 0, 0};
   }
   auto outputs = model_.system().outputs(model_.state());
+  ends_.push_back(report.time);
   physics::for_each_physics([&](auto physics) {
-    for (const auto& warning : physics.warnings_of_state(model_.setting(), outputs))
+    for (const auto& warning : physics.warnings_of_state(model_.setting(), ends_, outputs))
       if (told_.insert(warning).second) warnings_.push_back(warning);
   });
   add_fractures(step, outputs);

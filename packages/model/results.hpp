@@ -87,6 +87,7 @@ class Results {
   std::map<std::string, std::string> units_;    // of what reactions() gives
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
+  std::vector<Real> ends_;  // of the steps so far, after the start
   std::set<std::string> told_;
   std::vector<std::string> warnings_;
   std::map<std::string, Real> error_bounds_;

@@ -139,9 +139,10 @@ struct Physics {
   static std::vector<std::string> warnings(const Setting&) { return {}; }
   /// What a scene may ask and hardly means, a line each, see implausible(); `times`: the ends of all steps. Collective.
   static std::vector<std::string> plausibility(const Setting&, const std::vector<Real>& times) { return {}; }
-  /// What may be wrong with a state that a step has reached, whose outputs these are: the same text in each.
-  /// Collective.
-  static std::vector<std::string> warnings_of_state(const Setting&, const std::vector<assembly::OutputField>&) {
+  /// What may be wrong with a state that a step has reached, whose outputs these are: the same text in each. `times`:
+  /// the start and the ends of the steps until then, s. Collective.
+  static std::vector<std::string> warnings_of_state(const Setting&, const std::vector<Real>& times,
+                                                    const std::vector<assembly::OutputField>&) {
     return {};
   }
   /// Why there may be no solution, or more than one; `oscillates`: faces change their contact state from one iterate of

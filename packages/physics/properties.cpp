@@ -5,17 +5,18 @@
 namespace sprekk::physics {
 
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned) {
-  const fields::Layout layout({"value", entity, 1, ""}, mesh);
+  return with_ghosts(fields::Layout({"value", entity, 1, ""}, mesh), owned);
+}
+
+std::vector<Real> with_ghosts(const fields::Layout& layout, const std::vector<Real>& owned) {
   fields::Vector from(layout.owned()), to(layout.ghosted());
   {
     const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (std::size_t f = 0; f < owned.size(); ++f) put(f, 0) = owned[f];
+    for (std::size_t k = 0; k < owned.size(); ++k) put(k, 0) = owned[k];
   }
   to.doImport(from, *layout.import(), Tpetra::REPLACE);
   const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<Real> values;
-  for (std::size_t f = 0; f < all.extent(0); ++f) values.push_back(all(f, 0));
-  return values;
+  return {all.data(), all.data() + all.extent(0)};
 }
 
 }  // namespace sprekk::physics

@@ -47,5 +47,7 @@ Properties<T> properties(int n_groups, const std::vector<int>& group_of, const U
 
 /// The values of local entities from those of owned ones. Collective.
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned);
+/// Likewise with the components of a layout, [entity * components + component].
+std::vector<Real> with_ghosts(const fields::Layout& layout, const std::vector<Real>& owned);
 
 }  // namespace sprekk::physics

@@ -35,8 +35,8 @@ struct StorageParameters {
 std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters);
 
 struct FractureStorageParameters {
-  std::vector<Real> aperture;  ///< [local fracture face] a_0, m
-  std::vector<Real> least;     ///< [local fracture face] of the aperture, m
+  std::vector<Real> aperture = {};  ///< [local fracture face] a_0, m
+  std::vector<Real> least = {};     ///< [local fracture face] of the aperture, m
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
   bool widens = false;           ///< the aperture grows by "widening" of PoroelasticCoupling

@@ -224,10 +224,14 @@ class Convergence(ProgramTest):
                     "Time": {"end": 4e8, "steps": 4}, "Output": {"vtu": False}}
             path = self.folder / "scene.xml"
             for ranks in (1, 2):
-                for scheme, warns in (("BDF2", True), ("implicit Euler", False)):
+                for scheme, inlet, source, warns in (("BDF2", 300.0, "0", True), ("implicit Euler", 300.0, "0", False),
+                                                     ("BDF2", "300 + t/1e10 - max(t - 1e8, 0)/1e10", "0", True),
+                                                     ("BDF2", 300.0, "1e-9", True), ("BDF2", 300.0, "-1e-9", False)):
+                    tree["Boundary conditions"]["in"]["temperature"] = inlet
+                    tree["Heat"]["source"] = source
                     scene_file.save({**tree, "Time": {**tree["Time"], "scheme": scheme}}, path, "Written by convergence_test.py.")
                     _, err = self.call("run", path, "--output", "out", ranks=ranks)
-                    self.assertEqual("K beyond the given ones, 300 to 350 K" in err, warns, f"{cell}, {ranks}, {scheme}: {err}")
+                    self.assertEqual("K beyond the given ones, 300 to 350 K" in err, warns, f"{cell}, {ranks}, {scheme}, {source}: {err}")
 
     def test_joints_give_out_no_more_fluid_than_they_hold(self):
         """Closure beyond the initial aperture: the aperture ends at its bound, and the rest has left the joint."""

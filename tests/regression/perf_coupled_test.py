@@ -77,6 +77,16 @@ class Coupled(ProgramTest):
             self.assertLess(energy, 1e-7)
             self.assertEqual([step.unknown > 0 for step in balances.Balances(run).of_energy()], [biot > 0] * 3)
 
+    def test_energy_is_in_balance_in_undrained_steps(self):
+        """A pressure and a temperature change at a side; next to nothing flows by Darcy's law."""
+        for cell, scheme in (("triangle", "implicit Euler"), ("quadrilateral", "BDF2")):
+            tree = doublet(cell, **{"Materials.rock.Biot coefficient": 0.8, "Time.schedule": [100.0, 200.0, 300.0], "Time.scheme": scheme})
+            tree["Boundary conditions"]["east"] |= {"pressure": 6e6, "temperature": 320.0}
+            steps = balances.Balances(self.ran(tree)).of_energy()
+            self.assertEqual(len(steps), 3)
+            for step in steps:
+                self.assertLess(abs(step.surplus), 1e-7 * step.scale, f"{cell}, t = {step.time}")
+
     def test_what_is_wrong_is_seen(self):
         run = self.ran(doublet("quadrilateral"))
         log = (self.folder / "scene/log.txt").read_text()

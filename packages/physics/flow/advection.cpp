@@ -70,11 +70,17 @@ struct Advection {
 template <Shape shape, bool changes>
 struct InCells {
   using Cell = HybridCell<shape>;
-  using Flow = std::conditional_t<changes, ChangedFlow<Cell>, Cell>;
+  using Fluid = std::conditional_t<changes, ChangedFlow<Cell>, Cell>;
+  using Flow = StabilisedFlow<Fluid, shape>;
   using Carried = typename Cell::Columns;
   static constexpr Loop loop = Loop::cells;
+  static constexpr bool has_passed = true;
   HybridDiffusionParameters parameters;
+  Stabilisation stabilisation;
   std::unique_ptr<Cell> cell = {};
+  std::unique_ptr<fields::Layout> of_faces = {};
+  StabilisingFlow<shape> volumes = {};
+  View<Real**> passed = {};  // [local cell] as in StabilisedFlow
 
   std::vector<std::string> drivers() const {
     std::vector<std::string> fields = {parameters.field, "face " + parameters.field};
@@ -89,14 +95,50 @@ struct InCells {
   static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
   /// Times the size, m^3 that store.
   Real room(LocalIndex, const Real*, Real) const { return 1; }
+  /// What it has to know of the step before, in columns.
+  int n_passed() const { return stabilisation.softness.empty() ? 0 : 2 * Flow::n; }
   void bind(const assembly::Context& context) {
     cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
+    if (n_passed() == 0) return;
+    volumes = stabilising_flow<shape>(*context.mesh(), stabilisation);
+    of_faces = std::make_unique<fields::Layout>(fields::Field{"passed", entity, n_passed(), ""}, *context.mesh());
+    passed = View<Real**>("passed", context.mesh()->n_cells(), n_passed());
   }
-  Flow at(const assembly::State&) const {
+  /// Collective.
+  void start_step(const View<Real**>& kept) {
+    const auto own = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
+    std::vector<Real> owned;
+    for (std::size_t e = 0; e < own.extent(0); ++e)
+      for (int k = 0; k < n_passed(); ++k) owned.push_back(own(e, k));
+    const auto all = with_ghosts(*of_faces, owned);
+    const auto host = Kokkos::create_mirror_view(passed);
+    for (std::size_t e = 0; e < host.extent(0); ++e)
+      for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
+    Kokkos::deep_copy(passed, host);
+  }
+  /// `anew`: the step that led to the state does not count.
+  template <class Assembler, class Op>
+  void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
+            bool anew) const {
+    const auto n_owned = static_cast<int>(kept.extent(0));
+    const auto flow = volumes;
+    assembler.for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
+          if (e >= n_owned) return;
+          Real p[1 + Flow::n], V[Flow::n];
+          for (int k = 0; k <= Flow::n; ++k) p[k] = x[k];
+          flow.flow(e, p, V);
+          for (int i = 0; i < Flow::n; ++i) {
+            kept(e, Flow::n + i) = anew ? 0 : V[i] - kept(e, i);
+            kept(e, i) = V[i];
+          }
+        });
+  }
+  Flow at(const assembly::State& state) const {
     if constexpr (changes)
-      return {*cell, parameters.change->response};
+      return {{*cell, parameters.change->response}, volumes, passed, state.rate, state.before};
     else
-      return *cell;
+      return {*cell, volumes, passed, state.rate, state.before};
   }
 };
 
@@ -109,6 +151,7 @@ struct InFractures {
   using Flow = std::conditional_t<widens, WideningFace<Fluid>, Fluid>;
   using Carried = assembly::Slots<assembly::Slot<1 + n, 1>>;
   static constexpr Loop loop = Loop::fracture_cells;
+  static constexpr bool has_passed = false;
   FractureFlowParameters parameters;
   std::unique_ptr<FractureFaces<shape>> faces = {};
 
@@ -160,7 +203,9 @@ class AdvectionModule final : public assembly::Module {
     assembly::Declaration d;
     for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
     d.carries = rows();
-    if (corrects()) d.history = {{"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_kept(n)}};
+    if (corrects()) d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_kept(n)});
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) d.history.push_back({"passed", Where::entity, where_->n_passed()});
     return d;
   }
 
@@ -196,11 +241,27 @@ class AdvectionModule final : public assembly::Module {
     if (corrects())
       gains_ = assembly::to_device(
           correction_->gains(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0])), "gains");
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) where_->start_step(state.history.back());
+  }
+  void take_over(assembly::State& state) const override { keep_passed(state, true); }
+  void commit(assembly::State& state) const override {
+    if (corrects()) commit_correction(state);
+    keep_passed(state, false);
+  }
+
+ private:
+  using Op = Advection<typename Where::Flow, typename Where::Carried>;
+  using Assembler = assembly::Assembler<Op>;
+  static constexpr int n = Op::n, m = Op::m;
+
+  void keep_passed(const assembly::State& state, bool anew) const {
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
   }
 
   /// What upwind flow has left out in the step.
-  void commit(assembly::State& state) const override {
-    if (!corrects()) return;
+  void commit_correction(const assembly::State& state) const {
     const View<Real**> found("found", assembler_->n_entities(), Op::Columns::size), flows("flows", found.extent(0), n);
     const auto op = at(state);
     assembler_->for_each(
@@ -226,11 +287,6 @@ class AdvectionModule final : public assembly::Module {
     correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
     Kokkos::deep_copy(state.history[0], kept);
   }
-
- private:
-  using Op = Advection<typename Where::Flow, typename Where::Carried>;
-  using Assembler = assembly::Assembler<Op>;
-  static constexpr int n = Op::n, m = Op::m;
 
   bool corrects() const { return carried_.stored_in_cells != nullptr; }
   void bind_correction(const assembly::Context& context) {
@@ -270,11 +326,11 @@ std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried,
 
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_advection(Shape shape, const HybridDiffusionParameters& flow,
-                                                 const Carried& carried, const std::vector<Real>& stored) {
+std::unique_ptr<assembly::Module> make_advection(Shape shape, const FlowInRock& flow, const Carried& carried,
+                                                 const std::vector<Real>& stored) {
   return mesh::for_corners(shape, [&](auto s) {
-    return flow.change ? module_of(InCells<s(), true>{flow}, carried, stored)
-                       : module_of(InCells<s(), false>{flow}, carried, stored);
+    return flow.darcy.change ? module_of(InCells<s(), true>{flow.darcy, flow.stabilisation}, carried, stored)
+                             : module_of(InCells<s(), false>{flow.darcy, flow.stabilisation}, carried, stored);
   });
 }
 

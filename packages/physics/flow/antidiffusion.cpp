@@ -2,6 +2,7 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
+#include "physics/properties.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,24 +133,13 @@ void Antidiffusion::keep(const std::vector<Real>& u, const std::vector<Real>& of
   }
 }
 
-std::vector<Real> Antidiffusion::everywhere(const fields::Layout& layout, const std::vector<Real>& owned) const {
-  fields::Vector from(layout.owned()), to(layout.ghosted());
-  {
-    const auto put = from.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (std::size_t k = 0; k < owned.size(); ++k) put(k, 0) = owned[k];
-  }
-  to.doImport(from, *layout.import(), Tpetra::REPLACE);
-  const auto all = to.getLocalViewHost(Tpetra::Access::ReadOnly);
-  return {all.data(), all.data() + all.extent(0)};
-}
-
 std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
   const int n = graph_.n_ends;
   const auto n_owned = static_cast<LocalIndex>(kept.extent(0));
   std::vector<Real> own, shares, gained(n_owned, 0);
   for (LocalIndex e = 0; e < n_owned; ++e)
     for (int i = 0; i < n; ++i) own.push_back(kept(e, i));
-  const auto f = everywhere(of_ends_, own);
+  const auto f = with_ghosts(of_ends_, own);
   const auto inflow = [&](LocalIndex e, int i) {  // of end i, less what leaves there
     const auto k = e * n + i;
     const LocalIndex other = graph_.neighbour[k];
@@ -165,7 +155,7 @@ std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
     shares.push_back(up > room ? room / up : 1);
     shares.push_back(down > depth ? depth / down : 1);
   }
-  const auto share = everywhere(of_bounds_, shares);  // of what may rise and fall
+  const auto share = with_ghosts(of_bounds_, shares);  // of what may rise and fall
   for (LocalIndex e = 0; e < n_owned; ++e)
     for (int i = 0; i < n; ++i) {
       const LocalIndex other = graph_.neighbour[e * n + i];

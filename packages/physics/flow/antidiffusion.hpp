@@ -48,7 +48,6 @@ class Antidiffusion {
   LocalIndex n_local() const { return static_cast<LocalIndex>(graph_.centre.size()); }
   std::array<Real, 3> gradient(LocalIndex e, const std::vector<Real>& u, const std::vector<Real>& of_ends) const;
   Real share(std::size_t k) const;
-  std::vector<Real> everywhere(const fields::Layout& layout, const std::vector<Real>& owned) const;
 
   EndGraph graph_;
   fields::Layout of_ends_, of_bounds_;

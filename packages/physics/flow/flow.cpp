@@ -13,6 +13,7 @@
 #include "physics/hybrid_diffusion.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/mechanics.hpp"
+#include "physics/poroelasticity/poroelasticity.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/scene.hpp"
 #include "physics/storage.hpp"
@@ -273,7 +274,8 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
     const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
-    modules.push_back(make_advection(mesh.shape, darcy, carried, stored(carried.stored_in_cells)));
+    modules.push_back(
+        make_advection(mesh.shape, {darcy, stabilisation(scene, mesh)}, carried, stored(carried.stored_in_cells)));
     if (!mesh.fracture_names.empty())
       modules.push_back(
           make_fracture_advection(mesh.shape, fractures, carried, deforms, stored(carried.stored_in_fractures)));
@@ -370,7 +372,7 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   return all;
 }
 
-std::vector<std::string> Flow::warnings_of_state(const Setting& setting,
+std::vector<std::string> Flow::warnings_of_state(const Setting& setting, const std::vector<Real>&,
                                                  const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};

@@ -119,7 +119,7 @@ struct Flow : Physics<Flow> {
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
-  static std::vector<std::string> warnings_of_state(const Setting& setting,
+  static std::vector<std::string> warnings_of_state(const Setting& setting, const std::vector<Real>& times,
                                                     const std::vector<assembly::OutputField>& outputs);
 };
 

@@ -443,12 +443,14 @@ bool leaves_water(const mesh::Mesh& mesh, const std::vector<assembly::OutputFiel
 
 }  // namespace
 
-std::vector<std::string> Heat::warnings_of_state(const Setting& setting,
+std::vector<std::string> Heat::warnings_of_state(const Setting& setting, const std::vector<Real>& times,
                                                  const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all;
   if (!is_in(scene)) return all;
-  if (const auto warning = overshoot_warning(scene, mesh, outputs); !warning.empty()) all.push_back(warning);
+  auto given = given_temperatures(scene, mesh);
+  if (scene.heat->initial_temperature) given.push_back({.value = *scene.heat->initial_temperature});
+  if (const auto warning = overshoot_warning(setting, times, given, outputs); !warning.empty()) all.push_back(warning);
   if (scene.heat->fluid == "water" && leaves_water(mesh, outputs))
     all.push_back(
         fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K, beyond which "

@@ -291,7 +291,7 @@ std::vector<std::string> Mechanics::warnings(const Setting& setting) {
       setting.scene.origin)};
 }
 
-std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting,
+std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting, const std::vector<Real>&,
                                                       const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};

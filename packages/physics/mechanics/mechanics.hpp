@@ -120,7 +120,7 @@ struct Mechanics : Physics<Mechanics> {
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
   static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
-  static std::vector<std::string> warnings_of_state(const Setting& setting,
+  static std::vector<std::string> warnings_of_state(const Setting& setting, const std::vector<Real>& times,
                                                     const std::vector<assembly::OutputField>& outputs);
   static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
 };

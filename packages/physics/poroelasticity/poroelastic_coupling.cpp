@@ -48,11 +48,6 @@ struct Opening {
   }
 };
 
-/// The flow of a pressure's rate of change against oscillation: T(beta)/dt (p - p_j - (p_0 - p_0j)), see make_. T is of
-/// beta, zero in rows of fractures.
-template <int n_faces>
-using StabilisedCell = KeptFlow<n_faces, assembly::Slots<Slot<1, 1>, Slot<n_faces, 1>>>;
-
 class PoroelasticCoupling final : public assembly::Module {
  public:
   PoroelasticCoupling(const mesh::Mesh& mesh, PoroelasticCouplingParameters parameters)
@@ -61,7 +56,7 @@ class PoroelasticCoupling final : public assembly::Module {
         tips_(mesh.n_global_enriched > 0) {}
 
   std::string name() const override { return "poroelastic coupling"; }
-  std::string fingerprint() const override { return parameters_.initial.text(); }
+  std::string fingerprint() const override { return parameters_.stabilisation.initial.text(); }
 
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
@@ -126,7 +121,7 @@ class PoroelasticCoupling final : public assembly::Module {
   }
 
   void initial(const assembly::Rows& x) const override {
-    put_initial(*mesh_, parameters_.initial, x[pressures_[0]], x[pressures_[1]]);
+    put_initial(*mesh_, parameters_.stabilisation.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
   /// Rates count from the state that is there, also in cells that are new.
@@ -152,16 +147,11 @@ class PoroelasticCoupling final : public assembly::Module {
     return state;
   }
 
-  Real initial(const mesh::Vector& x) const { return parameters_.initial(x, 0); }
+  Real initial(const mesh::Vector& x) const { return parameters_.stabilisation.initial(x, 0); }
   Real mean_initial(LocalIndex cell) const {
     return assembly::cell_mean(*mesh_, cell, [&](const auto& x) { return initial(x); })[1];
   }
   Real biot(LocalIndex cell) const { return parameters_.biot.of_cell(*mesh_, cell); }
-  /// alpha^2/(lambda + 2G)
-  Real softness(LocalIndex cell) const {
-    const auto& law = parameters_.elasticity.of_cell(*mesh_, cell);
-    return biot(cell) * biot(cell) / (law.lambda + 2 * law.G);
-  }
 
   void add_cells(const assembly::Context& context);
   void add_work(const assembly::Context& context, Loop loop, const char* displacement, const View<Real**>& volume,
@@ -169,8 +159,6 @@ class PoroelasticCoupling final : public assembly::Module {
   void add_stabilisation(const assembly::Context& context);
   void add_sides(const assembly::Context& context);
   void add_tips(const assembly::Context& context);
-  template <Shape shape>
-  StabilisedCell<mesh::n_faces(shape)> stabilised() const;
 
   PoroelasticCouplingParameters parameters_;
   bool fractures_, tips_;  // the mesh has some; enriched ones
@@ -200,7 +188,7 @@ void PoroelasticCoupling::add_cells(const assembly::Context& context) {
   for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
     const auto [volume, mean] = assembly::cell_mean(*mesh_, c, [&](const auto& x) { return initial(x); });
     reference.push_back(mean);
-    if (c < mesh_->n_owned_cells) schur.push_back(softness(c) * volume);
+    if (c < mesh_->n_owned_cells) schur.push_back(parameters_.stabilisation.softness[c] * volume);
   }
   schur_ = assembly::to_device(schur, "schur");
   const auto volume = cell_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
@@ -218,51 +206,15 @@ void PoroelasticCoupling::add_work(const assembly::Context& context, Loop loop, 
 void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
   const std::vector<int> blocks(pressures_.begin(), pressures_.end());
   stabilisation_ = mesh::for_corners(mesh_->shape, [&](auto shape) {
-    return assembly::Term(context, Loop::cells, blocks, blocks, true,
-                          [op = stabilised<shape()>()](const assembly::State& state) {
-                            auto at = op;
-                            at.rate = state.rate;
-                            return at;
-                          });
+    return assembly::Term(
+        context, Loop::cells, blocks, blocks, true,
+        [op = stabilising_flow<shape()>(*mesh_, parameters_.stabilisation)](const assembly::State& state) {
+          auto at = op;
+          at.rate = state.rate;
+          return at;
+        });
   });
   rates_.push_back(stabilisation_);
-}
-
-/// Faces of fractures get no share: the flow through them is spread over the others.
-template <Shape shape>
-StabilisedCell<mesh::n_faces(shape)> PoroelasticCoupling::stabilised() const {
-  constexpr int dim = mesh::dimension(shape), n_corners = mesh::n_corners(shape), n_faces = mesh::n_faces(shape);
-  std::vector<int> closed(mesh_->n_cells() * n_faces, 0);
-  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
-    const auto& face = mesh_->fracture_faces[f];
-    closed[face.cell[side] * n_faces + face.local_face[side]] = 1;
-  }
-  const bool falls = !parameters_.initial.is_constant();
-  const View<Real**> T_device("T", mesh_->n_cells(), n_faces * n_faces),
-      lift_device("lift", falls ? mesh_->n_cells() : 0, n_faces);
-  const auto T = Kokkos::create_mirror_view(T_device), lift = Kokkos::create_mirror_view(lift_device);
-  Real X[n_corners][dim];
-  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    assembly::gather_host<shape>(*mesh_, c, X);
-    const CellFaces<shape> faces(X);
-    if (biot(c) == 0) continue;
-    laws::Mobility beta;
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j)
-        for (int k = 0; k < n_corners; ++k)
-          beta.value[i][j] += softness(c) * faces.corners[k][i] * faces.corners[k][j] / n_corners;
-    FlowMatrix<shape> matrix(faces, beta, parameters_.scheme);
-    for (int e = 0; e < n_faces; ++e)
-      if (closed[c * n_faces + e]) matrix.close(e);
-    for (int i = 0; i < n_faces; ++i)
-      for (int j = 0; j < n_faces; ++j) T(c, i * n_faces + j) = matrix.T[i][j];
-    const Real mean = falls ? mean_initial(c) : 0;
-    for (int j = 0; j < n_faces && falls; ++j)
-      lift(c, j) = assembly::face_mean(*mesh_, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
-  }
-  Kokkos::deep_copy(T_device, T);
-  Kokkos::deep_copy(lift_device, lift);
-  return {.T = T_device, .lift = lift_device};
 }
 
 void PoroelasticCoupling::add_sides(const assembly::Context& context) {

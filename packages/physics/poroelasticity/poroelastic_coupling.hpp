@@ -2,9 +2,7 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "base/expression.hpp"
-#include "laws/elasticity.hpp"
-#include "physics/hybrid_cell.hpp"
+#include "physics/flow/stabilisation.hpp"
 #include "physics/properties.hpp"
 
 #include <memory>
@@ -14,10 +12,8 @@ namespace sprekk::physics {
 
 struct PoroelasticCouplingParameters {
   /// Of cells, Biot (1941): total stress is sigma(u) + sigma_0 - biot (p - p_0) I.
-  Properties<Real> biot;                    ///< alpha in [0, 1]
-  Properties<laws::Elasticity> elasticity;  ///< drained
-  base::Expression initial = 0;             ///< p_0, Pa
-  FluxScheme scheme = FluxScheme::rt0;      ///< as in the rock
+  Properties<Real> biot;        ///< alpha in [0, 1]
+  Stabilisation stabilisation;  ///< with p_0
 };
 
 /// Couples "displacement" (with "side bubble" and "tip displacement" where there are) to "pressure" and "face pressure"
@@ -28,11 +24,7 @@ struct PoroelasticCouplingParameters {
 ///                                                                  (2024), (6)(7), acts on the sides of a fracture
 ///   rows of "widening"      |f| b - W_f(u)
 ///   rows of "pressure"      (V_K(u) - V_K(u_old))/dt               implicit Euler, m^3/s (2D: m^2/s)
-/// and to the rows of pressures, against oscillation of pressures in steps too short for drainage, the hybrid form of
-///   -div(beta grad (p - p_old)/dt),   beta = alpha^2/(lambda + 2G) S
-/// S the mean of x x^T over the corners of a cell, seen from its centre: h^2/4 for an edge h, as Aguilar, Gaspar,
-/// Lisbona and Rodrigo (2008) have it; it vanishes with h^2. Nothing of it flows into fractures. What fluid fractures
-/// have room for is the matter of make_fracture_storage().
+/// and to the rows of pressures the flow of Stabilisation. make_fracture_storage() stores the fluid in fractures.
 std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
                                                             PoroelasticCouplingParameters parameters);
 

@@ -24,13 +24,7 @@ Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
 }
 
 std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
-  const Properties<laws::Mobility> any{
-      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1))};
-  const auto scheme = flux_scheme(scheme_entry(scene), mesh, scene.flow ? mobility(scene, mesh) : any).scheme;
-  return make_poroelastic_coupling(mesh, {.biot = biot(scene, mesh),
-                                          .elasticity = elasticity(scene, mesh),
-                                          .initial = initial_pressure(scene),
-                                          .scheme = scheme});
+  return make_poroelastic_coupling(mesh, {.biot = biot(scene, mesh), .stabilisation = stabilisation(scene, mesh)});
 }
 
 /// The pressure that a host gives.
@@ -44,6 +38,21 @@ void Poroelasticity::Rock::describe(base::Section& s) {
   entry_of_place(s, biot, biot_name, "-", base::between(0, 1),
                  "alpha: with \"Flow\" total stress is that of the displacement less alpha (p - initial pressure), and "
                  "pores grow by alpha div u");
+}
+
+Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh) {
+  if (!Poroelasticity::is_in(scene)) return {};
+  const auto alpha = biot(scene, mesh);
+  const auto laws = elasticity(scene, mesh);
+  std::vector<Real> softness;
+  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+    const auto& law = laws.of_cell(mesh, c);
+    softness.push_back(alpha.of_cell(mesh, c) * alpha.of_cell(mesh, c) / (law.lambda + 2 * law.G));
+  }
+  const Properties<laws::Mobility> any{
+      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1))};
+  const auto scheme = flux_scheme(scheme_entry(scene), mesh, scene.flow ? mobility(scene, mesh) : any).scheme;
+  return {std::move(softness), initial_pressure(scene), scheme};
 }
 
 bool Poroelasticity::is_in(const Scene& scene) { return Mechanics::is_in(scene) && has_fluid(scene); }

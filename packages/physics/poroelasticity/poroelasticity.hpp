@@ -1,6 +1,7 @@
 // What flow and mechanics are to each other where a scene has both.
 #pragma once
 
+#include "physics/flow/stabilisation.hpp"
 #include "physics/physics.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
 
@@ -17,5 +18,8 @@ struct Poroelasticity : Physics<Poroelasticity> {
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
 };
+
+/// Of the pressure of a fluid in rock that deforms; empty where there is none. Collective.
+Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics
