@@ -86,11 +86,21 @@ def finite(written):
     return []
 
 
+def rounding_of_stress(written):
+    """The thermal stress of a change of temperature by its rounding, Pa."""
+    level = written.value(written.entries["Heat"]["initial temperature"]) if "Heat" in written.entries else 0
+    stiffness = max((float(m.get("Young's modulus", 0)) * abs(float(m.get("thermal expansion", 0)))
+                     for m in written.entries["Materials"].values()), default=0)
+    return 1e-12 * stiffness * level
+
+
 def contact(written):
     """(lines, violation) of the laws of contact and friction."""
     first = written.states[0].fractures if written.states else None
     if first is None or "traction local" not in first.cell_data:
         return [], None
+    if max(np.abs(state.fractures.cell_data["traction local"]).max() for state in written.states) <= rounding_of_stress(written):
+        return [], 0.0
     input_ = violation.Input(written.directory / "effective_input.xml")
     *_, worst, _ = violation.largest(written.directory, written.results, input_)
     k = int(worst.argmax())

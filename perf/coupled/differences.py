@@ -5,6 +5,7 @@ import numpy as np
 LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
 STRESSES = ("stress", "traction", "largest compression")
 LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "slip tendency", "error of damage history")
+ROUNDING, ALLOWED = 1e-13, 1e-8  # of levels of pressures and temperatures; of differences
 NEAR = 1e-9  # of the limit between two states: there a face may have either
 
 
@@ -25,7 +26,8 @@ class Scales:
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
 
     def _least_fluxes(self, written):
-        """Flows are known to the rounding of pressures times what conducts it."""
+        """Flows are known to the rounding of the driving pressures and temperatures, 1e-13 of their levels, times the conductance of
+        a cell."""
         first = written.states[0]
         edge = (first.bulk.sizes.min()) ** (1 / first.bulk.dim)
         level = abs(self.start["pressure"]) + self.largest.get("pressure", 0)
@@ -36,7 +38,12 @@ class Scales:
         open_ = max(apertures, default=0) ** 3 / 12
         for kind, conducts in (("Darcy velocity", mobility), ("fluid flux", open_)):
             if kind in self.largest:
-                self.largest[kind] = max(self.largest[kind], 1e-7 * level * conducts / mu / edge)
+                self.largest[kind] = max(self.largest[kind], ROUNDING / ALLOWED * level * conducts / mu / edge)
+        if "heat flux" in self.largest:
+            level = self.start["temperature"] + self.largest["temperature"]
+            conducts = max((float(word) for m in written.entries["Materials"].values()
+                            for word in m.get("thermal conductivity", "{}").strip("{}").split(",") if word.strip()), default=0)
+            self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * conducts / edge)
 
     def of(self, name):
         return self.largest.get(kind_of(name), 0) or 1.0
