@@ -74,8 +74,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
     report_.reason = reason;
     status_ = NOX::StatusTest::Failed;
   }
-  /// Once, after a linear solve whose residual is large and yet that of rounding: where a conductance is large,
-  /// rounding of the change of a pressure hides the balance of the small flows around it. The next change is smaller.
+  /// Once, after a linear solve whose residual is large and yet that of rounding: where an entry of the matrix is
+  /// large, rounding of the change hides the balance of the small terms in the same rows. The next change is smaller.
   bool refines() {
     const auto& linear = model_.linear_history();
     return !linear.empty() && linear.back().residual > acceptable_linear_residual && !std::exchange(refined_, true);

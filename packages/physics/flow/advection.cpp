@@ -250,16 +250,6 @@ class AdvectionModule final : public assembly::Module {
     keep_passed(state, false);
   }
 
- private:
-  using Op = Advection<typename Where::Flow, typename Where::Carried>;
-  using Assembler = assembly::Assembler<Op>;
-  static constexpr int n = Op::n, m = Op::m;
-
-  void keep_passed(const assembly::State& state, bool anew) const {
-    if constexpr (Where::has_passed)
-      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
-  }
-
   /// What upwind flow has left out in the step.
   void commit_correction(const assembly::State& state) const {
     const View<Real**> found("found", assembler_->n_entities(), Op::Columns::size), flows("flows", found.extent(0), n);
@@ -286,6 +276,16 @@ class AdvectionModule final : public assembly::Module {
     const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
     correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
     Kokkos::deep_copy(state.history[0], kept);
+  }
+
+ private:
+  using Op = Advection<typename Where::Flow, typename Where::Carried>;
+  using Assembler = assembly::Assembler<Op>;
+  static constexpr int n = Op::n, m = Op::m;
+
+  void keep_passed(const assembly::State& state, bool anew) const {
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
   }
 
   bool corrects() const { return carried_.stored_in_cells != nullptr; }
