@@ -366,7 +366,9 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
-  constexpr Real share_at_work = 1e-6;  // of the energy of what is carried: as much of it acts on all else, or less
+  /// Of the energy of what is carried: as much of it acts on all else, or less. Rows of what is carried grow by orders
+  /// of magnitude with the flow, and for a given flow they are linear: they must not refuse a step that mends the flow.
+  constexpr Real share_at_work = 1e-9;
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
@@ -389,8 +391,9 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
           s += w * size * size;
         },
         part);
-    const Real unit = carried_[b] ? blocks_[b].kinematic_scale / share_at_work : 1;  // so that these are powers, too
-    sum += powers ? dt_ * part / unit : part;                                        // the energy of a power
+    const Real share = carried_[b] ? share_at_work : 1,
+               unit = carried_[b] ? blocks_[b].kinematic_scale : 1;  // so that these are powers, too
+    sum += share * (powers ? dt_ * part / unit : part);              // the energy of a power
   }
   return base::sum_over_ranks(*comm(), sum);
 }

@@ -289,7 +289,8 @@ class Balances:
                         *(well["rate"] for well in step.get("wells", {}).values())]
             of_rock, of_faces = self.sources(state.time)
             given = sum(incoming) + of_rock.sum() + of_faces.sum()
-            least = ROUNDING * factor[0] * (abs(now.pores).sum() + abs(now.faces).sum() + self.in_rock(now))
+            in_pores = (self.k.volume * self.k.growth * (abs(self.k.p_start) + abs(state.bulk.cell_data["pressure"]))).sum()
+            least = ROUNDING * factor[0] * (abs(now.pores).sum() + in_pores + abs(now.faces).sum() + self.in_rock(now))
             scale = max(sum(map(abs, incoming)) + abs(of_rock).sum() + abs(of_faces).sum(),
                         abs(cells).sum() + abs(faces).sum() + abs(rock).sum(), least)
             all_.append(Balance(state.time, cells.sum() + faces.sum() + rock.sum() - given, scale))

@@ -105,13 +105,13 @@ def of_numbers(one, other, rename, scales):
         size = max((abs(v) for a, _ in steps for v in a.get(key, {}).values()), default=0)
         worst = max([worst] + [(abs(v - b[key][name]) / max(size, _least(one, scales, key)), f"{key} of {name} at t = {a['time']:g}")
                                for a, b in steps for name, v in a.get(key, {}).items()])
-    rates = max((abs(well["rate"]) for a, _ in steps for well in a.get("wells", {}).values()), default=0)
+    largest_of = {key: max((abs(well.get(key, 0)) for a, _ in steps for well in a.get("wells", {}).values()), default=0)
+                  for key in ("rate", "heat")}
     for a, b in steps:
         for name, well in a.get("wells", {}).items():
             there = {_own(key, rename): v for key, v in b["wells"][name].items()}
             for key, value in well.items():
-                size = scales.of("pressure") if key == "pressure" else scales.of("temperature") if key == "temperature" else \
-                    max(rates, 1e-300) * (one.number("Heat", "fluid heat capacity", default=1) * scales.of("temperature") if key == "heat" else 1)
+                size = scales.of(key) if key in ("pressure", "temperature") else max(largest_of.get(key, largest_of["rate"]), 1e-300)
                 worst = max(worst, (abs(value - there[key]) / size, f"{key} of well {name} at t = {a['time']:g}"))
     return worst
 
