@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "base/check.hpp"
+#include "base/value.hpp"
 
 namespace sprekk::multigrid {
 namespace {
@@ -166,7 +167,10 @@ void Mumps::read_controls() {
     else if (std::sscanf(name.c_str(), "CNTL(%d)", &i) == 1 && i >= 1 && i <= 15 && entry.isType<double>())
       cntl_[i - 1] = Teuchos::getValue<double>(entry);
     else
-      throw Error(fmt::format("MUMPS: parameter '{}'; allowed are ICNTL(1..60), int, and CNTL(1..15), double", name));
+      throw Error(
+          fmt::format("Sprekk > Solver > Linear solver > MUMPS > \"{}\": is {}; there are ICNTL(1) to ICNTL(60), "
+                      "integers, and CNTL(1) to CNTL(15), numbers with a point or an exponent",
+                      name, base::describe(entry)));
   }
 }
 

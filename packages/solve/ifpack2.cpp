@@ -1,5 +1,9 @@
 // Preconditioners of Ifpack2, for a block or several joined.
+#include <Ifpack2_AdditiveSchwarz.hpp>
 #include <Ifpack2_Factory.hpp>
+
+#include <algorithm>
+#include <array>
 
 #include "base/check.hpp"
 #include "solve/preconditioner.hpp"
@@ -31,26 +35,29 @@ RCP<Ifpack2Preconditioner> create(const std::string& method, const ParameterList
   return made;
 }
 
-/// Throws an Error that names the entry if Ifpack2 takes it for wrong, or does not read it: tried on the number 1.
-void check(const std::string& block, const std::string& method, const ParameterList& given,
-           const RCP<const Comm>& comm) {
-  const auto place = fmt::format("Sprekk > Solver > Blocks > {} > Ifpack2", block);
+RCP<CrsMatrix> matrix_of_one(const RCP<const Comm>& comm) {
   const auto map = rcp(new Map(1, 0, comm));
   const auto one = rcp(new CrsMatrix(map, 1));
   for (const GlobalIndex row : base::local_elements(*map))
     one->insertGlobalValues(row, 1, std::array{1.0}.data(), &row);
   one->fillComplete();
-  ParameterList list(given);
-  try {
-    const auto made = Ifpack2::Factory::create<RowMatrix>(method, one);
-    made->setParameters(list);
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: {}", place, gist(error.what())));
+  return one;
+}
+
+/// The parameters of the method SCHWARZ and those of the method in its subdomains, for which Ifpack2 has four names.
+void check_schwarz(const std::string& place, const ParameterList& given, ParameterList allowed,
+                   const RCP<const Comm>& comm) {
+  std::string method = "ILUT";  // if none is named
+  for (const std::string inner :
+       {"inner preconditioner", "subdomain solver", "schwarz: inner preconditioner", "schwarz: subdomain solver"}) {
+    allowed.set(inner + " name", "");
+    allowed.sublist(inner + " parameters");
+    if (given.isType<std::string>(inner + " name")) method = given.get<std::string>(inner + " name");
   }
-  for (const auto& item : list)
-    SPREKK_CHECK(item.second.isList() || item.second.isUsed(),
-                 "{} > \"{}\": {} does not read this parameter; see Ifpack2's manual for those that it has", place,
-                 item.first, method);
+  check_names(place, given, {allowed});
+  for (const auto& item : given)
+    if (item.second.isList() && item.first != "schwarz: reordering list")
+      check_ifpack2(place + " > " + item.first, method, given.sublist(item.first), comm);
 }
 
 class Ifpack2Method : public Preconditioner {
@@ -59,6 +66,7 @@ class Ifpack2Method : public Preconditioner {
                 const ParameterList& parameters)
       : Preconditioner(type, block), type_(type), method_(method), parameters_(parameters) {}
 
+  std::string given_list() const override { return type_ == "Ifpack2" ? type_ : ""; }
   bool is_symmetric() const override { return type_ == "Gauss-Seidel"; }  // of others it is not known
   void describe(ParameterList& blocks) const override {
     auto& list = blocks.sublist(block());
@@ -101,11 +109,32 @@ class Ifpack2Method : public Preconditioner {
 
 }  // namespace
 
+void check_ifpack2(const std::string& place, const std::string& method, const ParameterList& given,
+                   const RCP<const Comm>& comm, const std::vector<std::string>& known) {
+  ParameterList list(given);
+  list.setName(place);  // Ifpack2 names it
+  RCP<Ifpack2Preconditioner> made;
+  try {
+    made = Ifpack2::Factory::create<RowMatrix>(method, matrix_of_one(comm));
+    made->setParameters(list);
+  } catch (const std::exception& error) {
+    throw RefusedList(fmt::format("{}: {}", place, gist(error.what())));
+  }
+  if (const auto* schwarz = dynamic_cast<const Ifpack2::AdditiveSchwarz<RowMatrix>*>(made.get()))  // marks copies
+    return check_schwarz(place, given, *schwarz->getValidParameters(), comm);
+  for (const auto& item : given)
+    if (!list.getEntry(item.first).isUsed() && std::find(known.begin(), known.end(), item.first) == known.end())
+      throw RefusedList(
+          fmt::format("{} > \"{}\": {} does not read this parameter; see Ifpack2's manual for those that it has", place,
+                      item.first, method));
+}
+
 std::unique_ptr<Preconditioner> make_ifpack2(const ParameterList& given, const std::vector<Block>& blocks) {
   ParameterList parameters(given);
   const auto method = parameters.get<std::string>("type");
   parameters.remove("type");
-  check(blocks.front().name, method, parameters, blocks.front().map->getComm());
+  check_ifpack2(fmt::format("Sprekk > Solver > Blocks > {} > Ifpack2", blocks.front().name), method, parameters,
+                blocks.front().map->getComm());
   return std::make_unique<Ifpack2Method>("Ifpack2", blocks.front().name, method, parameters);
 }
 

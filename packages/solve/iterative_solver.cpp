@@ -57,7 +57,7 @@ class IterativeSolver : public LinearSolver {
         reproducible_(options.reproducible.value_or(false)),
         should_stop_(options.should_stop),
         parameters_("iterative") {
-    check_krylov(options.belos);
+    check_krylov(options.belos, blocks.front().map->getComm());
     preconditioner_ = make_preconditioner(options_, blocks_);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
@@ -218,7 +218,9 @@ class IterativeSolver : public LinearSolver {
       preconditioner_->setup(system_, keeps);
       inverse_ = preconditioner_->inverse();
       if (const auto made = preconditioner_->matrix(); scale_.is_null() && !made.is_null()) matrix_ = made;
+      has_worked_ = true;
     } catch (const Error& error) {
+      if (!has_worked_ && dynamic_cast<const RefusedList*>(&error)) throw;
       failure_ = error.what();
       preconditioner_ = make_preconditioner(options_, blocks_);  // what the libraries left may differ among ranks
       inverse_ = Teuchos::null;
@@ -318,7 +320,7 @@ class IterativeSolver : public LinearSolver {
   static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
   LinearSystem system_;
   std::vector<RCP<const Vector>> diagonals_;  // [block] when multigrid was made; null: it has none
-  bool symmetric_ = false, definite_ = true;
+  bool symmetric_ = false, definite_ = true, has_worked_ = false;
   Reuse reuse_;
   std::string failure_ = "the matrix was not set up";
 };

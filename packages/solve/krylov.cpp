@@ -4,9 +4,14 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 
+#include <Teuchos_oblackholestream.hpp>
+
 #include <algorithm>
+#include <array>
+#include <set>
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
@@ -22,23 +27,6 @@ ParameterList krylov_defaults() {
   list.set("Implicit Residual Scaling", "Norm of RHS");
   list.set("Explicit Residual Scaling", "Norm of RHS");
   return list;
-}
-
-/// By what the methods that are used here, or the one that is asked for, know.
-void check_krylov(const ParameterList& given) {
-  std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};
-  if (given.isParameter("Solver Type")) methods = {given.get<std::string>("Solver Type")};
-  std::vector<ParameterList> lists(1);
-  lists[0].set("Solver Type", "");
-  Belos::SolverFactory<Real, MultiVector, Operator> factory;
-  for (const auto& method : methods) {
-    try {
-      lists.push_back(*factory.create(method, Teuchos::parameterList())->getValidParameters());
-    } catch (const std::exception&) {
-      throw Error(fmt::format("Belos has no solver \"{}\"", method));
-    }
-  }
-  check_names(ParameterList(given).setName("Belos"), lists);
 }
 
 namespace {
@@ -86,6 +74,76 @@ KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, con
   } catch (const Belos::CGIterateFailure&) {  // by sums over all ranks, on all of them
     return {false, 0, true};
   }
+}
+
+namespace {
+
+const std::string place = "Sprekk > Solver > Linear solver > Belos";
+
+/// All that a solver has, with its defaults; null: Belos has no such solver for these matrices.
+RCP<const ParameterList> parameters_of(const std::string& method) {
+  try {
+    return Belos::SolverFactory<Real, MultiVector, Operator>()
+        .create(method, Teuchos::parameterList())
+        ->getValidParameters();
+  } catch (const std::exception&) {
+    return Teuchos::null;
+  }
+}
+
+std::vector<std::string> solvers() {
+  std::set<std::string> names;
+  for (const auto& name : Belos::SolverFactory<Real, MultiVector, Operator>().supportedSolverNames())
+    if (!parameters_of(name).is_null()) names.insert(name);
+  return {names.begin(), names.end()};
+}
+
+RCP<fields::CrsMatrix> small_matrix(int n, const RCP<const Comm>& comm) {
+  const auto map = rcp(new fields::Map(n, 0, comm));
+  const auto matrix = rcp(new fields::CrsMatrix(map, 1));
+  for (const GlobalIndex row : base::local_elements(*map))
+    matrix->insertGlobalValues(row, 1, std::array{1.0 + static_cast<Real>(row)}.data(), &row);
+  matrix->fillComplete();
+  return matrix;
+}
+
+/// Of a small system: a method that breaks down on it may do well on others, so that this says nothing.
+void try_parameters(const ParameterList& given, const std::string& method, const RCP<const Comm>& comm) {
+  auto parameters = krylov_defaults();
+  parameters.setParameters(given);
+  if (given.isParameter("Verbosity"))
+    parameters.set<RCP<std::ostream>>("Output Stream", rcp(new Teuchos::oblackholestream));
+  const auto A = small_matrix(200 + 2 * parameters.get<int>("Num Blocks"), comm);  // bases must fit
+  fields::Vector b(A->getRowMap()), x(A->getRowMap());
+  b.putScalar(1);
+  try {
+    krylov(A, A, parameters, method, b, x, 1e-6);
+  } catch (const Belos::BelosError&) {
+  } catch (const std::exception& error) {
+    throw RefusedList(fmt::format("{}: {}", place, gist(error.what())));
+  }
+}
+
+}  // namespace
+
+/// By what the methods that are used here, or the one that is asked for, know.
+void check_krylov(const ParameterList& given, const RCP<const Comm>& comm) {
+  if (given.numParams() == 0) return;
+  std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};
+  if (given.isParameter("Solver Type")) {
+    SPREKK_CHECK(given.isType<std::string>("Solver Type"), "{} > \"Solver Type\": must be the name of a solver", place);
+    methods = {given.get<std::string>("Solver Type")};
+  }
+  std::vector<ParameterList> lists(1);
+  lists[0].set("Solver Type", "");
+  for (const auto& method : methods)
+    if (const auto valid = parameters_of(method); valid.is_null())
+      throw RefusedList(fmt::format("{} > \"Solver Type\": Belos has no solver \"{}\"; it has {}", place, method,
+                                    base::quoted_list(solvers())));
+    else
+      lists.push_back(*valid);
+  check_names(place, given, lists);
+  for (const auto& method : methods) try_parameters(given, method, comm);
 }
 
 }  // namespace sprekk::solve

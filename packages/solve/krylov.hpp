@@ -11,8 +11,9 @@ namespace sprekk::solve {
 /// What Belos is handed unless a scene says otherwise. Stored data.
 Teuchos::ParameterList krylov_defaults();
 
-/// Throws an Error that names the entry where Belos has no such solver, or the solver no such parameter. Stored data.
-void check_krylov(const Teuchos::ParameterList& given);
+/// Throws a RefusedList where Belos has no such solver, the solver no such parameter, or it refuses a value: tried on
+/// a small system. Collective.
+void check_krylov(const Teuchos::ParameterList& given, const RCP<const Comm>& comm);
 
 struct KrylovEnd {
   bool ended;  ///< by itself: converged, or stopped where rounding leaves no more to gain; false: too many iterations

@@ -5,6 +5,7 @@
 
 #include "base/check.hpp"
 #include "base/parameters.hpp"
+#include "solve/krylov.hpp"
 #include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
@@ -79,8 +80,12 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
                            ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
                                          is_3d ? "3D" : "2D", n, limit)
                            : fmt::format("{}: asked for; {} unknowns", options.type, n);
-  if (!direct) return {make_iterative_solver(options, blocks), reason};
+  if (!direct) {
+    make_direct_solver(options.mumps);  // for its errors
+    return {make_iterative_solver(options, blocks), reason};
+  }
   make_preconditioner(options.preconditioner, blocks);  // for its errors: what is said of blocks must be right anyway
+  check_krylov(options.belos, blocks.front().map->getComm());
   const int n_ranks = blocks.front().map->getComm()->getSize();
   const bool on_one_rank = options.reproducible.value_or(false) && n_ranks > 1;
   if (on_one_rank) reason += "; reproducible: factored on rank 0";

@@ -1,4 +1,6 @@
 // Smoothed aggregation of MueLu, for a block or several joined.
+#include <Amesos2_Factory.hpp>
+#include <Ifpack2_Factory.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
 #include <MueLu_MasterList.hpp>
 
@@ -51,6 +53,71 @@ ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places)
     list.set("repartition: max imbalance", 1.3);
   }
   return list;
+}
+
+/// Whether MueLu makes this smoother itself, from more than parameters.
+bool is_of_muelu(const std::string& type) {
+  return type.rfind("LINESMOOTHING", 0) == 0 || type == "TOPOLOGICAL" || type == "AGGREGATE" || type == "HIPTMAIR";
+}
+
+/// The parameters of a smoother, or of a coarse level's solver, of this type.
+void check_smoother(const std::string& place, const std::string& type, const ParameterList& given,
+                    const RCP<const Comm>& comm) {
+  static const std::vector<std::string> of_muelu = {
+      "smoother: use blockcrsmatrix storage", "chebyshev: use rowsumabs diagonal scaling",
+      "chebyshev: rowsumabs diagonal replacement tolerance", "chebyshev: rowsumabs diagonal replacement value"};
+  if (is_of_muelu(type)) return;
+  if (Ifpack2::Factory::isSupported<Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>>(type))
+    return check_ifpack2(place, type, given, comm, of_muelu);
+  ParameterList of_direct_solvers;
+  of_direct_solvers.set("fix nullspace", false);
+  check_names(place, given, {of_direct_solvers});
+}
+
+void check_coarse_type(const std::string& place, const ParameterList& given) {
+  if (!given.isType<std::string>("coarse: type")) return;
+  const auto type = given.get<std::string>("coarse: type");
+  const bool known = type.empty() || type == "none" || is_of_muelu(type) || Amesos2::query(type) ||
+                     Ifpack2::Factory::isSupported<Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>>(type);
+  if (!known)
+    throw RefusedList(
+        fmt::format("{} > \"coarse: type\": is \"{}\", which neither Amesos2 nor Ifpack2 has here", place, type));
+}
+
+/// The list that a scene gives, or its section of one level. `whole` has the types that it does not give.
+void check_lists(const std::string& place, const ParameterList& given, const ParameterList& whole,
+                 const RCP<const Comm>& comm) {
+  check_names(place, given, {*MueLu::MasterList::List()});
+  check_coarse_type(place, given);
+  for (const std::string smoother : {"smoother: ", "smoother: pre ", "smoother: post ", "coarse: "}) {
+    if (!given.isSublist(smoother + "params")) continue;
+    std::string type;
+    for (const auto* list : {&whole, &given})
+      for (const std::string& of : {smoother == "coarse: " ? smoother : "smoother: ", smoother})
+        if (list->isType<std::string>(of + "type")) type = list->get<std::string>(of + "type");
+    check_smoother(fmt::format("{} > {}params", place, smoother), type, given.sublist(smoother + "params"), comm);
+  }
+}
+
+/// Throws a RefusedList if MueLu, or what it hands to other libraries, does not take what is given; `whole` is that
+/// over the defaults.
+void check(const std::string& place, const ParameterList& given, const ParameterList& whole,
+           const RCP<const Comm>& comm) {
+  ParameterList top(given);
+  top.remove("user data", false);
+  for (const auto& item : given) {
+    const std::string& name = item.first;
+    if (name.rfind("level ", 0) != 0 || !item.second.isList()) continue;
+    check_lists(place + " > " + name, given.sublist(name), whole, comm);
+    top.remove(name);
+  }
+  check_lists(place, top, whole, comm);
+  ParameterList list(whole);
+  try {
+    MueLu::ParameterListInterpreter<Real, LocalIndex, GlobalIndex, Map::node_type> interpreter(list, comm);
+  } catch (const std::exception& error) {
+    throw RefusedList(fmt::format("{}: {}", place, gist(error.what())));
+  }
 }
 
 /// Raises the diagonal of a matrix a little while it lives, and leaves its bits as they were: parts that float, in the
@@ -106,8 +173,9 @@ class Scaled : public Operator {
 /// Of one block: on its coordinates and near null space, aggregated by its bulk. Of others: on the numbers alone.
 class MueLuMultigrid : public Preconditioner {
  public:
-  MueLuMultigrid(const std::string& block, const ParameterList& parameters)
-      : Preconditioner("multigrid", block), parameters_(parameters) {}
+  /// `given`: some of the parameters are a scene's.
+  MueLuMultigrid(const std::string& block, const ParameterList& parameters, bool given)
+      : Preconditioner("multigrid", block), parameters_(parameters), given_(given) {}
 
   int coarse_size() const override { return parameters_.get<int>("coarse: max size"); }
   void describe(ParameterList& blocks) const override {
@@ -117,6 +185,7 @@ class MueLuMultigrid : public Preconditioner {
   }
 
  private:
+  std::string given_list() const override { return given_ ? "MueLu" : ""; }
   using Hierarchy = MueLu::TpetraOperator<Real, LocalIndex, GlobalIndex>;
 
   void prepare(const LinearSystem& system, SolverCost& cost) override {
@@ -162,6 +231,7 @@ class MueLuMultigrid : public Preconditioner {
   }
 
   ParameterList parameters_;
+  bool given_;
   WholeMatrix matrix_;
   RCP<Hierarchy> hierarchy_;
   bool symmetric_ = true;
@@ -170,7 +240,6 @@ class MueLuMultigrid : public Preconditioner {
 }  // namespace
 
 std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std::vector<Block>& blocks) {
-  check_names(ParameterList(given).setName("MueLu"), {*MueLu::MasterList::List()});
   const auto& first = blocks.front();
   const bool has_places = blocks.size() == 1 && !first.coordinates.is_null();
   auto list =
@@ -183,7 +252,9 @@ std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std
   }
   if (first.advected || given.isParameter("smoother: type")) list.remove("smoother: params");
   list.setParameters(given);
-  return std::make_unique<MueLuMultigrid>(first.name, list);
+  if (given.numParams() > 0)
+    check(fmt::format("Sprekk > Solver > Blocks > {} > MueLu", first.name), given, list, first.map->getComm());
+  return std::make_unique<MueLuMultigrid>(first.name, list, given.numParams() > 0);
 }
 
 }  // namespace sprekk::solve

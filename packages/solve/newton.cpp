@@ -131,6 +131,8 @@ void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
     section.fail_inside("NOX > Line Search > \"Method\": must not be given: the search is Sprekk's own");
 }
 
+constexpr char nox_place[] = "Sprekk > Solver > NOX";
+
 /// What NOX says of its parameters, on one line and without the place in its sources.
 Error refused(const std::string& text) {
   std::istringstream lines(text);
@@ -138,35 +140,40 @@ Error refused(const std::string& text) {
   for (std::string line; std::getline(lines, line);)
     if (!line.empty() && line.rfind("Throw ", 0) != 0 && line.rfind("./packages/", 0) != 0)
       words += ' ' + std::string(base::trimmed(line));
-  return Error("Sprekk > Solver > NOX: NOX does not take these parameters:" + words);
+  return Error(std::string(nox_place) + ": NOX does not take these parameters:" + words);
+}
+
+/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an
+/// entry of `given` that it has not; of what NOX reads when it solves it knows that only `after` a solve.
+void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path,
+                   bool after) {
+  for (const auto& item : given) {
+    const auto& entry = read.getEntry(item.first);
+    if (entry.isList()) {
+      if (after || item.first != "Linear Solver")
+        refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first, after);
+      continue;
+    }
+    SPREKK_CHECK(entry.isUsed(),
+                 "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
+                 item.first);
+  }
 }
 
 /// NOX throws plain text, too.
 StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::Group>& group,
-                    const RCP<NOX::StatusTest::Generic>& test, const RCP<Teuchos::ParameterList>& parameters) {
+                    const RCP<NOX::StatusTest::Generic>& test, const RCP<Teuchos::ParameterList>& parameters,
+                    const Teuchos::ParameterList& given) {
   try {
     try {
       solver = NOX::Solver::buildSolver(group, test, parameters);
     } catch (const std::logic_error& error) {
       throw refused(error.what());
     }
+    refuse_unread(given, *parameters, nox_place, false);
     return solver->solve();
   } catch (const char* text) {
     throw refused(text);
-  }
-}
-
-/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an
-/// entry of `given` that it has not.
-void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path) {
-  for (const auto& item : given) {
-    const auto& entry = read.getEntry(item.first);
-    if (entry.isList())
-      refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first);
-    else
-      SPREKK_CHECK(entry.isUsed(),
-                   "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
-                   item.first);
   }
 }
 
@@ -225,7 +232,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   RCP<NOX::Solver::Generic> solver;
   try {
     const While solving(solving_);
-    report.converged = solve_by(solver, group, test, parameters) == NOX::StatusTest::Converged;
+    report.converged = solve_by(solver, group, test, parameters, options_.nox) == NOX::StatusTest::Converged;
   } catch (const Stopped&) {
     report.stopped = true;
     report.reason = "interrupted";
@@ -234,7 +241,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   report.linear_solves = model_->linear_history();
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
-  refuse_unread(options_.nox, *parameters, "Sprekk > Solver > NOX");
+  refuse_unread(options_.nox, *parameters, nox_place, true);
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {

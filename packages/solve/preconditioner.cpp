@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
+#include "base/text.hpp"
 #include "multigrid/multigrid.hpp"
 #include "solve/condensed_pair.hpp"
 #include "solve/fine_level.hpp"
@@ -247,7 +249,12 @@ void Preconditioner::setup(const LinearSystem& system, bool keeps) {
     timed(cost_->setup_seconds, [&] { base::collectively(*system.joined->map()->getComm(), work); });
   } catch (const Error& error) {
     const std::string text = error.what(), mine = "preconditioner of block '";
-    if (text.rfind(mine, 0) == 0) throw;  // of a part
+    if (dynamic_cast<const RefusedList*>(&error) || text.rfind(mine, 0) == 0) throw;  // of a part
+    if (!given_list().empty())
+      throw RefusedList(
+          fmt::format("Sprekk > Solver > Blocks > {} > {}: the library cannot be set up with these "
+                      "parameters: {}",
+                      block_, given_list(), gist(text)));
     throw Error(fmt::format("{}{}': {}", mine, block_, gist(text)));
   }
   cost_->n_setups += done;
@@ -327,12 +334,18 @@ std::string gist(const std::string& text) {
   return words;
 }
 
-void check_names(const ParameterList& given, const std::vector<ParameterList>& allowed) {
+void check_names(const std::string& place, const ParameterList& given, const std::vector<ParameterList>& allowed) {
+  constexpr std::size_t most_listed = 40;
+  std::set<std::string> names;
+  for (const auto& list : allowed)
+    for (const auto& item : list) names.insert(item.first);
+  const std::vector<std::string> known(names.begin(), names.end());
   for (const auto& item : given) {
-    const std::string& name = item.first;
-    bool known = name.rfind("level ", 0) == 0 || name == "user data";  // MueLu's sections of one level
-    for (const auto& list : allowed) known = known || list.isParameter(name) || list.isSublist(name);
-    SPREKK_CHECK(known, "{} has no parameter \"{}\"; its manual lists those that it has", given.name(), name);
+    if (names.count(item.first) > 0) continue;
+    const auto all = known.size() > most_listed ? "" : "; there are " + base::quoted_list(known);
+    auto meant = base::did_you_mean(item.first, known);
+    if (all.empty() && meant.empty()) meant = "; the library's manual lists those that there are";
+    throw RefusedList(fmt::format("{} > \"{}\": no such parameter{}{}", place, item.first, all, meant));
   }
 }
 

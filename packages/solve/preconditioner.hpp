@@ -2,6 +2,7 @@
 // nodes join or refine them.
 #pragma once
 
+#include "base/check.hpp"
 #include "solve/linear_system.hpp"
 #include "solve/preconditioner_options.hpp"
 #include "solve/solver_cost.hpp"
@@ -17,7 +18,8 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
 
   /// Makes ready for these values. `keeps`: hierarchies of multigrid stay those of an earlier system, and what is above
-  /// them is renewed. Throws an Error that names the block, on every rank.
+  /// them is renewed. Throws an Error that names the block, on every rank; a RefusedList where a library fails that was
+  /// given a list by the scene.
   void setup(const LinearSystem& system, bool keeps = false);
   /// About (S A S)^-1 of the last set-up, S the scales of its blocks. The object may change at every set-up.
   RCP<const fields::Operator> inverse() const { return counted(made()); }
@@ -40,6 +42,8 @@ class Preconditioner {
 
  protected:
   const std::string& block() const { return block_; }
+  /// The scene's list that a library gets untouched, as "MueLu"; empty: there is none.
+  virtual std::string given_list() const { return {}; }
 
   virtual void prepare(const LinearSystem& system, SolverCost& cost) = 0;
   /// What is above a hierarchy that is kept; whether there is anything.
@@ -88,7 +92,21 @@ void add_to_diagonal(CrsMatrix& A, const Vector& added);
 /// Of the text of a library's exception: what went wrong, without the place in its sources.
 std::string gist(const std::string& text);
 
-/// Throws an Error that names the entry if a list has one that the library does not know; `allowed` are its lists.
-void check_names(const Teuchos::ParameterList& given, const std::vector<Teuchos::ParameterList>& allowed);
+/// A scene's list that a library refused, or with which it cannot be set up. At the first set-up this ends the run: no
+/// shorter step mends it.
+class RefusedList : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Throws a RefusedList that names the entry if a list has one that the library does not know; `allowed` are the
+/// library's lists, `place` is that of the list in the scene.
+void check_names(const std::string& place, const Teuchos::ParameterList& given,
+                 const std::vector<Teuchos::ParameterList>& allowed);
+
+/// Throws a RefusedList if this method of Ifpack2 refuses an entry or does not read it; `known` are other names that
+/// may be given. Tried on the matrix 1.
+void check_ifpack2(const std::string& place, const std::string& method, const Teuchos::ParameterList& given,
+                   const RCP<const Comm>& comm, const std::vector<std::string>& known = {});
 
 }  // namespace sprekk::solve

@@ -457,7 +457,9 @@ TEST(Preconditioner, ErrorsNameTheEntry) {
     o.blocks["nodes"].type = "MueLu";
     o.blocks["nodes"].muelu.set("smother: type", "CHEBYSHEV");
   });
-  EXPECT_NE(of_muelu.find("MueLu has no parameter \"smother: type\""), std::string::npos) << of_muelu;
+  EXPECT_NE(of_muelu.find("nodes > MueLu > \"smother: type\": no such parameter. Did you mean \"smoother: type\"?"),
+            std::string::npos)
+      << of_muelu;
   EXPECT_NE(error_of([](auto& o) {
               o.blocks["cells"].with = "nodes";
               o.blocks["nodes"].type = "multigrid";
