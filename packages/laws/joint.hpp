@@ -133,6 +133,11 @@ struct JointLaw {
   KOKKOS_INLINE_FUNCTION bool is_bonded() const {
     return bond.visit([](const auto& law) { return !std::is_same_v<std::decay_t<decltype(law)>, NoBond>; });
   }
+  /// Whether faces that touch stick under any shear.
+  KOKKOS_INLINE_FUNCTION bool never_slips() const {
+    return !is_bonded() &&
+           friction.visit([](const auto& law) { return std::is_same_v<std::decay_t<decltype(law)>, NoSlip>; });
+  }
   template <class T>
   KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
     return at.after(of_gap() + laws::n_history(friction), [&](const auto& own) { return elastic.compliance(own); });
@@ -304,6 +309,8 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///                                                            R = lambda               open
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
+/// Joints that never slip stick wherever they are not open: on faces under no load, as at the start, a bound of a huge
+/// coefficient times the compression is 0, and the matrix of the slip there no iterative solver can use.
 /// Of laws that remember the b at p = p_old counts, too. In 2D faces stick only if |z| is not above it, as it is once
 /// they do: else those that slip hardens would stick for their slip, and then no more (in 3D z turns too much where it
 /// is small). And slip against z has no larger b: else joints that slip weakens had states that slide backwards.
@@ -386,6 +393,8 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
   };
+  if constexpr (requires { law.never_slips(); })
+    if (law.never_slips()) return stick();
   if (bears_at_rest && size <= b) return stick();
   const T moved = c.tangential * norm(step);
   if (size <= (1 + 1e-10) * b && moved <= 1e-10 * b) {
