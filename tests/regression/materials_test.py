@@ -42,6 +42,17 @@ class Materials(ProgramTest):
                 with self.subTest(name=name):
                     self.call("check", self.scene(PUSH), "--set", place + name)
 
+    def test_dilation_by_an_angle_above_friction_is_refused(self):
+        """Mobilised friction is 0 where slip begins; dilation by an angle would let slip do work there."""
+        scene, joint = self.scene("point/shear_tests.xml"), "Materials.joint."
+        sets = [word for entry in ("dilation=constant angle", "dilation angle=5") for word in ("--set", joint + entry)]
+        err = self.call("point", scene, *sets, expect=1)[1]
+        for words in ("after a slip of 0 m under 1 Pa friction bears 0 Pa", "the angle of dilation, here 5 degrees, must not be above that of friction, "
+                      "here 0 degrees", 'friction "mobilised Barton-Choubey" is 0 where slip begins: with it goes dilation "mobilised"'):
+            self.assertIn(words, err)
+        self.call("point", scene, *sets, "--set", joint + "friction=Barton-Choubey")
+        self.call("point", scene)
+
     def test_rocks_are_rocks(self):
         """Densities, and speeds of compression waves, as rocks have them."""
         for name, rock in self.library("elastic").items():

@@ -275,6 +275,8 @@ void set_part(Part& part, const laws::Kinds<Ks...>&, const std::string& kind, co
   ((kind == Ks::name ? void(part = law_at<Ks>(material, x)) : void()), ...);
 }
 
+Real degrees(Real tangent) { return std::atan(tangent) * 180 / M_PI; }
+
 /// Tells where slip that begins at rest would do work instead of taking it: where friction bears less than dilation
 /// lifts, b < N dg/ds. Asked of laws with histories, at some slips and compressions; empty where it is nowhere found.
 std::string gain_by_slip(const laws::Joint& law) {
@@ -293,8 +295,10 @@ std::string gain_by_slip(const laws::Joint& law) {
       if (bound < (1 - 1e-9) * opens * compression)
         return fmt::format(
             "slip would do work instead of dissipating it: after a slip of {:.3g} m under {:.3g} Pa friction bears "
-            "{:.4g} Pa, and dilation takes {:.4g} Pa; more friction or less dilation is needed",
-            slip, compression, bound, opens * compression);
+            "{:.4g} Pa, and dilation takes {:.4g} Pa; whatever the slip, the angle of dilation, here {:.4g} degrees, "
+            "must "
+            "not be above that of friction, here {:.4g} degrees",
+            slip, compression, bound, opens * compression, degrees(opens), degrees(bound / compression));
     }
   return "";
 }
@@ -409,6 +413,10 @@ JointParameters JointMaterial::joint(const Point& x) const {
       std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
   joint.initial_aperture = initial_aperture(x, 0);
   const std::string gain = gain_by_slip(joint.law);
+  using Friction = laws::MobilisedBartonChoubeyFriction;
+  SPREKK_CHECK(gain.empty() || friction != Friction::name || dilation == laws::MobilisedDilation::name,
+               "{}; friction \"{}\" is 0 where slip begins: with it goes dilation \"{}\", which begins later", gain,
+               friction, laws::MobilisedDilation::name);
   SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;
 }
