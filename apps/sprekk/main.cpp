@@ -2,6 +2,7 @@
 #include "base/check.hpp"
 #include "base/heap.hpp"
 #include "base/memory.hpp"
+#include "base/over_ranks.hpp"
 #include "physics/material_library.hpp"
 #include "model/factor_of_safety.hpp"
 #include "model/network.hpp"
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace {
@@ -91,7 +93,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   for (auto* command : {run, check})
     command->add_flag("--strict", options.strict,
                       "take warnings of the scene as errors; and end with status 3 where Accuracy is not reached");
-  for (auto* command : {run, safety}) command->add_flag("--quiet", arguments.quiet, "print nothing on standard output");
+  run->add_flag("--quiet", arguments.quiet, "print nothing on standard output");
+  safety->add_flag("--quiet", arguments.quiet, "print the factor alone, not what was tried");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
   run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
@@ -136,16 +139,17 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
   auto options = arguments.safety;
   options.scene = arguments.options.scene;
   options.overrides = arguments.options.overrides;
-  const bool speaks = comm->getRank() == 0 && !arguments.quiet;
+  const bool speaks = comm->getRank() == 0;
   const auto found = model::factor_of_safety(options, comm, [&](const model::Reduction& one) {
-    if (speaks)
+    if (speaks && !arguments.quiet)
       fmt::print("{:<14.10g} {}\n", one.factor,
                  one.stands ? fmt::format("equilibrium after {} Newton iterations", one.iterations)
                             : "none found: " + one.reason);
     std::fflush(stdout);
   });
   if (!speaks) return;
-  for (const auto& line : found.states) fmt::print("{}\n", line);
+  if (!arguments.quiet)
+    for (const auto& line : found.states) fmt::print("{}\n", line);
   if (found.lost)
     fmt::print("factor of safety: {:.8g} (equilibrium at {:.10g}, none found at {:.10g})\n",
                (found.least + *found.lost) / 2, found.least, *found.lost);
@@ -176,6 +180,14 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
     if (speaks) std::cout << options.scene << ": no errors\n";
   }
   return 0;
+}
+
+/// Whether standard output was not taken, as by a full disk. A reader of a pipe that ends early has what it wanted.
+bool output_is_lost() {
+  std::cout.flush();
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout;
+  struct stat is {};
+  return failed && !(::fstat(STDOUT_FILENO, &is) == 0 && (S_ISFIFO(is.st_mode) || S_ISSOCK(is.st_mode)));
 }
 
 int run_command(int argc, char** argv, RCP<const Comm> comm) {
@@ -214,7 +226,13 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string(argv[1]) == "run") handle_stop_signals(ask_to_stop);  // while MPI starts, too
   int n_libraries_may_read = 1;                                                     // Kokkos would answer --help, too
   Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
-  const int status = run_command(argc, argv, Tpetra::getDefaultComm());
+  const auto comm = Tpetra::getDefaultComm();
+  int status = run_command(argc, argv, comm);
+  if (base::on_any_rank(*comm, output_is_lost()) && status == 0) {
+    if (comm->getRank() == 0)
+      std::cerr << "sprekk: standard output cannot be written, what was printed is incomplete; is the disk full?\n";
+    status = 1;
+  }
   handle_stop_signals(SIG_DFL);  // mpirun ends the ranks that are still there when one has ended with an error
   return status;
 }

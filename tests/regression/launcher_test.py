@@ -171,6 +171,25 @@ class Launcher(ProgramTest):
         for command in ("check", "point"):
             self.assertIn(f'{command} has no option "--quiet"', self.launch(command, PUSH, "--quiet", expect=2)[1])
 
+    def test_run_goes_on_when_its_reader_ends(self):
+        """mpirun would end it after some lines that nobody reads."""
+        for ranks in ("1", "2"):
+            words = ["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set", "Output.vtu=false", "--set", "Time.steps=40"]
+            with subprocess.Popen(words, stdout=subprocess.PIPE, **self.surroundings) as run:
+                run.stdout.readline()
+                run.stdout.close()
+                self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
+            self.assertEqual((self.results()["status"], len(self.results()["steps"])), ("completed", 40))
+
+    def test_standard_output_on_a_full_disk(self):
+        for ranks in ("1", "2"):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out"], stdout=full, stderr=subprocess.PIPE, **self.surroundings)
+            told = [line for line in done.stderr.splitlines() if "building" not in line and "configuring" not in line]
+            self.assertEqual((done.returncode, len(told)), (1, 1), done.stderr)
+            self.assertRegex(told[0], "standard output.*(cannot be written|No space left)")
+            self.assertEqual(self.results()["status"], "completed")
+
     def test_progress_of_the_build_in_a_pipe(self):
         (self.folder / "stubs/ninja").write_text('#!/usr/bin/env bash\nfor i in {0..40}; do echo "[$i/40] Building"; done\n')
         _, err = self.launch("check", PUSH)

@@ -41,7 +41,22 @@ class Log(ProgramTest):
             self.assertEqual([line for line in self.log().splitlines() if line.startswith("warning: ")], warnings)
             self.assertEqual(len(STEP.findall(self.log())), 1)
             self.assertIn("\nresults in out\n", self.log())
-        self.assertEqual(self.call("safety", self.scene("slopes/plane_2d.xml"), "--tolerance", "0.5", "--quiet")[0], "")
+
+    def test_quiet_safety_prints_the_factor(self):
+        words = ["safety", self.scene("slopes/plane_2d.xml"), "--tolerance", "0.5"]
+        out, quiet = (self.call(*words, *more)[0] for more in ([], ["--quiet"]))
+        self.assertGreater(out.count("\n"), 1)
+        self.assertEqual(quiet, out.splitlines()[-1] + "\n")
+        self.assertRegex(quiet, r"^factor of safety: \d")
+
+    def test_standard_output_on_a_full_disk(self):
+        """The results are there; that the print is not, is told."""
+        for words in (["run", self.scene(PUSH), "--output", "out", *QUIET], ["reference"], ["safety", self.scene("slopes/plane_2d.xml"), "--tolerance", "0.5"],
+                      ["point", self.scene("point/cyclic_shear.xml")]):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([program.PROGRAM, *words], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual((done.returncode, done.stderr), (1, "sprekk: standard output cannot be written, what was printed is incomplete; is the disk full?\n"), words)
+        self.assertEqual(self.results()["status"], "completed")
 
     def test_a_restart_appends_and_a_fresh_run_replaces(self):
         words = ["run", self.scene(CYCLIC), "--output", "out", *QUIET, "--set", "Output.checkpoints.steps=1", "--set"]
