@@ -31,7 +31,7 @@ Real one_sided(const base::Expression& g, const mesh::Vector& x, const mesh::Vec
   const Real at = g(x, t), size = mesh::norm(d);
   if (size == 0 || g.is_constant()) return at;
   const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * mesh::norm(x) / size;
-  const Real step = std::max(1e-9, rounding), ratio = 100;
+  const Real step = std::max(1e-6, rounding), ratio = 100;
   const Real near = g(x + step * d, t), far = g(x + ratio * step * d, t);
   const Real change = std::abs(near - at);
   const bool jumps = change > 0.5 * std::abs(far - at) && change > 1e-9 * std::max(std::abs(near), std::abs(at));

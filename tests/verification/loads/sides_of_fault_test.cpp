@@ -38,6 +38,8 @@ TEST(SidesOfAFault, MoveApartAlongIt) {
     for (const auto& cells : discretisations(dim))
       for (const auto& [degrees, step] : {std::pair{0.0, "{0} > 1 ? 1e-3 : -1e-3"},
                                           {0.0, "{0} < 1 ? -1e-3 : 1e-3"},
+                                          {0.0, "{0} > 1+1e-7 ? 1e-3 : -1e-3"},  // nodes as exact as in a file
+                                          {0.0, "{0} > 1-1e-7 ? 1e-3 : -1e-3"},
                                           {30.0, "{0} > 1 ? 1e-3 : -1e-3"}}) {
         SCOPED_TRACE(fmt::format("{} {} {}", cells.name(), degrees, step));
         model::Model model(moved_blocks(cells, degrees, step), Tpetra::getDefaultComm());
