@@ -135,8 +135,11 @@ struct JointLaw {
   }
   /// Whether faces that touch stick under any shear.
   KOKKOS_INLINE_FUNCTION bool never_slips() const {
-    return !is_bonded() &&
-           friction.visit([](const auto& law) { return std::is_same_v<std::decay_t<decltype(law)>, NoSlip>; });
+    const auto is = [](const auto& law) { return std::is_same_v<std::decay_t<decltype(law)>, NoSlip>; };
+    if constexpr (requires { friction.visit(is); })
+      return !is_bonded() && friction.visit(is);
+    else
+      return !is_bonded() && is(friction);
   }
   template <class T>
   KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
