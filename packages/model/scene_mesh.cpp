@@ -1,5 +1,6 @@
 #include "assembly/quarter_points.hpp"
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "mesh/msh_reader.hpp"
 #include "mesh/periodic.hpp"
 #include "mesh/raise_order.hpp"
@@ -95,11 +96,10 @@ mesh::GlobalMesh Scene::read_mesh() const {
                mesh_file->path);
   for (const auto& [name, fracture] : mesh_file->fractures) {
     const auto n = fracture.reference_normal ? fracture.reference_normal->size() : 0;
-    SPREKK_CHECK(
-        n == 0 || static_cast<int>(n) == result.dim(),
-        "Sprekk > Mesh file > fractures > {} > \"reference normal\": has {} components, needs {} as {} has that "
-        "dimension",
-        name, n, result.dim(), mesh_file->path);
+    SPREKK_CHECK(n == 0 || static_cast<int>(n) == result.dim(),
+                 "Sprekk > Mesh file > fractures > {} > \"reference normal\": has {}, needs {} as {} has that "
+                 "dimension",
+                 name, base::counted(n, "component"), result.dim(), mesh_file->path);
   }
   return mesh::tie_periodic(result, pairs);
 }

@@ -622,8 +622,8 @@ class Scenes(BadInput):
                     "--set", "Mesh file.periodic={west, east, west, north}")
 
     def test_reference_normals_of_a_file(self):
-        for normal, n in (("{1}", 1), ("{-1, 1, 0}", 3), ("{-1, 1, 0, 1e6}", 4)):
-            self.refuse([f'Mesh file > fractures > f1 > "reference normal": has {n} components, needs 2'], "check",
+        for normal, n in (("{1}", "1 component"), ("{-1, 1, 0}", "3 components"), ("{-1, 1, 0, 1e6}", "4 components")):
+            self.refuse([f'Mesh file > fractures > f1 > "reference normal": has {n}, needs 2'], "check",
                         self.scene("gmsh/crossing.xml"), "--set", f"Mesh file.fractures.f1.reference normal={normal}")
 
 

@@ -25,6 +25,8 @@ class Scene:
             self._handle = _sprekk.Scene.from_text(source, name, texts, comm)
         elif isinstance(source, (str, os.PathLike)):
             self._handle = _sprekk.Scene.from_file(os.fspath(source), texts, comm)
+        elif not is_section(source):
+            raise TypeError(f"source is a {type(source).__name__}, must be the path of a file, XML as text, or a dict of entries")
         else:
             self._handle = _sprekk.Scene.from_entries(plain(source), name, str(folder), texts, comm)
 
