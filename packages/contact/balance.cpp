@@ -31,6 +31,9 @@ void Contact::find_loose(std::vector<Grip> grips) {
 namespace {
 
 constexpr int n_sweeps = 2;
+/// Of the force scale: what is left out of balance along a mode and is less is rounding. It is below the tolerance of
+/// Newton's method, else forces between the two would keep the solve from its end.
+constexpr Real least_force = 1e-12;
 
 }  // namespace
 
@@ -73,7 +76,7 @@ std::string Contact::balance_along(const LoosePieces::Motion& motion, const Bloc
   for (int g = 0; g < n; ++g) {
     const Real largest = motion.largest[g];
     if (mode && start[g] > 0) sign[g] = -1;
-    const bool round_off = mode ? !(std::abs(start[g]) > 1e-10 * force * largest) : !(largest > 1e-8 * length);
+    const bool round_off = mode ? !(std::abs(start[g]) > least_force * force * largest) : !(largest > 1e-8 * length);
     searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * length / largest, reach / largest);
   }
   const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };

@@ -161,7 +161,7 @@ class Convergence(ProgramTest):
     def test_nearly_equal_joints_slide(self):
         """Of two joints in series the weaker one slides, however little they differ."""
         for dim in (2, 3):
-            for exponent in (4, 8, 9, 11, 13, 16):
+            for exponent, ranks in ((4, 1), (8, 1), (9, 2), (9.8, 1), (10, 1), (10, 2), (10.2, 1), (10.4, 1), (10.6, 2), (11, 1), (13, 2), (16, 1)):
                 n = [2] * (dim - 1) + [6]
                 mesh = {"cell": "quadrilateral" if dim == 2 else "hexahedron", "lower corner": [0.0] * dim, "upper corner": [1.0] * dim,
                         "cells": n, "periodic": ["x"] if dim == 2 else ["x", "y"],
@@ -176,7 +176,7 @@ class Convergence(ProgramTest):
                             "floor": {"boundary": "south" if dim == 2 else "bottom", "displacement": [0.0] * dim},
                             "lid": {"boundary": "north" if dim == 2 else "top", "displacement": top}},
                         "Time": {"end": 1.0, "steps": 2}, "Output": {"vtu": False}}
-                results = self.run_tree(tree)
+                results = self.run_tree(tree, ranks=ranks)
                 normal, shear = 0.1 * 1.2, 0.5 * 0.1 * 1.2  # uniaxial strain: E (1-nu)/((1+nu)(1-2nu)) = 1.2
                 faces = results["steps"][-1]["fractures"]
                 for name in joints:
@@ -184,7 +184,7 @@ class Convergence(ProgramTest):
                     self.assertAlmostEqual(traction[0], -normal, 8)
                     self.assertAlmostEqual(sum(t * t for t in traction[1:]) ** 0.5, shear, 8)
                 slip = sum(faces[name]["mean_slip"] for name in joints)
-                self.assertAlmostEqual(slip, 0.5 - shear / 0.4 - 2 * shear / 2, 8, f"{dim}D, 1e-{exponent}")
+                self.assertAlmostEqual(slip, 0.5 - shear / 0.4 - 2 * shear / 2, 8, f"{dim}D, 1e-{exponent}, {ranks}")
 
     def test_chosen_steps_end_where_a_rate_has_knots(self):
         """A step of the least length that is rejected for its error is not tried again with the same length."""
