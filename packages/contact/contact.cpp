@@ -72,6 +72,12 @@ bool Contact::tether(Real stiffness, const BlockVector& x) {
   return true;
 }
 
+bool Contact::weakens(const BlockVector& x) {
+  const auto grips = equations_.grips(x);
+  return base::on_any_rank(*mesh_->comm,
+                           std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.weakens; }));
+}
+
 std::size_t Contact::state_hash(const std::vector<char>& states) {
   std::size_t here = 0;
   for (std::size_t f = 0; f < states.size(); ++f) {

@@ -69,6 +69,7 @@ class Contact : public fields::Globalisation {
   void resume(const fields::BlockVector& x, const std::vector<Real>& calibration);
 
   std::vector<char> states(const fields::BlockVector& x) override { return equations_.states(x); }
+  bool weakens(const fields::BlockVector& x) override;
   std::size_t state_hash(const std::vector<char>& states) override;
   std::string where(const std::vector<char>& flagged) override;
   RCP<const fields::Vector> proximal(int block) const override;

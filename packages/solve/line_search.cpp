@@ -16,6 +16,8 @@ constexpr Real smallest_step = 1.0 / 64, least_damping = 0.1, most_damping = 10;
 constexpr std::size_t memory = 3, patience = 5, trial_period = 10, short_steps = 4;
 constexpr Real least_way = 0.5;
 constexpr Real swing_damping = 0.3;
+constexpr Real solved_part = 0.1;  // of the merit of f that lags
+constexpr int most_held = 4;
 constexpr int most_unbalanced = 3, most_begun = 3;
 
 BlockVector nox_blocks(const NOX::Abstract::Vector& v) {
@@ -42,16 +44,22 @@ bool LineSearch::compute(NOX::Abstract::Group& group, double& step, const NOX::A
     report_.failure = "no resistance to the loads found: " + unresisted + ", and meets none";
     return false;
   }
+  if (picard_.possible() && merits_.empty()) weakens_ = globalisation_.weakens(solution_of(from));
   const auto first = dx->clone();
   const bool first_solved = solved;
   std::optional<Trial> found;
-  const auto attempt = [&] { return picard_.lags() ? full(group, from, *dx) : search(group, from, *dx); };
+  const auto attempt = [&] { return searches() ? search(group, from, *dx) : full(group, from, *dx); };
   if (solved) found = attempt();
+  if (found && begins_to_struggle(*found)) found = attempt();
   while (!found && damping_ < most_damping) {
     globalisation_.damp(damping_ = std::max(10 * damping_, least_damping), swinging_);
     report_.damped = true;
     solved = model_.direction(solution_of(from), residual_of(from), blocks);
     if (solved) found = attempt();
+  }
+  if (!found && first_solved && struggles_ && picard_.lags() && n_held_ == 0) {
+    damping_ = 0;
+    found = full(group, from, *first);
   }
   if (!found && solved && goes_back(group, from)) return true;
   if (!found && first_solved) found = begin_anew(group, from, *first);
@@ -112,9 +120,10 @@ bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gr
   const bool lagged = picard_.lags();
   bool back = false;
   if (lagged) {
+    if (holds(taken)) return false;
     back = picard_.follow(solution_of(group));
     if (!picard_.lags()) begin_search();
-  } else if (!merits_.empty()) {
+  } else if (!merits_.empty() && !(weakens_ && picard_.agrees())) {
     back = picard_.resume(solution_of(from), taken.a, taken.merit, merits_.back());
   }
   if (back) group = from;
@@ -123,6 +132,20 @@ bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gr
   group.computeF();
   taken.merit = problem_.merit(solution_of(group), residual_of(group));
   return back;
+}
+
+/// Not the first step after Picard begins: then residuals of flow must rise.
+bool LineSearch::begins_to_struggle(const Trial& taken) {
+  if (struggles_ || !weakens_ || !picard_.lags() || picard_.fresh() || merits_.empty()) return false;
+  return struggles_ = taken.merit > merits_.back();
+}
+
+/// Coefficients of an iterate that is far from a solution of the f that lags would lead anywhere.
+bool LineSearch::holds(const Trial& taken) {
+  const bool hold = struggles_ && !merits_.empty() && taken.merit > solved_part * merits_.back();
+  n_held_ = hold ? n_held_ + 1 : 0;
+  if (hold) picard_.hold();
+  return hold;
 }
 
 std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
@@ -138,7 +161,7 @@ std::optional<LineSearch::Trial> LineSearch::search(NOX::Abstract::Group& group,
 
 Real LineSearch::limit() const {
   if (merits_.size() <= since_) return std::numeric_limits<Real>::infinity();
-  if (monotone_) return merits_.back();
+  if (monotone_ || picard_.lags()) return merits_.back();
   return *std::max_element(merits_.end() - std::min(memory, merits_.size() - since_), merits_.end());
 }
 
@@ -162,6 +185,7 @@ void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
 
 bool LineSearch::is_stagnant() {
   const int now = static_cast<int>(merits_.size()) - 1;
+  if (n_held_ > most_held && merits_.back() > 0.5 * merits_[now - most_held]) return true;
   if (picard_.possible()) {
     const bool first = now == static_cast<int>(since_);
     if (first || changed_ || picard_.lags() || merits_.back() < 0.5 * least_) progress_ = merits_.size();

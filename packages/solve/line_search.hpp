@@ -18,7 +18,8 @@ struct SearchReport {
   std::string loose;    ///< what nothing held in one of the iterates, the last such
   /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
   /// steps together were below half of one of Newton's. Where coefficients of fluxes depend on x and do not lag: in
-  /// ten iterates no state changed, and no merit was below half the best before.
+  /// ten iterates no state changed, and no merit was below half the best before; where they stay as they are, four
+  /// steps did not halve the merit.
   bool stagnant = false;
   bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
   int n_accepted = 0;            ///< iterates but for the start
@@ -32,7 +33,9 @@ struct SearchReport {
 /// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
 /// only the last merit counts. Entities whose state changes, and did in one of the two iterates before, are damped, by
 /// 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when there is a search, and which steps
-/// are taken back.
+/// are taken back. Where resistance may fall with motion and a full step of the f that lags makes its merit rise, full
+/// steps go astray: from there on there is a search for less of that merit, but for the first step after Picard begins,
+/// and coefficients stay as they are until it fell to a tenth.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
@@ -51,6 +54,9 @@ class LineSearch : public NOX::LineSearch::Generic {
                               const NOX::Abstract::Vector& dx) const;
   std::optional<Trial> full(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                             const NOX::Abstract::Vector& dx) const;
+  bool searches() const { return !picard_.lags() || (struggles_ && !picard_.fresh()); }
+  bool begins_to_struggle(const Trial& taken);
+  bool holds(const Trial& taken);
   void begin_search();
   std::optional<Trial> begin_anew(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                                   const NOX::Abstract::Vector& dx);
@@ -80,6 +86,9 @@ class LineSearch : public NOX::LineSearch::Generic {
   bool changed_ = false;                 // it did in the last iterate
   std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
   bool monotone_ = false;
+  bool weakens_ = false;    // see Globalisation
+  bool struggles_ = false;  // a full step of the f that lags made its merit rise
+  int n_held_ = 0;          // steps since coefficients that lag changed
 };
 
 /// Lets NOX make line searches for a problem.

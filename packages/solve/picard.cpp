@@ -7,8 +7,9 @@ namespace {
 
 using Lag = BlockProblem::Lag;
 
-constexpr Real far = 1;       // |ln| of the ratio of coefficients
-constexpr Real closer = 0.3;  // where Newton's method failed, it is tried next at this part of the distance
+constexpr Real far = 1;        // |ln| of the ratio of coefficients
+constexpr Real closer = 0.3;   // where Newton's method failed, it is tried next at this part of the distance
+constexpr Real little = 0.05;  // of near_, reached after three failures of Newton's method
 constexpr Real least_step = 0.25, most_growth = 1e3;
 
 }  // namespace
@@ -18,8 +19,11 @@ Picard::Picard(BlockProblem& problem, const BlockVector& x) : problem_(problem) 
   possible_ = lags_ = problem_.lag(Lag::follow, x) >= 0;
 }
 
+bool Picard::agrees() const { return near_ < little; }
+
 bool Picard::follow(const BlockVector& x) {
   const bool first = n_++ == 0;
+  fresh_ = first;
   const Real away = problem_.lag(Lag::follow, x);
   if (first && !(away <= far)) {
     problem_.lag(Lag::widest, x);
@@ -35,7 +39,7 @@ bool Picard::follow(const BlockVector& x) {
 bool Picard::resume(const BlockVector& from, Real step, Real merit, Real merit_before) {
   if (step >= least_step && merit <= most_growth * merit_before) return false;
   problem_.lag(Lag::follow, from);
-  lags_ = true;
+  lags_ = fresh_ = true;
   near_ *= closer;
   return true;
 }

@@ -80,7 +80,7 @@ def opened(run):
 
 
 def row(case, solver, steps, run):
-    if not run.steps:
+    if not run.steps or not run.steps[-1].get("fractures"):
         return [case.name, solver, steps, 0, 0, 0, 0, 0, 0, 0, run.seconds]
     worst = 0 if run.worst is None else float(run.worst.max())
     return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MOST for n in run.newton), sum(step["cuts"] for step in run.steps),

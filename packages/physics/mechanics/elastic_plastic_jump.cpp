@@ -349,6 +349,7 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
     }
     grips[f].augmentation += point.constant;
     grips[f].modulus = modulus_[f];
+    grips[f].weakens = law.n_history() > 0;
     grips[f].gap += point.w[0] - law.normal_gap(contact(0, slipped));
     grips[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
     for (int k = 0; k < dim; ++k)
