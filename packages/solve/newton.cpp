@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
-#include <utility>
 
 #include "base/over_ranks.hpp"
 #include "base/check.hpp"
@@ -27,9 +26,9 @@ constexpr int most_lagged = 60;  // steps while coefficients of fluxes lag
 /// not finite, without progress, or out of iterations. Keeps the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const ThyraModel& model, const Picard& picard,
-              const SearchReport& search, NewtonReport& report)
-      : problem_(problem), options_(options), model_(model), picard_(picard), search_(search), report_(report) {}
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const SearchReport& search,
+              NewtonReport& report)
+      : problem_(problem), options_(options), picard_(picard), search_(search), report_(report) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = solver.getSolutionGroup();
@@ -45,7 +44,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
     } else if (value <= options_.tolerance && !(picard_.lags() && picard_.n_steps() > 0)) {
-      status_ = refines() ? NOX::StatusTest::Unconverged : NOX::StatusTest::Converged;
+      status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= most_lagged) ||
@@ -74,20 +73,12 @@ class MeasureTest : public NOX::StatusTest::Generic {
     report_.reason = reason;
     status_ = NOX::StatusTest::Failed;
   }
-  /// Once, after a linear solve whose residual is large and yet that of rounding: where an entry of the matrix is
-  /// large, rounding of the change hides the balance of the small terms in the same rows. The next change is smaller.
-  bool refines() {
-    const auto& linear = model_.linear_history();
-    return !linear.empty() && linear.back().residual > acceptable_linear_residual && !std::exchange(refined_, true);
-  }
 
   BlockProblem& problem_;
   const NewtonOptions& options_;
-  const ThyraModel& model_;
   const Picard& picard_;
   const SearchReport& search_;
   NewtonReport& report_;
-  bool refined_ = false;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
@@ -227,7 +218,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
   SearchReport search;
   std::optional<Picard> picard(std::in_place, problem_, x);
-  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *model_, *picard, search, report));
+  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, search, report));
   const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
   RCP<NOX::Solver::Generic> solver;
   try {
