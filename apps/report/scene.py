@@ -6,7 +6,7 @@ from numbers_in_words import in_unit
 
 
 class Reference:
-    """(unit, default) of entries, as docs/reference.md lists them by section; NAME stands for any name. A meaning with
+    """(unit, default) of entries, as docs/use/reference.md lists them by section; NAME stands for any name. A meaning with
     `(2D: m^2/s)` has the unit of that dimension."""
 
     def __init__(self, path, dim=3):

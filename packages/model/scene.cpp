@@ -21,7 +21,7 @@ void Time::describe(base::Section& s) {
   s.entry(schedule, "schedule", "s",
           "ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at");
   s.entry(tolerance, "tolerance", "-", base::between(1e-8, 0.5),
-          "relative error by the length of steps, which are chosen so that it is met, see docs/scenes.md; instead of "
+          "relative error by the length of steps, which are chosen so that it is met, see docs/use/input.md; instead of "
           "steps");
   s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
           "steps become shorter where Newton's method takes more, and longer where it takes less; with tolerance, no "
@@ -140,7 +140,7 @@ void Scene::describe(base::Section& s) {
   s.section(time, "Time", "steps");
   s.section(solver, "Solver", "Newton's method");
   s.section(output, "Output", "what is written beside results.json");
-  s.named_sections(stages, "Stages", "by names of your choice: what of the scene changes when, see docs/stages.md");
+  s.named_sections(stages, "Stages", "by names of your choice: what of the scene changes when, see docs/use/stages.md");
   if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
   s.section(accuracy, "Accuracy", "numbers that are to be reached with a given error, on meshes that the run refines");
   if (accuracy && s.is_sound() && !s.documents()) check_accuracy(s);

@@ -3,7 +3,7 @@
 
 Copies the sources to OUTPUT/source and builds them there without a compiler cache. Each compilation is timed, and its
 lines are counted: lines that the compiler reads after preprocessing, without empty ones, precompiled headers as well.
-The law is that of docs/how_to_add_a_law.md. Figures are CPU time of all processes of a build, which other work on the
+The law is that of docs/develop/add_a_law.md. Figures are CPU time of all processes of a build, which other work on the
 machine raises a little. Wall time is printed as well.
 
     build.py [--only program|tests|law] [--jobs N] [--output DIR]"""
@@ -23,7 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHER = "--compile"  # build.py --compile LOG COMMAND...: runs the command and appends its CPU seconds to LOG
-PAGE, SCENE = "docs/how_to_add_a_law.md", "xml/point/power_joint.xml"
+PAGE, SCENE = "docs/develop/add_a_law.md", "xml/point/power_joint.xml"
 MAX_MINUTES = {"program": 10, "tests": 12, "law": 2}
 
 

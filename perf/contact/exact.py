@@ -1,6 +1,6 @@
 """Exact answers of scenes, from formulas; each function gives the largest relative error of a run.
 
-Units and symbols as in docs/theory.md: N = -lambda_n, d = (d_t, d_n) the displacement of the top of a block of height H
+Units and symbols as in docs/model/model.md: N = -lambda_n, d = (d_t, d_n) the displacement of the top of a block of height H
 whose bottom is fixed. Derived from equilibrium and the law of the joint; checks of the formulas are in the functions'
 comments."""
 import math

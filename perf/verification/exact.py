@@ -1,6 +1,6 @@
 """Exact displacements, jumps and tractions of the cases, as functions of arrays of points. Nothing of the program is used.
 
-Signs as in docs/theory.md: the normal n points from side - to side +, the jump is u+ - u-, tension is positive. G = shear
+Signs as in docs/model/model.md: the normal n points from side - to side +, the jump is u+ - u-, tension is positive. G = shear
 modulus, nu = Poisson's ratio, plane strain in 2D."""
 import math
 

@@ -10,7 +10,7 @@
                                            are lines of what it prints. Blocks after <!-- not run: REASON --> are left
                                            out, as are the commands that build. Pages share a folder, and a scene that
                                            several run or plot in the same way is run and plotted once
-    check_docs.py reference ROOT BINARY    docs/reference.md, docs/sprekk.rng and docs/materials.md are what the binary prints
+    check_docs.py reference ROOT BINARY    docs/use/reference.md, docs/sprekk.rng and docs/use/materials.md are what the binary prints
     check_docs.py change ROOT PAGE TARGETS...
                                            the page's ```diff block applies to a copy of the sources, the targets build
                                            there, and the ```console blocks that are "not run" elsewhere come true
@@ -186,8 +186,8 @@ def check_block(page, block, folder, runs=None):
 
 
 def check_reference(root, binary):
-    for command, path in (("reference", "docs/reference.md"), ("reference --schema", "docs/sprekk.rng"),
-                          ("materials", "docs/materials.md")):
+    for command, path in (("reference", "docs/use/reference.md"), ("reference --schema", "docs/sprekk.rng"),
+                          ("materials", "docs/use/materials.md")):
         printed = subprocess.run([binary, *command.split()], stdout=subprocess.PIPE, text=True, check=True).stdout
         if printed != (root / path).read_text():
             yield f"{path} is out of date; write it anew with ./sprekk {command} > {path}"

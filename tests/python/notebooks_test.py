@@ -1,6 +1,6 @@
 """The notebooks and the page on Python: notebooks_test.py ROOT PROGRAM
 
-Every notebook runs to its end, where assertions in it hold, and so does the Python of docs/python.md, block after block."""
+Every notebook runs to its end, where assertions in it hold, and so does the Python of docs/use/python.md, block after block."""
 import os
 import re
 import subprocess
@@ -22,7 +22,7 @@ class Documentation(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr[-3000:])
 
     def test_page(self):
-        page = (ROOT / "docs/python.md").read_text()
+        page = (ROOT / "docs/use/python.md").read_text()
         blocks = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
         self.assertGreater(len(blocks), 3)
         done = subprocess.run([sys.executable, "-B", "-c", "".join(blocks)], capture_output=True, text=True, cwd=ROOT,
@@ -30,7 +30,7 @@ class Documentation(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
 
     def test_every_notebook_is_on_the_page(self):
-        linked = re.findall(r"\(notebooks/(\w+\.ipynb)\)", (ROOT / "docs/python.md").read_text())
+        linked = re.findall(r"\(notebooks/(\w+\.ipynb)\)", (ROOT / "docs/use/python.md").read_text())
         self.assertEqual(sorted(linked), sorted(path.name for path in NOTEBOOKS.glob("*.ipynb")))
 
 

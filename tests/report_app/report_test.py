@@ -45,7 +45,7 @@ class ReportTest(ProgramTest):
     def verdicts(self):
         """Of the run as its files are now, by the name of the check."""
         content = self.results()
-        entries = scene.Scene(self.folder / "out", ROOT / "docs/reference.md")
+        entries = scene.Scene(self.folder / "out", ROOT / "docs/use/reference.md")
         return {check.name: check for check in checks.of_run(self.folder / "out", content, entries)}
 
     def change(self, change):
@@ -76,7 +76,7 @@ class Pages(ReportTest):
     def test_scene_in_words(self):
         """What is no default, with units; sections that say the same are one."""
         self.run_scene("poro/injection_2d.xml", "Time.steps=1", "Time.end=100")
-        entries = scene.Scene(self.folder / "out", ROOT / "docs/reference.md")
+        entries = scene.Scene(self.folder / "out", ROOT / "docs/use/reference.md")
         blocks = {path[:-1] + (", ".join(names),): dict(said) for names, path, said in entries.blocks()}
         self.assertEqual(blocks["Materials", "granite"]["Young's modulus"], "40 GPa")
         self.assertEqual(blocks["Materials", "rough joint"]["tangential stiffness"], "10 GPa/m")

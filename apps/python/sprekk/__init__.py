@@ -5,7 +5,7 @@
     model.run()
     model.output("slip")
 
-docs/python.md is an introduction."""
+docs/use/python.md is an introduction."""
 import mpi4py.MPI as _mpi  # begins MPI, and ends it after the interpreter
 
 from . import _sprekk

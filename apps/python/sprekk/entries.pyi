@@ -841,7 +841,7 @@ class Time(Section):
     end: end of the last step (s; default 1)
     steps: number of equal steps from start to end; absent: 1 (between 1 and 10000000)
     schedule: ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at (s)
-    tolerance: relative error by the length of steps, which are chosen so that it is met, see docs/scenes.md; instead of
+    tolerance: relative error by the length of steps, which are chosen so that it is met, see docs/use/input.md; instead of
         steps (between 1e-08 and 0.5)
     target_newton_iterations: steps become shorter where Newton's method takes more, and longer where it takes less;
         with tolerance, no longer than that allows (between 1 and 1000)
@@ -984,7 +984,7 @@ class Output(Section):
     def __init__(self, *, vtu: bool | None = ..., every: int | None = ..., error_estimate: bool | None = ..., time_unit: Literal["s", "min", "h", "d", "year"] | None = ..., checkpoints: OutputCheckpoints | None = ...) -> None: ...
 
 class Stage(Section):
-    """by names of your choice: what of the scene changes when, see docs/stages.md
+    """by names of your choice: what of the scene changes when, see docs/use/stages.md
 
     time: when it begins; a step ends there (s; required)
     without: paths of sections and entries that are no longer there: Boundary conditions > pull (default {})
@@ -1065,7 +1065,7 @@ class Sprekk(Section):
     time: steps
     solver: Newton's method
     output: what is written beside results.json
-    stages: by names of your choice: what of the scene changes when, see docs/stages.md
+    stages: by names of your choice: what of the scene changes when, see docs/use/stages.md
     accuracy: numbers that are to be reached with a given error, on meshes that the run refines (may be absent)
     """
     tables: dict[str, Table] | None

@@ -74,7 +74,7 @@ class Block:
 
 class Module:
     """Terms or equations that are solved for together with Sprekk's: a list of them is the argument `modules` of a Model.
-    Derive from it; what a module adds is in blocks(). docs/embedding.md tells what the words mean."""
+    Derive from it; what a module adds is in blocks(). docs/develop/embedding.md tells what the words mean."""
     name = "own module"
     fingerprint = ""  # what must be the same where a checkpoint is restored
     unknowns = ()
@@ -103,7 +103,7 @@ class FaceLaw(Module):
         tau - T(w, lambda) = 0,    |f| tau . d(w_t)/du in the rows of the displacement.
 
     Derive from it and write shear(); with n = dim - 1 tangential components. A prototype: Sprekk's own laws
-    (docs/how_to_add_a_law.md) are known to the solver, which does more for them where faces slide and part."""
+    (docs/develop/add_a_law.md) are known to the solver, which does more for them where faces slide and part."""
     name = "face law"
     stiffness = 1e10  # of the rock about a face, Pa/m: the order of magnitude steers Newton's method
 
