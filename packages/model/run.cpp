@@ -347,11 +347,9 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
 std::string reference() {
   auto point = base::specification<PointPath>("Point");
   point.meaning =
-      "only of scenes for `sprekk point`, beside Materials, Tables and Time: what drives the point. Several points are "
-      "sections with the same entries in a section `Specimens`, by names of your choice";
-  return "# All parameters\n\nPrinted by `./sprekk reference`. A number that has a unit here may be given in any unit "
-         "that "
-         "measures the same.\n\n" +
+      "path of a joint at one point, for `sprekk point` only; several points: sections with these entries in `Specimens`";
+  return "# All parameters\n\nPrinted by `./sprekk reference`. Numbers with a unit may be given in any unit "
+         "of the same quantity.\n\n" +
          base::to_markdown(base::specification<Scene>("Sprekk"), "Sprekk") + base::to_markdown(point, "Sprekk > Point");
 }
 

@@ -72,7 +72,7 @@ std::string library_markdown() {
     return text;
   };
   return "# Material library\n\nA scene may name these sets as `material` without defining them. Values in SI units, "
-         "angles in degrees; what a set does not list has the default of the entry.\n" +
+         "angles in degrees.\nEntries that a set does not list have their defaults.\n" +
          table("Rock", "elastic") + table("Joints", "joint");
 }
 

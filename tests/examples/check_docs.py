@@ -37,7 +37,7 @@ class Skipped(str):
 
 
 def pages(root):
-    return [root / "README.md", *sorted((root / "docs").glob("*.md")), *sorted(root.glob("packages/*/README.md"))]
+    return [root / "README.md", *sorted((root / "docs").rglob("*.md")), *sorted(root.glob("packages/*/README.md"))]
 
 
 def check_quotes(root):

@@ -31,7 +31,7 @@ struct VolumetricSplit {
 ///   alpha_f = sum over both cells of the bubble's energy
 /// in place of the bubbles' stiffness, as Rodrigo et al. (2018) have it, without their coupling to displacements; on
 /// simplices of order 1, which have the fewest displacements for a pressure, of that energy over the number of a cell's
-/// faces. theory.md 4.
+/// faces. docs/model/discretisation.md, Nearly incompressible rock.
 std::unique_ptr<assembly::Module> make_solid_pressure(const mesh::Mesh& mesh, SolidPressureParameters parameters);
 
 }  // namespace sprekk::physics
