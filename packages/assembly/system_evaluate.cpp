@@ -368,7 +368,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 Real System::merit(const BlockVector& x, const BlockVector& r) {
   /// Of the energy of what is carried: as much of it acts on all else, or less. Rows of what is carried grow by orders
   /// of magnitude with the flow, and for a given flow they are linear: they must not refuse a step that mends the flow.
-  constexpr Real share_at_work = 1e-9;
+  const Real share_at_work = coupled_ ? 1e-6 : 1e-9;
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
     const auto mask = constraints_[b].mask();
