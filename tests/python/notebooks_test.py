@@ -30,7 +30,7 @@ class Documentation(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
 
     def test_every_notebook_is_on_the_page(self):
-        linked = re.findall(r"\(notebooks/(\w+\.ipynb)\)", (ROOT / "docs/use/python.md").read_text())
+        linked = re.findall(r"\(\.\./notebooks/(\w+\.ipynb)\)", (ROOT / "docs/use/python.md").read_text())
         self.assertEqual(sorted(linked), sorted(path.name for path in NOTEBOOKS.glob("*.ipynb")))
 
 
