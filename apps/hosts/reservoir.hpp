@@ -30,10 +30,10 @@ struct Grid {
 };
 
 struct Fluid {
-  double mobility;       ///< of the rock, k/mu, m^2/(Pa s)
-  double storage;        ///< of the rock at constant strain, 1/M, 1/Pa
-  double stabilisation;  ///< alpha^2/(4 (lambda + 2G)), 1/Pa: times h^2 it is the mobility of dp/dt, see docs/model/model.md
-  double viscosity;      ///< Pa s
+  double mobility;         ///< of the rock, k/mu, m^2/(Pa s)
+  double storage;          ///< of the rock at constant strain, 1/M, 1/Pa
+  double stabilisation;    ///< alpha^2/(4 (lambda + 2G)), 1/Pa; times h^2: mobility of dp/dt, docs/model/flow.md
+  double viscosity;        ///< Pa s
   double aperture, least;  ///< of the fracture at the start, and the least hydraulic one, m
   double injection;        ///< into the fracture, grows with time, m/s^2
 

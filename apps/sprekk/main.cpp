@@ -182,7 +182,7 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   return 0;
 }
 
-/// Whether standard output was not taken, as by a full disk. A reader of a pipe that ends early has what it wanted.
+/// Whether a write to standard output failed, for example on a full disk. A pipe whose reader has ended is no failure.
 bool output_is_lost() {
   std::cout.flush();
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout;

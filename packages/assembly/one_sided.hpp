@@ -14,8 +14,8 @@ std::vector<char> nodes_with_copies(const mesh::GlobalMesh& mesh);
 
 /// The limit of g(x + s d, t) for s -> 0, s > 0, where g jumps at x; g(x, t) itself where it does not, and for d = 0.
 /// A jump: over 1e-6 of |d| the value changes by more than half of its change over 1e-4 of |d|, and by more than 1e-9
-/// of itself: x may be off by that from where g jumps, as in files of meshes. x, d in metre. Throws an Error where g
-/// has no value.
+/// of itself. So x may be 1e-6 of |d| from the jump, as coordinates in mesh files are. x, d in metre. Throws an Error
+/// where g has no value.
 Real one_sided(const base::Expression& g, const mesh::Vector& x, const mesh::Vector& d, Real t);
 
 }  // namespace sprekk::assembly

@@ -366,8 +366,9 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
-  /// Of the energy of what is carried: as much of it acts on all else, or less. Rows of what is carried grow by orders
-  /// of magnitude with the flow, and for a given flow they are linear: they must not refuse a step that mends the flow.
+  // Weight of the rows of transported quantities. These rows grow by orders of magnitude with the flow and are linear
+  // for a given flow: the search must not reject a step that corrects the flow because they grow. With mechanics: the
+  // largest share of the transported energy that becomes mechanical work.
   const Real share_at_work = coupled_ ? 1e-6 : 1e-9;
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {

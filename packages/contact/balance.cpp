@@ -31,8 +31,8 @@ void Contact::find_loose(std::vector<Grip> grips) {
 namespace {
 
 constexpr int n_sweeps = 2;
-/// Of the force scale: what is left out of balance along a mode and is less is rounding. It is below the tolerance of
-/// Newton's method, else forces between the two would keep the solve from its end.
+/// Unbalanced forces along a mode below this share of the force scale count as round-off. The share is below the
+/// tolerance of Newton's method: forces between the two would otherwise prevent convergence.
 constexpr Real least_force = 1e-12;
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Blocks {
   int traction = -1;
 };
 
-/// Globalisation for bodies in contact. Theory: docs/model/model.md, 6. All members are collective unless they return
+/// Globalisation for bodies in contact. Theory: docs/model/contact.md. All members are collective unless they return
 /// stored data.
 class Contact : public fields::Globalisation {
  public:

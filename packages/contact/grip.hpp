@@ -17,7 +17,7 @@ struct Grip {
   Real modulus = 0;                 ///< Young's modulus of the softer side, Pa
   Real gap = 0;                     ///< how far the sides are from touching without traction, m
   mesh::Vector away{};              ///< derivative of the gap in the jump
-  bool weakens = false;             ///< the law remembers slip, which may lower what friction bears
+  bool weakens = false;             ///< the law has history variables; slip may reduce the friction bound
   Real limit = 0;                   ///< of friction, on the size of the tangential traction, Pa
   mesh::Vector slip{};              ///< plastic tangential jump since the last accepted state, m, global
 };

@@ -19,7 +19,7 @@ class Globalisation {
   virtual std::vector<char> states(const BlockVector& x) { return {}; }
   /// A hash of them, the same on every rank and for any partition.
   virtual std::size_t state_hash(const std::vector<char>& states) { return 0; }
-  /// Resistance may fall with motion, so that the full step of Newton's method may lead away from a solution.
+  /// The resistance of joints may decrease with slip, so that a full Newton step may diverge. Collective.
   virtual bool weakens(const BlockVector& x) { return false; }
   /// Where the entities are that are flagged, in the order of states(), in words; empty if none is on any rank.
   virtual std::string where(const std::vector<char>& flagged) { return ""; }

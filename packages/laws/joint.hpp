@@ -312,8 +312,8 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///                                                            R = lambda               open
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Joints that never slip stick wherever they are not open: on faces under no load, as at the start, a bound of a huge
-/// coefficient times the compression is 0, and the matrix of the slip there no iterative solver can use.
+/// Joints that never slip stick wherever they are not open. A huge friction coefficient is no substitute: on unloaded
+/// faces its bound is 0, so that they would slip, and iterative solvers do not converge for the matrix of slip.
 /// Of laws that remember the b at p = p_old counts, too. In 2D faces stick only if |z| is not above it, as it is once
 /// they do: else those that slip hardens would stick for their slip, and then no more (in 3D z turns too much where it
 /// is small). And slip against z has no larger b: else joints that slip weakens had states that slide backwards.

@@ -21,8 +21,7 @@ void Time::describe(base::Section& s) {
   s.entry(schedule, "schedule", "s",
           "ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at");
   s.entry(tolerance, "tolerance", "-", base::between(1e-8, 0.5),
-          "relative error by the length of steps, which are chosen so that it is met, see docs/use/input.md; instead of "
-          "steps");
+          "relative time error that adaptive steps meet, see docs/use/time_and_solver.md; instead of steps");
   s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
           "steps become shorter where Newton's method takes more, and longer where it takes less; with tolerance, no "
           "longer than that allows");

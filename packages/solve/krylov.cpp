@@ -126,7 +126,7 @@ void try_parameters(const ParameterList& given, const std::string& method, const
 
 }  // namespace
 
-/// By what the methods that are used here, or the one that is asked for, know.
+/// Against the valid parameters of the method that the scene names, else of the default methods.
 void check_krylov(const ParameterList& given, const RCP<const Comm>& comm) {
   if (given.numParams() == 0) return;
   std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};

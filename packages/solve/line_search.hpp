@@ -33,9 +33,9 @@ struct SearchReport {
 /// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
 /// only the last merit counts. Entities whose state changes, and did in one of the two iterates before, are damped, by
 /// 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when there is a search, and which steps
-/// are taken back. Where resistance may fall with motion and a full step of the f that lags makes its merit rise, full
-/// steps go astray: from there on there is a search for less of that merit, but for the first step after Picard begins,
-/// and coefficients stay as they are until it fell to a tenth.
+/// are taken back. Joints that weaken with slip: once a full step with lagged coefficients increases the merit of the
+/// lagged problem, steps are searched for a decrease of that merit, except the first step after Picard begins, and the
+/// coefficients are frozen until the merit has fallen to a tenth.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)

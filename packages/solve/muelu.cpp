@@ -99,8 +99,8 @@ void check_lists(const std::string& place, const ParameterList& given, const Par
   }
 }
 
-/// Throws a RefusedList if MueLu, or what it hands to other libraries, does not take what is given; `whole` is that
-/// over the defaults.
+/// Throws a RefusedList if MueLu, or a library to which it passes a nested list, rejects an entry of `given`; `whole`:
+/// the defaults, overridden by `given`.
 void check(const std::string& place, const ParameterList& given, const ParameterList& whole,
            const RCP<const Comm>& comm) {
   ParameterList top(given);

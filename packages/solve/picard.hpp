@@ -26,13 +26,13 @@ class Picard {
 
   bool possible() const { return possible_; }  ///< f has such coefficients
   bool lags() const { return lags_; }          ///< they are not those of x: its zeros are not those of f
-  bool fresh() const { return fresh_; }        ///< its first step is still to be made, or it has just been resumed
+  bool fresh() const { return fresh_; }        ///< no step was made since it began or was resumed
   bool agrees() const;                         ///< coefficients differed by little when Newton's method last took over
   int n_steps() const { return n_; }           ///< while it lagged
 
   /// After a full step of the f that lags, to x. True if the step is to be taken back.
   bool follow(const BlockVector& x);
-  /// Instead of follow(): coefficients stay, for the f that lags is not yet solved.
+  /// Instead of follow(), while the lagged problem is not yet solved: the coefficients are frozen.
   void hold() { ++n_; }
   /// After a step of f itself from `from`, of which the search took the part `step`. True if it is to be taken back: f
   /// lags again.

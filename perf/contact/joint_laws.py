@@ -1,4 +1,4 @@
-"""The laws of joints, from the entries of a material and the formulas of docs/model/model.md, section 2, and nothing of the program.
+"""The laws of joints, from the entries of a material and the formulas of docs/model/model.md, and nothing of the program.
 
 What the laws keep of a face is read from the fields that the run wrote; by how much these may move in a step is computed here."""
 import math

@@ -1,6 +1,6 @@
 """How far a state of the fractures is from the laws of contact and friction, computed from what a run wrote.
 
-The conditions are (10)-(14) of Wollmann (2024); see docs/model/model.md, section 2. Nothing of the solver is used: jumps,
+The conditions are (10)-(14) of Wollmann (2024); see docs/model/model.md. Nothing of the solver is used: jumps,
 tractions, plastic jumps, states and histories come from fractures.pvd, the laws of the joints from effective_input.xml
 (joint_laws.py). Where a law has a history, that of the end of the step counts, and how it moved in the step is checked."""
 import math

@@ -1,4 +1,4 @@
-"""The balances of fluid and energy of a run, from the files that it wrote and docs/model/model.md, sections 10 to 12.
+"""The balances of fluid and energy of a run, from the files that it wrote and docs/model/flow.md and heat.md.
 
 Of fluid, all volumes being at reference conditions, the rate of what rock and fractures store is what comes in:
 

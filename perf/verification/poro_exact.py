@@ -116,7 +116,7 @@ class Joined:
     """A block of height 1 with a fracture through it, fixed at its bottom and displaced by `way` (along the fracture, along the normal) at
     its top, in which the fluid has the pressure p: N + share p = N0 + k_n ([[u]]_n - d_n), shear traction = T0 + k_s (d_t - [[u]]_t).
     `share` is 1 where the rock keeps its fluid, or Biot's coefficient is 0, and 1 - Biot's coefficient where the pressure in the rock is
-    that of the fracture. Joint as in docs/model/model.md (11)-(14); the jump has what T0 stretches the joint by."""
+    that of the fracture. Joint as in docs/model/model.md, (11)-(14); the jump has what T0 stretches the joint by."""
     lam: float  # undrained where the rock keeps its fluid
     G: float
     way: tuple

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lists that a scene hands to Trilinos and MUMPS: library_lists_test.py PROGRAM ROOT MPIEXEC
 
-What a library refuses, or would not read, ends the run before the first step, with one message that names the place in the scene;
+Unknown or invalid entries of a library's list end the run before the first step, with one message that names the place in the scene;
 what it takes stays as it is."""
 from program import ProgramTest, main
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fractures inside of the rock that have slipped before and never slip further: slipped_fractures_test.py PROGRAM ROOT MPIEXEC
 
-The slip is uniform, the jump is zero at tips: cells at tips take what is between. Under compression all faces keep their slip."""
+The slip is uniform and the jump is zero at tips, so cells at tips deform. Faces under compression retain their slip."""
 import itertools
 import math
 

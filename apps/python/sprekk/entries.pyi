@@ -841,8 +841,8 @@ class Time(Section):
     end: end of the last step (s; default 1)
     steps: number of equal steps from start to end; absent: 1 (between 1 and 10000000)
     schedule: ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at (s)
-    tolerance: relative error by the length of steps, which are chosen so that it is met, see docs/use/input.md; instead
-        of steps (between 1e-08 and 0.5)
+    tolerance: relative time error that adaptive steps meet, see docs/use/time_and_solver.md; instead of steps (between
+        1e-08 and 0.5)
     target_newton_iterations: steps become shorter where Newton's method takes more, and longer where it takes less;
         with tolerance, no longer than that allows (between 1 and 1000)
     first_step: its length, of steps that are chosen; absent: a part of all (s; positive)

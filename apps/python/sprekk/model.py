@@ -142,7 +142,7 @@ class Model:
         return {name: values for name, (values, _) in self._handle.outputs().items()}
 
     def output(self, name):
-        """An output of the present state, see docs/use/input.md: [cell or face that this rank owns, component], or [node
+        """An output of the present state, see docs/use/output.md: [cell or face that this rank owns, component], or [node
         of this rank, component]; of numbers without the last index."""
         return self._output(name)[0]
 

@@ -95,7 +95,7 @@ struct InCells {
   static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
   /// Times the size, m^3 that store.
   Real room(LocalIndex, const Real*, Real) const { return 1; }
-  /// What it has to know of the step before, in columns.
+  /// Columns of the history "passed"; 0 without stabilisation.
   int n_passed() const { return stabilisation.softness.empty() ? 0 : 2 * Flow::n; }
   void bind(const assembly::Context& context) {
     cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
@@ -116,7 +116,7 @@ struct InCells {
       for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
     Kokkos::deep_copy(passed, host);
   }
-  /// `anew`: the step that led to the state does not count.
+  /// `anew`: the volume of the last step is set to zero, as at the start of a run.
   template <class Assembler, class Op>
   void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
             bool anew) const {

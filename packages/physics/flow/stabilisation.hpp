@@ -62,15 +62,15 @@ StabilisingFlow<shape> stabilising_flow(const mesh::Mesh& mesh, const Stabilisat
   return {.T = T_device, .lift = lift_device};
 }
 
-/// `Flow` in cells together with the stabilising one, of which volumes V passed until the start of the step, G of them
-/// in the step before:   q + rate (V(x) - V) - before G
+/// The sum of `Flow` in cells and the stabilising flow:   q + rate (V(x) - V) - before G
+/// V: volumes that passed until the start of the step; G: their part in the step before.
 template <class Flow, Shape shape>
 struct StabilisedFlow {
   static constexpr int n_ends = Flow::n_ends, n = n_ends, m = Flow::Columns::size;
   using Columns = typename Flow::Columns;
   Flow base;
   StabilisingFlow<shape> volumes;  // without T: none
-  ConstView<Real**> passed;        // [owned cell] V of the faces, then G
+  ConstView<Real**> passed;        // [local cell] V of the faces, then G
   Real rate, before;
 
   KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[m], Real (&q)[n]) const {
