@@ -22,7 +22,7 @@ from joint_laws import JointLaw  # of perf/contact
 from violation import FIRST_KINDS, HISTORIES
 from written import number, numbers
 
-ROUNDING = 1e-7  # of the stored fluid and heat per step: 1e-6 of that is their rounding over all cells
+ROUNDING = 1e-8  # of the stored fluid and heat per step: 1e-6 of that is their rounding over all cells
 LONGER = 2.4  # a step so many times as long as that before is one of implicit Euler
 
 

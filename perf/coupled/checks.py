@@ -91,7 +91,7 @@ def rounding_of_stress(written):
     level = written.value(written.entries["Heat"]["initial temperature"]) if "Heat" in written.entries else 0
     stiffness = max((float(m.get("Young's modulus", 0)) * abs(float(m.get("thermal expansion", 0)))
                      for m in written.entries["Materials"].values()), default=0)
-    return 1e-12 * stiffness * level
+    return 1e-13 * stiffness * level
 
 
 def contact(written):

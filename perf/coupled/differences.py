@@ -5,7 +5,7 @@ import numpy as np
 LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
 STRESSES = ("stress", "traction", "largest compression")
 LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "slip tendency", "error of damage history")
-ROUNDING, ALLOWED = 1e-13, 1e-8  # of levels of pressures and temperatures; of differences
+ROUNDING, ALLOWED = 1e-14, 1e-8  # of levels of pressures and temperatures; of differences
 NEAR = 1e-9  # of the limit between two states: there a face may have either
 
 
@@ -26,7 +26,7 @@ class Scales:
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
 
     def _least_fluxes(self, written):
-        """Flows are known to the rounding of the driving pressures and temperatures, 1e-13 of their levels, times the conductance of
+        """Flows are known to the rounding of the driving pressures and temperatures, 1e-14 of their levels, times the conductance of
         a cell."""
         first = written.states[0]
         edge = (first.bulk.sizes.min()) ** (1 / first.bulk.dim)
