@@ -56,7 +56,7 @@ def report(options):
         raise PlotError(f"{file}: cannot be written: there is no folder {file.parent}")
     content = read.results(directory)
     dim = content.get("mesh", {}).get("dimension", 3)
-    entries = scene.Scene(directory, ROOT / "docs" / "reference.md", dim)
+    entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
     drawn, left_out = pictures(directory, options.dpi)
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     html = page.of_run(
