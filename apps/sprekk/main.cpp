@@ -20,6 +20,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+extern const char* const sprekk_commit;  // cmake/Commit.cmake
+
 namespace {
 
 using namespace sprekk;
@@ -61,7 +63,7 @@ auto between(double low, double high) {
 
 void declare(CLI::App& app, Arguments& arguments) {
   auto& options = arguments.options;
-  app.set_version_flag("--version", "sprekk " + model::version());
+  app.set_version_flag("--version", fmt::format("sprekk {} (commit {})", model::version(), sprekk_commit));
   app.require_subcommand(1);
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");

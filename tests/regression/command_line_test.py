@@ -3,6 +3,8 @@
 
 Every error must end the program on all ranks with status 1 and be told once, with the file, the place, the value and
 what is allowed."""
+import re
+
 from program import ROOT, ProgramTest, main
 
 PUSH = "seed/push_2d.xml"
@@ -178,8 +180,13 @@ class Errors(ProgramTest):
 
 class Commands(ProgramTest):
     def test_version(self):
+        """The version of CMakeLists.txt, which the citation and the changelog repeat, and the commit."""
+        read = lambda path: (ROOT / path).read_text()
+        version = re.search(r"^project\(Sprekk VERSION (\S+)", read("CMakeLists.txt"), re.M)[1]
         out, _ = self.call("--version")
-        self.assertRegex(out, r"^sprekk \d+\.\d+\.\d+\n$")
+        self.assertRegex(out, rf"^sprekk {re.escape(version)} \(commit ([0-9a-f]{{7,}}(-dirty)?|unknown)\)\n$")
+        self.assertIn(f"\nversion: {version}\n", read("CITATION.cff"))
+        self.assertEqual(version, re.search(r"^## (\S+)", read("CHANGELOG.md"), re.M)[1])
 
     def test_help(self):
         out, err = self.call("--help")
