@@ -1,5 +1,6 @@
 # Writes OUTPUT, a source file that defines the commit of the tree SOURCE, if it has changed. -dirty: with changes that are
 # not committed. In a source archive git has replaced the placeholder in commit.txt.
+cmake_minimum_required(VERSION 3.25)
 if(EXISTS ${SOURCE}/.git)
   execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=9 --exclude=*
     OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
