@@ -310,8 +310,25 @@ View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
   });
 }
 
+namespace {
+
+/// Difference between the largest and the smallest value of x on all ranks. Collective.
+Real range_of(const fields::Vector& x) {
+  const auto values = x.getLocalViewHost(Tpetra::Access::ReadOnly);
+  Real largest = -std::numeric_limits<Real>::infinity(), least_negative = largest;
+  for (std::size_t i = 0; i < values.extent(0); ++i) {
+    largest = std::max<Real>(largest, values(i, 0));
+    least_negative = std::max<Real>(least_negative, -values(i, 0));
+  }
+  const auto ends = base::max_over_ranks(*x.getMap()->getComm(), std::vector<Real>{largest, least_negative});
+  return ends[0] + ends[1];
+}
+
+}  // namespace
+
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
-  constexpr Real most_noise = 1e-5;  // of the loads
+  constexpr Real most_noise = 1e-5;   // of the loads
+  constexpr Real least_range = 1e-4;  // of the level of a balanced quantity
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -330,6 +347,8 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // some rows let much less through than others
     const bool bounded = !balance && !traction, carried = carried_[b];
+    // Differences of pressure or temperature drive fluxes: an error is relative to these and not to the level.
+    const Real driving = balance ? std::min(held_scale, std::max(range_of(*x[b]), least_range * held_scale)) : 0;
     Real stored = 0;  // rounding of what the step stores
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
@@ -341,7 +360,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
         KOKKOS_LAMBDA(int i, Real& maximum) {
           const Real size_of_row = row(i) < 0 ? -row(i) : row(i),
                      weight = carried && now(i) > diagonal(i) ? now(i) : diagonal(i),
-                     weak = balance ? weight * held_scale : free_scale;
+                     weak = balance ? weight * driving : free_scale;
           const Real scale = mask(i) ? held_scale : weak < free_scale ? weak : free_scale;
           const Real of_row = rounding_of_block * now(i) + stored + (others.extent(0) > 0 ? others(i) : 0),
                      noise = mask(i)                                  ? 0

@@ -24,6 +24,7 @@ class Scales:
         self._least_fluxes(written)
         if self.start["pressure"]:  # what the initial pressure makes of stresses
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
+        self._least_stresses(written)
 
     def _least_fluxes(self, written):
         """Flows are known to the rounding of the driving pressures and temperatures, 1e-14 of their levels, times the conductance of
@@ -44,6 +45,17 @@ class Scales:
             conducts = max((float(word) for m in written.entries["Materials"].values()
                             for word in m.get("thermal conductivity", "{}").strip("{}").split(",") if word.strip()), default=0)
             self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * conducts / edge)
+
+    def _least_stresses(self, written):
+        """Thermal stress and expansion are known to the rounding of temperature: 1e-14 of its level."""
+        rocks = [m for m in written.entries["Materials"].values() if "Young's modulus" in m]
+        level = ROUNDING / ALLOWED * (abs(self.start["temperature"]) + self.largest.get("temperature", 0))
+        expansion = level * max((float(m.get("thermal expansion", 0)) for m in rocks), default=0)
+        stiffness = max((float(m["Young's modulus"]) for m in rocks), default=0)
+        extent = np.ptp(written.states[0].bulk.points, axis=0).max()
+        for kind, least in (("stress", stiffness * expansion), ("length", extent * expansion)):
+            if kind in self.largest:
+                self.largest[kind] = max(self.largest[kind], least)
 
     def of(self, name):
         return self.largest.get(kind_of(name), 0) or 1.0
