@@ -1,4 +1,4 @@
-// All laws of the aperture that a fluid flows in; the first is that of joints that name none.
+// List of the laws of the hydraulic aperture. The first is the default.
 #pragma once
 
 #include "laws/aperture/barton.hpp"
@@ -9,7 +9,7 @@ namespace sprekk::laws {
 
 // clang-format off
 
-/// Which aperture a fluid flows in where the walls are a apart, m: Real hydraulic(Real a), and its derivative slope(a).
+/// Hydraulic aperture, m, at the mechanical aperture a, m: Real hydraulic(Real a) and its derivative slope(a).
 using ApertureKinds = Kinds<
     MechanicalAperture,
     BartonAperture>;

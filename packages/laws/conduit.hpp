@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// One of the kinds.
+/// One of the laws of the hydraulic aperture. `a` is the mechanical aperture, m.
 struct HydraulicAperture : ApertureKinds {
   using ApertureKinds::ApertureKinds;
   KOKKOS_INLINE_FUNCTION Real hydraulic(Real a) const {
@@ -17,16 +17,16 @@ struct HydraulicAperture : ApertureKinds {
   }
 };
 
-/// How well a fracture lets a fluid through along itself. Its hydraulic aperture follows from the mechanical one, a
-/// less at the start and what it has widened since, but is not less than that of asperities.
+/// Hydraulic properties of a fracture. The mechanical aperture is the initial one plus `widening`, m. Both the
+/// mechanical and the hydraulic aperture are at least `least`, the aperture of the asperities.
 struct Conduit {
-  Real aperture = 0;             ///< a at the start, m
-  Real least = 0;                ///< of both apertures, m
-  Real permeability = 0;         ///< k_t, m^2; 0: that of the cubic law, (hydraulic aperture)^2/12
+  Real aperture = 0;             ///< initial mechanical aperture a, m
+  Real least = 0;                ///< lower bound of both apertures, m
+  Real permeability = 0;         ///< k_t, m^2; 0: cubic law, (hydraulic aperture)^2/12
   Real viscosity = 1;            ///< mu, Pa s
-  HydraulicAperture walls = {};  ///< the hydraulic aperture by the mechanical one
+  HydraulicAperture walls = {};  ///< law of the hydraulic aperture
 
-  /// What the fracture has room for per area, m.
+  /// Fluid volume per fracture area, m.
   KOKKOS_INLINE_FUNCTION Real mechanical_aperture(Real widening = 0) const {
     const Real a = aperture + widening;
     return a > least ? a : least;
@@ -35,7 +35,7 @@ struct Conduit {
     const Real e = walls.hydraulic(aperture + widening);
     return e > least ? e : least;
   }
-  /// Hydraulic aperture times k_t/mu, m^3/(Pa s), and its derivative in the widening.
+  /// Transmissivity, m^3/(Pa s): hydraulic aperture times k_t/mu. dtransmissivity is its derivative in the widening.
   KOKKOS_INLINE_FUNCTION Real transmissivity(Real widening = 0) const {
     return transmissivity_of(hydraulic_aperture(widening));
   }

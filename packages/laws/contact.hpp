@@ -1,4 +1,4 @@
-// What the laws of a joint may ask about the point of a fracture that they are evaluated at.
+// Contact quantities at a point of a fracture: the arguments of the joint laws.
 #pragma once
 
 #include "base/view.hpp"
@@ -9,7 +9,7 @@ namespace sprekk::laws {
 
 enum class ContactState : int { open = 0, stick = 1, slip = 2 };
 
-/// x without derivatives.
+/// Value of x without derivatives.
 template <class T>
 KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -19,7 +19,7 @@ KOKKOS_INLINE_FUNCTION Real value_of(const T& x) {
   }
 }
 
-/// Numbers of one face, each `stride` after the one before.
+/// Strided array of numbers of one face; `stride` is the distance of consecutive numbers.
 template <class Number>
 struct Numbers {
   Number* first = nullptr;
@@ -29,31 +29,31 @@ struct Numbers {
   KOKKOS_INLINE_FUNCTION Numbers from(int i) const { return {first ? first + i * stride : nullptr, stride}; }
 };
 
-/// What a law has kept of a face, as it was at the end of the last step. All are 0 at the start.
+/// History variables of a law on a face at the end of the last step. All are 0 at the start.
 using History = Numbers<const Real>;
 
-/// A point of a joint; tension is positive, tangential vectors are (t1[, t2]) in the frame of the face. T carries
-/// derivatives in jump and traction. Where the elastic part of the tangential jump is asked for, u_t^p, the slip of the
-/// step and the separation are not yet known, and 0.
+/// Contact quantities at a point of a joint. Tension is positive. Tangential vectors are (t1[, t2]) in the face frame.
+/// T carries derivatives with respect to jump and traction. For the elastic compliance, u_t^p, the slip of the step and
+/// the separation are 0: they are not yet known.
 template <class T>
 struct Contact {
-  T lambda_n = 0;                  ///< normal traction, Pa: for the bound the projected one
+  T lambda_n = 0;                  ///< normal traction, Pa; for the bound the projected one
   T shear = 0;                     ///< |lambda_t|, Pa
   T plastic_slip = 0;              ///< |u_t^p|, m
-  T slip_of_step = 0;              ///< |u_t^p - last_plastic_jump|, m; of iterates also less than 0
-  T separation = 0;                ///< w_n - g, m, by which the faces are apart; bonds alone may ask for it
-  T friction_left = 1;             ///< what damage leaves of friction; for laws that apply it themselves
-  T dilation_left = 1;             ///< the same of dilation
+  T slip_of_step = 0;              ///< |u_t^p - last_plastic_jump|, m; may be negative in iterates
+  T separation = 0;                ///< w_n - g, m; for bonds only
+  T friction_left = 1;             ///< friction factor of damage; for laws with `takes_damage`
+  T dilation_left = 1;             ///< dilation factor of damage; likewise
   T plastic_jump[2] = {0, 0};      ///< u_t^p, m
-  T slip_direction[2] = {0, 0};    ///< unit vector of the step's slip, which is that of the shear traction
-  T wear = 1;                      ///< k, by which slip counts in damage; damage alone may ask for it
+  T slip_direction[2] = {0, 0};    ///< unit vector of the slip of the step, parallel to the shear traction
+  T wear = 1;                      ///< k, damage per unit of slip; for damage only
   Real last_plastic_jump[2] = {};  ///< u_t^p at the end of the last step, m
-  int dim = 2;                     ///< of space
-  bool open = false;               ///< bears no traction; known at the end of a step alone
-  Real rubs = 1;                   ///< the share of the step's slip that wears; below 1 at the end of a step alone
-  History history = {};            ///< the numbers of the law that is asked
+  int dim = 2;                     ///< dimension of space
+  bool open = false;               ///< no traction; known at the end of a step only
+  Real rubs = 1;                   ///< share of the step's slip that wears; below 1 at the end of a step only
+  History history = {};            ///< history variables of the called law
 
-  /// Calls use(contact) with the numbers of a law that begin later by `offset`.
+  /// Returns use(contact), where the history variables of `contact` begin `offset` numbers later.
   template <class Use>
   KOKKOS_INLINE_FUNCTION auto after(int offset, const Use& use) const {
     if (offset == 0) return use(*this);

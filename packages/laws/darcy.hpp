@@ -1,11 +1,11 @@
-// Darcy's law q = -(k/mu) (grad p - rho g) of one fluid.
+// Darcy's law q = -(k/mu) (grad p - rho g) of a single fluid.
 #pragma once
 
 #include "base/view.hpp"
 
 namespace sprekk::laws {
 
-/// k/mu, m^2/(Pa s): a symmetric positive definite tensor, [dim, dim] of it in use.
+/// Mobility k/mu, m^2/(Pa s): a symmetric positive definite tensor. Only [dim, dim] of it is used.
 struct Mobility {
   Real value[3][3] = {};
 
@@ -15,7 +15,7 @@ struct Mobility {
     return result;
   }
 
-  /// By its leading minors.
+  /// True if the tensor is positive definite (leading minors).
   bool is_positive(int dim) const {
     const auto& m = value;
     const Real minor = m[0][0] * m[1][1] - m[0][1] * m[0][1];
@@ -30,7 +30,7 @@ struct Mobility {
     for (int i = 0; i < dim; ++i) sum += value[i][i];
     return sum;
   }
-  /// a . (k/mu) b
+  /// Returns a . (k/mu) b.
   template <int dim>
   KOKKOS_INLINE_FUNCTION Real product(const Real (&a)[dim], const Real (&b)[dim]) const {
     Real sum = 0;
@@ -38,7 +38,7 @@ struct Mobility {
       for (int j = 0; j < dim; ++j) sum += a[i] * value[i][j] * b[j];
     return sum;
   }
-  /// tr((k/mu)^-1 S) for a symmetric S, by Cramer's rule.
+  /// Returns tr((k/mu)^-1 S) for a symmetric S (Cramer's rule).
   template <int dim>
   KOKKOS_INLINE_FUNCTION Real resistance(const Real (&S)[dim][dim]) const {
     const auto& m = value;

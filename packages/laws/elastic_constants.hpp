@@ -1,4 +1,4 @@
-// Lame's constants from those that a material gives.
+// Conversion of elastic constants to Lame's constants.
 #pragma once
 
 #include "base/check.hpp"
@@ -9,14 +9,15 @@
 
 namespace sprekk::laws {
 
-/// Any two of Young's modulus E, Poisson's ratio nu, shear modulus G, Lame's first parameter, bulk modulus K.
+/// Elastic constants of a material: Young's modulus E, Poisson's ratio nu, shear modulus G, Lame's first parameter,
+/// bulk modulus K. Moduli in Pa.
 struct ElasticPair {
   std::optional<Real> E, nu, G, lambda, K;
 
   int count() const { return E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value(); }
 };
 
-/// Lame's constants from exactly two given constants. Throws Error if the count is not two or if the result is not a
+/// Computes Lame's constants from two constants. Throws Error unless exactly two are given, and if the result is not a
 /// stable solid (G > 0, K > 0).
 inline Elasticity lame_constants(const ElasticPair& p) {
   SPREKK_CHECK(p.count() == 2, "{} elastic constants given, exactly two are needed", p.count());

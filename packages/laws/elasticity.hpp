@@ -1,5 +1,5 @@
-// Isotropic linear elasticity: sigma = 2 G eps + lambda tr(eps) I, in 2D plane strain; Wollmann (2024), (5), tension
-// positive.
+// Isotropic linear elasticity, Wollmann (2024), (5): sigma = 2 G eps + lambda tr(eps) I. Tension is positive; 2D is
+// plane strain.
 #pragma once
 
 #include "base/view.hpp"
@@ -13,7 +13,8 @@ struct Elasticity {
 
   Real youngs_modulus() const { return G * (3 * lambda + 2 * G) / (lambda + G); }
 
-  /// sigma = 2 G eps + lambda tr(eps) I for the displacement gradient H_ij = du_i/dx_j. [dim, dim], Pa.
+  /// Computes the stress [dim, dim], Pa, of the displacement gradient H_ij = du_i/dx_j: sigma = 2 G eps + lambda
+  /// tr(eps) I.
   template <int dim>
   KOKKOS_INLINE_FUNCTION void stress(const Real (&H)[dim][dim], Real (&sigma)[dim][dim]) const {
     Real trace = 0;
@@ -22,8 +23,8 @@ struct Elasticity {
       for (int j = 0; j < dim; ++j) sigma[i][j] = G * (H[i][j] + H[j][i]) + (i == j ? lambda * trace : 0);
   }
 
-  /// The stiffness that ties the gradients a, b of two shape functions, for components i, j:
-  /// lambda a_i b_j + G (a_j b_i + delta_ij a.b).
+  /// Stiffness of components i, j for the gradients a, b of two shape functions: lambda a_i b_j + G (a_j b_i + delta_ij
+  /// a.b).
   template <int dim>
   KOKKOS_INLINE_FUNCTION Real stiffness(const Real (&a)[dim], const Real (&b)[dim], int i, int j) const {
     Real dot = 0;
@@ -31,7 +32,7 @@ struct Elasticity {
       for (int k = 0; k < dim; ++k) dot += a[k] * b[k];
     return lambda * a[i] * b[j] + G * (a[j] * b[i] + dot);
   }
-  /// The same for integrals M_ij of a_i b_j, for all i, j.
+  /// Computes the stiffness K_ij for all i, j from the integrals M_ij of a_i b_j.
   template <int dim>
   KOKKOS_INLINE_FUNCTION void stiffness(const Real (&M)[dim][dim], Real (&K)[dim][dim]) const {
     Real trace = 0;

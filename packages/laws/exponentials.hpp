@@ -1,4 +1,4 @@
-// Exponentials and logarithms that keep their digits near zero, and stiffnesses made of them.
+// Exponentials and logarithms without cancellation near zero, and stiffness functions based on them.
 #pragma once
 
 #include "base/view.hpp"
@@ -7,7 +7,7 @@
 
 namespace sprekk::laws {
 
-/// exp(x) - 1, also of numbers with derivatives.
+/// Returns exp(x) - 1, also with derivatives.
 template <class T>
 KOKKOS_INLINE_FUNCTION T exponential_less_one(const T& x) {
   using std::exp, std::tanh;
@@ -16,7 +16,7 @@ KOKKOS_INLINE_FUNCTION T exponential_less_one(const T& x) {
   return 2 * half / (1 - half);
 }
 
-/// ln(1 + x), x >= 0.
+/// Returns ln(1 + x) for x >= 0, also with derivatives.
 template <class T>
 KOKKOS_INLINE_FUNCTION T logarithm_of_one_and(const T& x) {
   using std::atanh, std::log;
@@ -24,14 +24,14 @@ KOKKOS_INLINE_FUNCTION T logarithm_of_one_and(const T& x) {
   return 2 * atanh(x / (2 + x));
 }
 
-/// (1 + N/N_r)^m, by which a stiffness grows with the compression N; 1 for N < 0.
+/// Factor of a stiffness under the compression N: (1 + N/N_r)^m; 1 for N < 0.
 template <class T>
 KOKKOS_INLINE_FUNCTION T stiffening(const T& N, Real reference, Real m) {
   using std::pow;
   return N > 0 ? T(pow(1 + N / reference, m)) : T(1);
 }
 
-/// Its reciprocal integrated from 0 to N, Pa; N for N < 0.
+/// Integral of 1/stiffening from 0 to N, Pa; N for N < 0.
 template <class T>
 KOKKOS_INLINE_FUNCTION T integral_of_softening(const T& N, Real reference, Real m) {
   if (!(N > 0)) return N;

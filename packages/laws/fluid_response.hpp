@@ -1,4 +1,4 @@
-// How a fluid changes with a quantity that it carries.
+// Density and viscosity of a fluid as functions of a transported quantity.
 #pragma once
 
 #include "base/view.hpp"
@@ -7,13 +7,13 @@
 
 namespace sprekk::laws {
 
-/// Of a quantity u: the density at reference pressure is d(u) rho_0 and the viscosity mu_0/m(u), with those of the
-/// fluid at u_0, where d = m = 1.
+/// Response of the fluid to a quantity u. The density at reference pressure is d(u) rho_0, the viscosity mu_0/m(u).
+/// rho_0 and mu_0 are the values at u_0, where d = m = 1.
 ///
 /// exponential: d = exp(-a (u - u_0)), m = exp(b (u - u_0))
-/// table:       cubic between knots of one distance, once continuously differentiable; constant beyond the ends
+/// table:       cubic between equidistant knots, continuously differentiable; constant beyond the ends
 struct FluidResponse {
-  /// A factor and its derivative in u.
+  /// Factor and its derivative in u.
   struct Factor {
     Real value, slope;
   };
@@ -21,8 +21,8 @@ struct FluidResponse {
   Real expansion = 0;            ///< a, 1/U
   Real thinning = 0;             ///< b, 1/U
   Real first = 0;                ///< u of the first knot
-  Real distance = 1;             ///< of knots
-  ConstView<Real**> knots = {};  ///< [knot, 4] d, its slope times the distance, m, likewise; empty: exponential
+  Real distance = 1;             ///< distance of the knots
+  ConstView<Real**> knots = {};  ///< [knot, 4] d, its slope times distance, m, likewise; empty: exponential
 
   KOKKOS_INLINE_FUNCTION Factor density(Real u) const {
     return knots.extent(0) > 0 ? between(u, 0) : exponential(-expansion, u);
@@ -30,7 +30,7 @@ struct FluidResponse {
   KOKKOS_INLINE_FUNCTION Factor mobility(Real u) const {
     return knots.extent(0) > 0 ? between(u, 2) : exponential(thinning, u);
   }
-  /// d m, what a flow of mass is times where nothing is lifted.
+  /// Returns d m, the factor of a mass flow without gravity.
   KOKKOS_INLINE_FUNCTION Factor flow(Real u) const {
     const Factor d = density(u), m = mobility(u);
     return {d.value * m.value, d.slope * m.value + d.value * m.slope};

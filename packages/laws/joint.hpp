@@ -1,7 +1,7 @@
-// The joint law at one point of a fracture, composed of small laws, written as one residual.
+// Joint law at one point of a fracture, composed of small laws and written as one residual.
 //
-// Frame (n, t1[, t2]), n from side minus to side plus; jump w = u+ - u-, traction lambda = sigma n, tension positive.
-// Equation numbers are those of Wollmann (2024). Any scalar type T; derivatives are taken in (w, lambda) alone.
+// Frame (n, t1[, t2]), n from side - to side +. Jump w = u+ - u-, traction lambda = sigma n, tension positive. Equation
+// numbers are those of Wollmann (2024). Scalars are of any type T. Derivatives are with respect to (w, lambda) only.
 #pragma once
 
 #include "base/view.hpp"
@@ -13,7 +13,7 @@
 
 namespace sprekk::laws {
 
-/// |v|, with derivative zero at v = 0 (the root's own derivative is infinite there).
+/// Returns |v|, with zero derivative at v = 0 (the derivative of the root is infinite there).
 template <int n, class T>
 KOKKOS_INLINE_FUNCTION T norm(const T (&v)[n]) {
   using std::sqrt;
@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION T norm(const T (&v)[n]) {
   return square > 0 ? T(sqrt(square)) : T(0);
 }
 
-/// One of the kinds of each role.
+/// One of the laws of each role; see joint_kinds.hpp for the functions.
 struct Shear : ShearKinds {
   using ShearKinds::ShearKinds;
   template <class T>
@@ -79,7 +79,7 @@ struct Damage : DamageKinds {
   }
 };
 
-/// What the gap (14) consists of.
+/// Terms of the gap (14).
 template <class Dilation = laws::Dilation, class Closure = laws::Closure>
 struct NormalGap {
   Real initial = 0;  ///< g0, m
@@ -87,9 +87,8 @@ struct NormalGap {
   Closure closure = {};
 };
 
-/// A joint: how it deforms elastically, what bounds its friction, where its faces touch, what bonds them, and what slip
-/// wears. Each part is a law of its role or one of several. The numbers that they keep of a face follow each other:
-/// dilation, closure, friction, elasticity, bond, damage.
+/// Joint law: tangential elasticity, friction, gap, bond and damage. Each part is a law of its role, or a Kinds of
+/// several. Their history variables are stored in the order dilation, closure, friction, elasticity, bond, damage.
 template <class Elastic = Shear, class Friction = laws::Friction, class Gap = NormalGap<>>
 struct JointLaw {
   Elastic elastic = {};
@@ -98,33 +97,33 @@ struct JointLaw {
   Bond bond = {};
   Damage damage = {};
   Driver driver = {};
-  Real strength = 1;            ///< what friction and bond bear over what they would
-  Real sliding_compliance = 0;  ///< mu tan(theta)/K_t, m/Pa: less slip, and so less dilation, under more compression
+  Real strength = 1;            ///< factor of friction and bond (strength reduction)
+  Real sliding_compliance = 0;  ///< mu tan(theta)/K_t, m/Pa: loss of slip and dilation by compression
 
-  /// The gap (14) below which the faces touch, m: g = g0 + dilation + closure, the latter negative under compression.
+  /// Gap (14), m: g = g0 + dilation + closure. The faces touch below it. Closure is negative under compression.
   template <class T>
   KOKKOS_INLINE_FUNCTION T normal_gap(const Contact<T>& at) const {
     T opens = gap.dilation.opening(at);
     if (wears()) opens *= left(at).dilation;
     return gap.initial + opens + closure(at);
   }
-  /// What compression takes from the gap.
+  /// Closure, m; negative under compression.
   template <class T>
   KOKKOS_INLINE_FUNCTION T closure(const Contact<T>& at) const {
     return at.after(laws::n_history(gap.dilation), [&](const auto& own) { return gap.closure.opening(own); });
   }
-  /// The bound on |lambda_t|, Pa.
+  /// Bound on |lambda_t|, Pa, with friction and bond.
   template <class T>
   KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
     const T b = friction_bound(at);
     return is_bonded() ? with_cohesion(at, b, cohesion(at)) : b;
   }
-  /// That of friction alone.
+  /// Bound of friction without bond, Pa.
   template <class T>
   KOKKOS_INLINE_FUNCTION T friction_bound(const Contact<T>& at) const {
     return strength * (wears() ? worn_friction(at) : unworn_friction(at));
   }
-  /// Friction's bound b and what a bond adds to it; under tension never below 0.
+  /// Sum of the friction bound b and the cohesion, Pa; at least 0 under tension.
   template <class T>
   KOKKOS_INLINE_FUNCTION T with_cohesion(const Contact<T>& at, const T& b, const Cohesion<T>& cohesion) const {
     const T sum = b + cohesion.shear;
@@ -133,7 +132,7 @@ struct JointLaw {
   KOKKOS_INLINE_FUNCTION bool is_bonded() const {
     return bond.visit([](const auto& law) { return !std::is_same_v<std::decay_t<decltype(law)>, NoBond>; });
   }
-  /// Whether faces that touch stick under any shear.
+  /// True if closed faces stick under any shear traction.
   KOKKOS_INLINE_FUNCTION bool never_slips() const {
     const auto is = [](const auto& law) { return std::is_same_v<std::decay_t<decltype(law)>, NoSlip>; };
     if constexpr (requires { friction.visit(is); })
@@ -153,7 +152,7 @@ struct JointLaw {
     all.tension *= strength;
     return all;
   }
-  /// What damage leaves of friction and dilation.
+  /// Remaining fractions of friction and dilation after damage.
   template <class T>
   KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
     if (!wears()) return {};
@@ -161,11 +160,12 @@ struct JointLaw {
     worn.wear = at.rubs * driver.wear(at);
     return worn.after(before_bond() + laws::n_history(bond), [&](const auto& own) { return damage.left(own); });
   }
-  /// How many numbers it keeps of a face.
+  /// Number of history variables on each face.
   KOKKOS_INLINE_FUNCTION int n_history(int dim = 3) const {
     return before_bond() + laws::n_history(bond) + (dim == 2 ? n_history_2d(damage) : laws::n_history(damage));
   }
-  /// Moves the numbers of a face to the end of a step; `at` is its end, with the numbers of its beginning.
+  /// Updates the history variables of a face at the end of a step. `at` is the contact at the end of the step, with the
+  /// history variables of its beginning.
   KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& kept) const {
     if (at.open) at.rubs = rubbed_share(at);
     at.wear = at.rubs * driver.wear(at);
@@ -174,7 +174,7 @@ struct JointLaw {
       at.after(offset, [&](const auto& own) { return laws::commit(law, own, kept.from(offset)), 0; });
     });
   }
-  /// Calls visit(law, where its numbers begin) for the parts that may keep numbers.
+  /// Calls visit(law, index of its first history variable) for the parts that may have history variables.
   template <class Visit>
   KOKKOS_INLINE_FUNCTION void for_each_part(const Visit& visit) const {
     int offset = 0;
@@ -191,8 +191,9 @@ struct JointLaw {
   }
 
  private:
-  /// Of the slip of a step at whose end the faces are open: the least share that wears them until they do not overlap.
-  /// 0 where they fit as they were at the beginning. That all of it does is what says that they are open.
+  /// Share of the step's slip that counts as wear on faces open at the end of the step: the smallest share without
+  /// overlap of the sides. It is 0 if the sides do not overlap without wear, or if wear does not reduce the gap. (The
+  /// state open itself is determined with wear by all slip.)
   KOKKOS_INLINE_FUNCTION Real rubbed_share(Contact<Real> at) const {
     const auto gap = [&](Real share) {
       at.rubs = share;
@@ -227,12 +228,12 @@ struct JointLaw {
   }
 };
 
-/// The constants of the projection for an augmentation c, Pa/m:
+/// Stiffnesses of the projections for an augmentation constant c, Pa/m:
 ///   1/c_t = 1/c + 1/K_t,  1/c_n = 1/c + 1/K_n + 2 mu tan(theta)/K_t
-/// The last term is twice what a sliding face gives in along its normal. A face without traction that has moved by p
-/// and dilates overlaps by tan(theta) |p|: with it |z| = c_t |p| exceeds b = mu c_n tan(theta) |p| wherever mu
-/// tan(theta) < 1, so that it slides and does not spring back to p = 0. The constants steer the iteration; the solution
-/// does not depend on them.
+/// The last term is twice the normal compliance of a sliding face. Consider a dilating face without traction that has
+/// moved by p: it overlaps by tan(theta) |p|. With the last term, |z| = c_t |p| exceeds b = mu c_n tan(theta) |p| if mu
+/// tan(theta) < 1, so the face slides and does not return to p = 0. The constants affect the iteration only, not the
+/// solution.
 struct Augmentation {
   Real normal, tangential;
 };
@@ -243,7 +244,8 @@ KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
           1 / (1 / c + law.elastic.initial_compliance())};
 }
 
-/// The contact of normal traction lambda_n after the plastic tangential jump p, of size |p| or what stands for it.
+/// Returns a contact with normal traction lambda_n and plastic tangential jump p. `size` is |p| or its substitute in
+/// iterates.
 template <int dim, class T>
 KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, const T (&p)[dim - 1],
                                           const Real (&p_old)[dim - 1], const History& history) {
@@ -259,7 +261,7 @@ KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, cons
   return at;
 }
 
-/// A converged contact of the jump w and the traction lambda after the plastic tangential jump p.
+/// Returns the contact of a converged face with jump w, traction lambda and plastic tangential jump p.
 template <int dim, class Law>
 KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState state, const Real (&w)[dim],
                                                const Real (&lambda)[dim], const Real (&p)[dim - 1],
@@ -278,8 +280,8 @@ KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState stat
   return at;
 }
 
-/// |v| for the direction z/size: where v is zero to rounding, c|v| <= 1e-13 size, its own direction is noise; |v| then
-/// grows along z.
+/// Returns |v|. If v is zero up to round-off (c |v| <= 1e-13 size), its direction is noise; the result is then the
+/// component of v along z/size.
 template <int n, class T>
 KOKKOS_INLINE_FUNCTION T length_along(const T (&v)[n], const T (&z)[n], const T& size, Real c) {
   T length = norm(v);
@@ -290,7 +292,8 @@ KOKKOS_INLINE_FUNCTION T length_along(const T (&v)[n], const T (&z)[n], const T&
   return length;
 }
 
-/// If v.z < 0 <= old.z, gives the length the derivatives that it has where v is along z.
+/// If v.z < 0 <= old.z, assigns to the length the derivatives that it has for v parallel to z, and returns true. The
+/// value of the length is unchanged.
 template <int n, class T>
 KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], const T (&z)[n], const T& size,
                                        T& length) {
@@ -305,31 +308,40 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
   return true;
 }
 
-/// Contact and elastic-plastic split (9)-(14) as one residual R(w, lambda) = 0 of projections, Pa:
+/// Computes contact and the elastic-plastic split (9)-(14) as one residual R(w, lambda) = 0 of projections, Pa. Returns
+/// the contact state.
 ///   p = w_t - u_t^e(lambda), e.g. w_t - lambda_t/K_t         plastic tangential jump
-///   o = w_n - g,  y = lambda_n + c_n o,  T = strength        R_n = -c_n o             touching, y <= T: q = y
-///                                                            R_n = lambda_n - t(o)    parted but bonded: q = t(o)
+///   o = w_n - g,  y = lambda_n + c_n o,  T = strength        R_n = -c_n o             closed, y <= T: q = y
+///                                                            R_n = lambda_n - t(o)    separated, bonded: q = t(o)
 ///                                                            R = lambda               open
 ///   z = lambda_t + c_t (p - p_old), b = bound(q)             R_t = lambda_t - z       stick, |z| <= b
 ///                                                            R_t = lambda_t - b z/|z| slip
-/// Joints that never slip stick wherever they are not open. A huge friction coefficient is no substitute: on unloaded
-/// faces its bound is 0, so that they would slip, and iterative solvers do not converge for the matrix of slip.
-/// Of laws that remember the b at p = p_old counts, too. In 2D faces stick only if |z| is not above it, as it is once
-/// they do: else those that slip hardens would stick for their slip, and then no more (in 3D z turns too much where it
-/// is small). And slip against z has no larger b: else joints that slip weakens had states that slide backwards.
-/// Without a bond T = 0, and what has parted is open; see laws/bond. Faces that just touch (y = 0) are closed and
-/// stick; with a cohesion that opening destroys, up to y = T + 1e-10 cohesion: rounding of a vanishing normal traction
-/// must not open them. Where |z| = b and p = p_old to 1e-10 b, both residuals are that small, and the state is the one
-/// with the smaller residual: rounding does not decide which faces slip at the begin of a step, and the solution in
-/// either state keeps that state. p_old is the plastic jump at the end of the last step. Where p or p - p_old is zero
-/// to rounding its direction is noise; its size then grows along z, as it does when sliding begins.
+/// p_old is the plastic jump at the end of the last step, `history` the history variables then. Without a bond T = 0,
+/// and separated faces are open; see laws/bond.
 ///
-/// Of a face that slips, iterates may have p.z < 0 <= p_old.z, which no solution has. Dilation may soften the face
-/// then, by 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix be far from symmetric. There d|p| = z.dp/|z|, as
-/// it is where p is along z. As the slip of the step laws get the part of p - p_old along z: in solutions that is its
-/// length, and it is smooth where slip begins.
+/// Faces that just touch (y = 0) are closed and stick. If opening destroys the cohesion, this holds up to y = T + 1e-10
+/// cohesion: round-off of a vanishing normal traction must not open them.
 ///
-/// `history` holds what the laws have kept of the face.
+/// A joint that never slips sticks unless it is open. A huge friction coefficient is no substitute: its bound is 0 on
+/// unloaded faces, which would slip, and iterative solvers do not converge for the matrix of slip.
+///
+/// For laws with history variables, the bound b_0 at p = p_old also matters:
+/// * In 2D a face sticks only if also |z| <= b_0, the bound of a sticking face. Otherwise a face with slip hardening
+///   would stick because of its slip, and slip again in the next iterate. In 3D z turns too much where it is small.
+/// * Against z (backward slip) the bound is at most b_0. Otherwise slip weakening would admit states with backward
+///   slip.
+///
+/// If |z| = b and p = p_old up to 1e-10 b, both residuals are small. The state is then the one with the smaller
+/// residual. So round-off does not decide which faces slip at the beginning of a step, and a solution retains its
+/// state.
+///
+/// If p or p - p_old is zero up to round-off, its direction is noise. Its length then grows along z, as at the onset of
+/// sliding.
+///
+/// Iterates of a slipping face may have p.z < 0 <= p_old.z, which no solution has. Dilation may then soften the face,
+/// with 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix may be far from symmetric. Therefore d|p| = z.dp/|z|,
+/// as for p parallel to z. The slip of the step passed to the laws is the component of p - p_old along z. It equals
+/// |p - p_old| in solutions and is smooth at the onset of slip.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1], T (&R)[dim],
@@ -345,7 +357,7 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
   const T size = norm(z);
   at.plastic_slip = length_along(p, z, size, c.tangential);
   const bool bonded = law.is_bonded(), remembers = law.n_history() > 0;
-  if (remembers) {  // then laws may ask for these
+  if (remembers) {  // only laws with history variables use these
     T shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) shear[i] = lambda[i + 1];
     at.shear = norm(shear);
@@ -361,7 +373,7 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     const T friction = law.friction_bound(at);
     return bonded ? law.with_cohesion(at, friction, cohesion) : friction;
   };
-  // the normal component: its residual, and the bound that goes with it
+  // Evaluates the normal component: R[0] and the bound b. Returns true if the face is open.
   const auto is_open = [&] {
     at.lambda_n = lambda[0];
     at.separation = w[0] - law.normal_gap(at);
@@ -410,8 +422,8 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
   return ContactState::slip;
 }
 
-/// The parts of the jump of a converged state (9): u^e = (B(lambda_n) - B(0), lambda_t/K_t) where the faces bear
-/// traction, zero where they are open; u^p = w - u^e. B(0) is closure that unloading does not recover.
+/// Splits the jump of a converged state (9), m: u^e = (B(lambda_n) - B(0), lambda_t/K_t) on closed faces, zero on open
+/// faces; u^p = w - u^e. B(0) is irrecoverable closure.
 template <int dim, class Law>
 KOKKOS_INLINE_FUNCTION void split_jump(const Law& law, ContactState state, const Real (&w)[dim],
                                        const Real (&lambda)[dim], const Real (&p_old)[dim - 1], Real (&elastic)[dim],

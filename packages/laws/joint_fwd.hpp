@@ -1,4 +1,4 @@
-// The name of the joint law, for code that hands joints on without evaluating them.
+// Forward declaration of the joint law, for code that passes joints without evaluating them.
 #pragma once
 
 namespace sprekk::laws {
@@ -12,7 +12,7 @@ struct NormalGap;
 template <class Elastic, class Friction, class Gap>
 struct JointLaw;
 
-/// A joint whose parts are any of the laws in joint_kinds.hpp, see joint.hpp.
+/// Joint composed of the laws listed in joint_kinds.hpp; see joint.hpp.
 using Joint = JointLaw<Shear, Friction, NormalGap<Dilation, Closure>>;
 
 }  // namespace sprekk::laws

@@ -1,4 +1,4 @@
-// All laws of joints that a scene can name, by role; the first of each list is the one of joints that name none.
+// Lists of the joint laws that a scene can name, one list for each role. The first law of each list is the default.
 #pragma once
 
 #include "laws/aperture_kinds.hpp"
@@ -28,16 +28,16 @@
 
 namespace sprekk::laws {
 
-// a line for each law
+// One line for each law.
 // clang-format off
 
-/// The elastic part of the tangential jump: T compliance(Contact<T>), u_t^e per lambda_t, m/Pa; Real
-/// initial_compliance().
+/// Elastic part of the tangential jump: T compliance(Contact<T>), u_t^e per lambda_t, m/Pa; Real initial_compliance(),
+/// at zero traction.
 using ShearKinds = Kinds<
     LinearShear,
     PowerShear>;
 
-/// The bound on the shear traction: T bound(Contact<T>), Pa.
+/// Bound on the shear traction: T bound(Contact<T>), Pa.
 using FrictionKinds = Kinds<
     CoulombFriction,
     BartonChoubeyFriction,
@@ -46,14 +46,14 @@ using FrictionKinds = Kinds<
     SlipWeakeningFriction,
     NoSlip>;
 
-/// How slip opens the joint: T opening(Contact<T>), m.
+/// Opening of the joint by slip: T opening(Contact<T>), m.
 using DilationKinds = Kinds<
     ConstantDilation,
     MobilisedDilation,
     DecayingDilation,
     LimitedDilation>;
 
-/// How compression closes the joint: T opening(Contact<T>), m, negative; Real initial_compliance(), m/Pa.
+/// Closure of the joint by compression: T opening(Contact<T>), m, negative; Real initial_compliance(), m/Pa.
 using ClosureKinds = Kinds<
     BartonBandisClosure,
     BartonBandisCycles,
@@ -61,19 +61,19 @@ using ClosureKinds = Kinds<
     PowerClosure,
     LinearClosure>;
 
-/// What holds the faces together beside friction: Cohesion<T> cohesion(Contact<T>).
+/// Strength in addition to friction: Cohesion<T> cohesion(Contact<T>).
 using BondKinds = Kinds<
     NoBond,
     ConstantBond,
     SofteningBond>;
 
-/// How slip wears friction and dilation: Left<T> left(Contact<T>).
+/// Damage of friction and dilation by slip: Left<T> left(Contact<T>), the remaining fractions.
 using DamageKinds = Kinds<
     NoDamage,
     IsotropicDamage,
     AnisotropicDamage>;
 
-/// How much a unit of slip wears: T wear(Contact<T>).
+/// Damage per unit of slip: T wear(Contact<T>).
 using DriverKinds = Kinds<
     SlipDriver,
     CompressionDriver,

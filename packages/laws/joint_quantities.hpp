@@ -1,4 +1,4 @@
-// What the laws of a joint tell of a face, by name.
+// Output quantities of joint laws, by name.
 #pragma once
 
 #include "laws/joint.hpp"
@@ -10,15 +10,16 @@
 
 namespace sprekk::laws {
 
-/// As a law has declared it, see Quantity.
+/// Declaration of an output quantity; see Quantity.
 struct JointQuantity {
   std::string name, unit, meaning, error_of;
 };
 
-/// The value of a face, by the contact at the end of a step with all numbers that the joint keeps.
+/// Value on a face from the contact at the end of a step, with all history variables of the joint.
 using QuantityOfFace = std::function<Real(const Contact<Real>&)>;
 
-/// That of the joint by this name; nothing where none of its laws has it. Of several that do, the first counts.
+/// Returns the quantity of the joint with this name; an empty function if no law has it. If several laws have it, the
+/// first one counts.
 inline QuantityOfFace quantity_of(const Joint& joint, const std::string& name) {
   QuantityOfFace found;
   joint.for_each_part([&](const auto& part, int offset) {
@@ -34,7 +35,7 @@ inline QuantityOfFace quantity_of(const Joint& joint, const std::string& name) {
   return found;
 }
 
-/// Those of all laws that a joint can have, each name once.
+/// Returns the quantities of all available laws, each name once.
 inline std::vector<JointQuantity> joint_quantities() {
   std::vector<JointQuantity> all;
   const auto add = [&](const auto& quantities) {

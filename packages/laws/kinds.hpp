@@ -1,4 +1,4 @@
-// Laws of which a material names one: what each of them says about itself, and a value that is one of them.
+// Properties of laws (parameters, outputs, history variables), and a variant that holds one of several laws.
 #pragma once
 
 #include "base/bounds.hpp"
@@ -14,17 +14,16 @@
 
 namespace sprekk::laws {
 
-/// An entry of materials that gives a number of a law. It must be there unless it has a value otherwise or may be
-/// absent.
+/// Material entry for one parameter of a law. It is required unless it has a default or is optional.
 struct Entry {
   std::string name, unit;
   base::Bounds bounds;
   std::string meaning;
-  std::optional<Real> otherwise = {};    ///< the entry's value where it is absent
-  bool optional = false;                 ///< if it is absent, the number stays what it is in the law
-  Real (*number_of)(Real) = nullptr;     ///< the law's number of the entry's value; null: that value
-  std::string needs = {};                ///< the name of an entry that must be there if this one is, above 0
-  std::vector<std::string> others = {};  ///< what the entry is called elsewhere
+  std::optional<Real> otherwise = {};    ///< default value
+  bool optional = false;                 ///< if absent, the parameter retains its initial value
+  Real (*number_of)(Real) = nullptr;     ///< converts the entry to the parameter; null: no conversion
+  std::string needs = {};                ///< entry that must also be present if this one is above 0
+  std::vector<std::string> others = {};  ///< alternative spellings, for error messages
 
   Entry& or_else(Real value) { return otherwise = value, *this; }
   Entry& may_be_absent() { return optional = true, *this; }
@@ -33,23 +32,23 @@ struct Entry {
   Entry& also_called(const std::vector<std::string>& names) { return others = names, *this; }
 };
 
-/// A number of the law K with its entry. Entries of one number are alternatives: exactly one of them is given.
+/// Parameter of the law K and its entry. Several entries of one parameter are alternatives: exactly one must be given.
 template <class K>
 struct Parameter {
   Real K::*number;
   Entry entry;
 };
 
-/// A number that the law K tells of a face, by the contact at the end of a step and what it keeps of the face then, for
-/// outputs; 0 before the first slip and load.
+/// Output quantity of the law K on a face. `value` is evaluated with the contact quantities and history variables at
+/// the end of a step. Its result must be 0 before the first slip and load.
 template <class K>
 struct Quantity {
   std::string name, unit, meaning;
   Real (*value)(const K&, const Contact<Real>&);
-  std::string error_of = {};  ///< what it bounds the relative error of, if it does
+  std::string error_of = {};  ///< name of the quantity whose relative error it bounds; may be empty
 };
 
-/// That of laws whose first number is it.
+/// Output "accumulated slip" of a law whose first history variable is the path length of slip.
 template <class K>
 Quantity<K> accumulated_slip() {
   return {"accumulated slip", "m", "length of the path that was slipped while the faces touched",
@@ -59,19 +58,20 @@ Quantity<K> accumulated_slip() {
 inline Real tangent_of_degrees(Real angle) { return std::tan(angle * 3.14159265358979323846 / 180); }
 inline Real reciprocal(Real value) { return 1 / value; }
 
-/// How many numbers a law keeps of each face from step to step: its static n_history, or none.
+/// Number of history variables of a law on each face: its static n_history, or 0.
 template <class K, class = void>
 constexpr int history_size = 0;
 template <class K>
 constexpr int history_size<K, std::void_t<decltype(K::n_history)>> = K::n_history;
 
-/// The same in 2D: its static n_history_2d, if it has one, which only the law may whose numbers are the last.
+/// Number of history variables in 2D: the static n_history_2d, or history_size. Only the law stored last may declare
+/// n_history_2d.
 template <class K, class = void>
 constexpr int history_size_2d = history_size<K>;
 template <class K>
 constexpr int history_size_2d<K, std::void_t<decltype(K::n_history_2d)>> = K::n_history_2d;
 
-/// What a law tells of a face: its static quantities(), or nothing.
+/// True if a law declares output quantities by a static quantities().
 template <class K, class = void>
 constexpr bool tells_quantities = false;
 template <class K>
@@ -85,20 +85,20 @@ std::vector<Quantity<K>> quantities_of() {
   }
 }
 
-/// Whether a friction law applies itself what damage leaves: its static takes_damage. Else its bound is multiplied by
-/// it.
+/// True if a friction law applies the factors of damage itself (static takes_damage). Otherwise its bound is multiplied
+/// by the friction factor.
 template <class K, class = void>
 constexpr bool applies_damage = false;
 template <class K>
 constexpr bool applies_damage<K, std::void_t<decltype(K::takes_damage)>> = K::takes_damage;
 
-/// Whether K is a Kinds below, or derived from one.
+/// True if K is a Kinds (below) or derived from one.
 template <class K, class = void>
 constexpr bool is_one_of_several = false;
 template <class K>
 constexpr bool is_one_of_several<K, std::void_t<typename K::OneOfSeveral>> = true;
 
-/// Storage for one of several laws, which are copied as bytes.
+/// Storage for one of several laws. Laws are copied as bytes.
 template <class K, class... More>
 union OneOf {
   K first;
@@ -137,8 +137,8 @@ union OneOf<K> {
   }
 };
 
-/// One of the laws Ks, the first of them unless it is told otherwise. Each is a struct of numbers with a `name` and a
-/// `meaning` (static, text), static parameters() that lists its numbers, and the functions of its role.
+/// One of the laws Ks; the first of them by default. Each law is a struct of numbers with these members: static texts
+/// `name` and `meaning`, a static parameters() that lists its numbers, and the functions of its role.
 template <class... Ks>
 class Kinds {
   static_assert((std::is_trivially_copyable_v<Ks> && ...), "laws are copied to the device as bytes");
@@ -151,7 +151,7 @@ class Kinds {
     set(law, std::index_sequence_for<Ks...>());
   }
 
-  /// use(law) of the law that this is: a switch over all kinds.
+  /// Returns use(law) for the stored law. Switches over all kinds.
   template <class Use>
   KOKKOS_INLINE_FUNCTION auto visit(const Use& use) const {
     return visit(use, std::index_sequence_for<Ks...>());
@@ -184,7 +184,7 @@ class Kinds {
   OneOf<Ks...> law_;
 };
 
-/// How many numbers a law keeps of a face; of several kinds, the one that it is.
+/// Number of history variables of a law on each face; for Kinds, of the stored law.
 template <class K>
 KOKKOS_INLINE_FUNCTION int n_history(const K& law) {
   if constexpr (is_one_of_several<K>) {
@@ -194,7 +194,7 @@ KOKKOS_INLINE_FUNCTION int n_history(const K& law) {
   }
 }
 
-/// The same in 2D.
+/// Number of history variables in 2D.
 template <class K>
 KOKKOS_INLINE_FUNCTION int n_history_2d(const K& law) {
   if constexpr (is_one_of_several<K>) {
@@ -204,7 +204,7 @@ KOKKOS_INLINE_FUNCTION int n_history_2d(const K& law) {
   }
 }
 
-/// Whether a friction law, or of several kinds the one that it is, applies itself what damage leaves.
+/// True if a friction law (for Kinds, the stored one) applies the factors of damage itself.
 template <class K>
 KOKKOS_INLINE_FUNCTION bool takes_damage(const K& law) {
   if constexpr (is_one_of_several<K>) {
@@ -214,7 +214,7 @@ KOKKOS_INLINE_FUNCTION bool takes_damage(const K& law) {
   }
 }
 
-/// Moves the numbers that a law keeps to the end of a step: law.commit(contact, numbers), if it keeps any.
+/// Updates the history variables of a law at the end of a step by law.commit(contact, numbers), if the law has any.
 template <class K, class At, class Kept>
 KOKKOS_INLINE_FUNCTION void commit(const K& law, const At& at, const Kept& kept) {
   if constexpr (is_one_of_several<K>) {

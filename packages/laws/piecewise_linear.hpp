@@ -1,25 +1,25 @@
-// Curves that join points by straight lines.
+// Piecewise linear curves.
 #pragma once
 
 #include "base/view.hpp"
 
 namespace sprekk::laws {
 
-/// The curve through n points (x_k, y_k), x_k rising, constant outside.
+/// Piecewise linear curve through n points (x_k, y_k) with increasing x_k. It is constant outside.
 template <int n>
 struct PiecewiseLinear {
   static constexpr int size = n;
   Real x[n], y[n];
-  Real width = 0;  ///< of rounded corners over x_k; those of neighbours do not overlap
+  Real width = 0;  ///< half-width of rounded corners over x_k; neighbours must not overlap
 
-  /// With corners.
+  /// Value of the curve without rounded corners.
   template <class T>
   KOKKOS_INLINE_FUNCTION T sharp(const T& at) const {
     const int k = before(at);
     return k < 0 ? T(y[0]) : T(y[k] + slope(k) * (at - x[k]));
   }
-  /// Once continuously differentiable: within e_k = width x_k of a corner a parabola takes its place, which deviates by
-  /// (jump of the slope) e_k/4 at the corner. Elsewhere the curve itself.
+  /// Value of the continuously differentiable curve. Within e_k = width x_k of a corner, a parabola replaces the curve.
+  /// The deviation at the corner is (jump of the slope) e_k/4. Elsewhere the curve is unchanged.
   template <class T>
   KOKKOS_INLINE_FUNCTION T operator()(const T& at) const {
     T value = sharp(at);
@@ -34,7 +34,7 @@ struct PiecewiseLinear {
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION Real slope(int k) const {  // from point k to the next
+  KOKKOS_INLINE_FUNCTION Real slope(int k) const {  // from point k to k + 1; 0 outside
     return k < 0 || k >= n - 1 ? 0 : (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
   }
   template <class T>

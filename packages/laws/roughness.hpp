@@ -1,4 +1,4 @@
-// Roughness of joints after Barton and co-workers: its scale, and how slip mobilises it.
+// Roughness of joints after Barton and co-workers: scale effect and mobilisation by slip.
 #pragma once
 
 #include "laws/kinds.hpp"
@@ -10,27 +10,29 @@
 
 namespace sprekk::laws {
 
-/// Scales roughness JRC (degrees per decade) and wall strength JCS (Pa) from samples of the length L_0 to a joint of
-/// the length L_n, Barton and Bandis: JRC_n = JRC (L_n/L_0)^(-0.02 JRC), JCS_n = JCS (L_n/L_0)^(-0.03 JRC). Read in the
-/// public sources of openCSMP, not in the paper.
+/// Scales the roughness JRC (degrees per decade) and the wall strength JCS (Pa) from the sample length L_0 to the joint
+/// length L_n (Barton and Bandis 1982):
+///   JRC_n = JRC (L_n/L_0)^(-0.02 JRC),  JCS_n = JCS (L_n/L_0)^(-0.03 JRC)
+/// The formulas were taken from the source code of openCSMP, not from the paper.
 inline void scale_roughness(Real& JRC, Real& JCS, Real joint, Real sample) {
   const Real exponent = -0.01 * JRC;
   JRC *= std::pow(joint / sample, 2 * exponent);
   JCS *= std::pow(joint / sample, 3 * exponent);
 }
 
-/// The slip, m, at which the strength of a joint of this roughness and length (m) is largest, Barton:
-/// L/500 (JRC/L)^0.33. Read in the public sources of openCSMP.
+/// Slip at peak strength, m, of a joint of this roughness and length (m), after Barton: L/500 (JRC/L)^0.33. The formula
+/// was taken from the source code of openCSMP.
 inline Real peak_slip_of(Real JRC, Real length) { return length / 500 * std::pow(JRC / length, 0.33); }
 
-/// The part of the roughness that slip has mobilised, by slip over delta_p: Barton's (1982) table from 0.3 on. Kinks
-/// are rounded to within 1e-3.
+/// Mobilised fraction f of the roughness as a function of slip/delta_p: Barton's (1982) table for arguments of at least
+/// 0.3. Corners are rounded; f changes by less than 1e-3.
 KOKKOS_INLINE_FUNCTION constexpr PiecewiseLinear<7> mobilised_roughness() {
   return {{0.3, 0.6, 1, 2, 4, 10, 100}, {0, 0.75, 1, 0.85, 0.7, 0.5, 0}, 0.003};
 }
 
-/// The part of the residual friction that slip has mobilised: before 0.3 the table's roughness is negative, so that no
-/// friction is mobilised without slip. For the negative slip of iterates the line goes on.
+/// Mobilised fraction r of the residual friction as a function of slip/delta_p. It replaces the negative roughness of
+/// Barton's table below 0.3, so there is no friction without slip. For negative slip (iterates) it continues linearly
+/// to -0.3.
 KOKKOS_INLINE_FUNCTION constexpr PiecewiseLinear<2> mobilised_friction() { return {{-0.3, 0.3}, {-1, 1}, 0.003}; }
 
 inline Entry roughness_entry() {

@@ -1,4 +1,4 @@
-// The hydraulic aperture of rough walls.
+// Hydraulic aperture of rough joints.
 #pragma once
 
 #include "laws/kinds.hpp"
@@ -8,12 +8,12 @@
 
 namespace sprekk::laws {
 
-/// Hydraulic aperture of joints whose walls are a apart, m, Barton: a^2/JRC^2.5 in micrometres, not above a; 0 for
-/// a < 0. The derivative has a jump where a = JRC^2.5 micrometres. Read in the public sources of Lei's Y, not in the
-/// paper.
+/// Hydraulic aperture, m, at the mechanical aperture a, after Barton: a^2/JRC^2.5 in micrometres, at most a; 0 for a <
+/// 0. The derivative is discontinuous at a = JRC^2.5 micrometres. The formula was taken from source code (Lei's Y), not
+/// from the paper.
 struct BartonAperture {
-  Real roughness = 0;  ///< JRC as it is given: of samples
-  Real smooth = 0;     ///< from this a on roughness counts no more, m
+  Real roughness = 0;  ///< JRC as given, that of the sample
+  Real smooth = 0;     ///< aperture above which roughness has no effect, m
 
   static constexpr const char *name = "Barton", *meaning = "smaller, by JRC, the narrower the joint is";
   static std::vector<Parameter<BartonAperture>> parameters() {
@@ -25,7 +25,7 @@ struct BartonAperture {
     if (!(a > 0)) return 0;
     return a < smooth ? a * a / smooth : a;
   }
-  /// Derivative of that.
+  /// Derivative of hydraulic(a).
   KOKKOS_INLINE_FUNCTION Real slope(Real a) const {
     if (!(a > 0)) return 0;
     return a < smooth ? 2 * a / smooth : 1;

@@ -1,4 +1,4 @@
-// A hydraulic aperture that is the mechanical one.
+// Hydraulic aperture equal to the mechanical aperture.
 #pragma once
 
 #include "laws/kinds.hpp"
@@ -10,7 +10,7 @@ struct MechanicalAperture {
   static std::vector<Parameter<MechanicalAperture>> parameters() { return {}; }
 
   KOKKOS_INLINE_FUNCTION Real hydraulic(Real a) const { return a; }
-  /// Derivative of that.
+  /// Derivative of hydraulic(a).
   KOKKOS_INLINE_FUNCTION Real slope(Real) const { return 1; }
 };
 

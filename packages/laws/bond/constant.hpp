@@ -1,13 +1,13 @@
-// Cohesion of faces that touch.
+// Constant cohesion of closed faces.
 #pragma once
 
 #include "laws/bond/none.hpp"
 
 namespace sprekk::laws {
 
-/// A cohesion c in shear that slip does not use up: the bound is c + that of friction as long as the faces touch, and
-/// c (1 - o/o_0) with the separation o = w_n - g below o_0. No tension. With o_0 = 0 a face that opens loses c at once,
-/// and there may be no state in which it either touches or is open.
+/// Shear cohesion c that slip does not damage. Closed faces have the bound c plus friction. With o_0 > 0, open faces
+/// retain the cohesion c (1 - o/o_0) up to the separation o = w_n - g = o_0. There is no tensile strength. With o_0 = 0
+/// a face that opens loses c at once; then neither the closed nor the open state may be in equilibrium.
 struct ConstantBond {
   Real shear = 0;    ///< c, Pa
   Real opening = 0;  ///< o_0, m

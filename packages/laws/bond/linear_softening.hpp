@@ -1,17 +1,19 @@
-// A bond that softens linearly, by opening and by slip.
+// Bond with linear softening by opening and slip.
 #pragma once
 
 #include "laws/bond/none.hpp"
 
 namespace sprekk::laws {
 
-/// A bond with the strengths c in shear and T in tension, of which opening and slip leave the part 1 - D:
-///   D = min(1, o_max/o_f + s/s_f),  o_f = 2 G_I/T,  s_f = 2 G_II/c,
-/// o the separation w_n - g and o_max the largest so far, s the length of the path slipped. Faces that have not been
-/// apart stay together up to lambda_n = (1 - D) T. Then the traction falls on a line, with o = o_max, on which opening
-/// alone dissipates G_I; between 0 and o_max it is (1 - D) T o/o_max (secant unloading, without a plastic part). Shear:
-/// (1 - D) c is added to the bound of friction.
-/// o and s count whatever the state of the face was; with T = 0, or c = 0, the one or the other has no part.
+/// Bond with the shear strength c and the tensile strength T. Opening and slip reduce both strengths by the
+/// factor 1 - D:
+///   D = min(1, o_max/o_f + s/s_f),  o_f = 2 G_I/T,  s_f = 2 G_II/c
+/// o is the separation w_n - g, o_max its largest value so far, s the path length of slip. o and s count in all contact
+/// states. With T = 0 opening causes no damage, with c = 0 slip causes none.
+/// * Never separated: the sides stay together up to lambda_n = (1 - D) T.
+/// * Separated, o = o_max: lambda_n = (1 - D) T. Opening alone dissipates G_I per area.
+/// * Separated, o < o_max: lambda_n = (1 - D) T o/o_max (secant unloading without a plastic part).
+/// * Shear: (1 - D) c is added to the friction bound.
 struct SofteningBond {
   static constexpr int n_history = 2;  ///< o_max, s; m
   Real shear = 0;                      ///< c, Pa
@@ -63,9 +65,9 @@ struct SofteningBond {
   }
 
  private:
-  static constexpr Real rounding = 1e-9;  ///< leaves no more of a traction, or of a separation that is none
+  static constexpr Real rounding = 1e-9;  ///< relative tolerance of tractions and separations against round-off
 
-  /// What a length uses up of the bond, 1/m: strength/(2 energy).
+  /// Damage per length of opening or slip, 1/m: strength/(2 energy).
   KOKKOS_INLINE_FUNCTION static Real use(Real strength, Real energy) {
     return energy > 0 ? strength / (2 * energy) : Real(0);
   }

@@ -1,4 +1,4 @@
-// Faces that nothing bonds.
+// Joint without a bond.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,13 +6,13 @@
 
 namespace sprekk::laws {
 
-/// What a bond adds to contact and friction.
+/// Contribution of a bond to contact and friction.
 template <class T>
 struct Cohesion {
   T shear = 0;       ///< added to the friction bound, Pa
-  T strength = 0;    ///< the normal traction up to which faces stay together, Pa, not negative
-  T tension = 0;     ///< the normal traction of faces that are apart, Pa, not negative
-  bool lost = true;  ///< faces that are apart bear no traction
+  T strength = 0;    ///< normal traction up to which the sides stay together, Pa, >= 0
+  T tension = 0;     ///< normal traction of separated sides, Pa, >= 0
+  bool lost = true;  ///< separated sides transmit no traction
 };
 
 struct NoBond {

@@ -1,4 +1,4 @@
-// Hyperbolic closure of a rough joint.
+// Hyperbolic closure of a rough joint, from JRC, JCS and aperture.
 #pragma once
 
 #include "laws/closure/barton_bandis.hpp"
@@ -8,15 +8,14 @@
 
 namespace sprekk::laws {
 
-/// The hyperbola of Barton and Bandis with the regressions of Bandis, Lumsden and Barton (1983), a = aperture in mm,
-/// JCS in MPa:
-///   K_n = -7.15 + 1.75 JRC + 0.02 JCS/a  GPa/m,  Du = A + B JRC + C (JCS/a)^D  mm,
-/// with A to D of the first or third cycle of loading. Read in public sources (Lei's Y; Kubeyev and Maier for MRST),
-/// not in the paper.
+/// Closure of Barton and Bandis with the regressions of Bandis, Lumsden and Barton (1983). Units: a in mm, JCS in MPa.
+///   K_n = -7.15 + 1.75 JRC + 0.02 JCS/a  GPa/m,  Du = A + B JRC + C (JCS/a)^D  mm
+/// A to D are those of the first or third loading cycle. The formulas were taken from source code (Lei's Y; Kubeyev and
+/// Maier for MRST), not from the paper.
 struct BandisClosure : BartonBandisClosure {
   Real roughness = 0;      ///< JRC
   Real wall_strength = 1;  ///< JCS, Pa
-  Real aperture = 1;       ///< a, mechanical, without load, m
+  Real aperture = 1;       ///< a, mechanical aperture without load, m
   Real cycle = 1;
 
   static constexpr const char *name = "Bandis", *meaning = "hyperbolic, by JRC, JCS and aperture";

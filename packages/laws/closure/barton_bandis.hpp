@@ -8,11 +8,11 @@
 
 namespace sprekk::laws {
 
-/// Normal closure under compression, the last term of (14), m (Barton and Bandis): B = lambda_n/(K_n - lambda_n/Du),
-/// continued as lambda_n/K_n, once continuously differentiable, for the tensile tractions that iterates visit. An
-/// infinite Du makes it lambda_n/K_n throughout, an infinite K_n none.
+/// Normal closure, m, the last term of (14) (Barton and Bandis): B = lambda_n/(K_n - lambda_n/Du), B <= 0. For tensile
+/// tractions (iterates) it continues as lambda_n/K_n, continuously differentiable. An infinite Du gives lambda_n/K_n,
+/// an infinite K_n gives B = 0.
 struct BartonBandisClosure {
-  Real maximum = std::numeric_limits<Real>::infinity();    ///< Du, m; 0 is a joint that does not close
+  Real maximum = std::numeric_limits<Real>::infinity();    ///< Du, m; 0: the joint does not close
   Real stiffness = std::numeric_limits<Real>::infinity();  ///< K_n at zero traction, Pa/m
 
   static constexpr const char *name = "Barton-Bandis", *meaning = "hyperbolic (14)";
@@ -28,7 +28,7 @@ struct BartonBandisClosure {
                                                   .also_called({"kn", "jkn"})}};
   }
 
-  /// Closed by how much: negative under compression.
+  /// Returns B, m; negative under compression.
   template <class T>
   KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
     if (initial_compliance() == 0) return T(0);

@@ -1,15 +1,16 @@
-// Hyperbolic closure that unloading does not recover whole.
+// Hyperbolic closure with an irrecoverable part.
 #pragma once
 
 #include "laws/closure/barton_bandis.hpp"
 
 namespace sprekk::laws {
 
-/// With V the hyperbola of Barton and Bandis, m, under the compression N and the largest one so far, N_max:
-///   B = -(1 - r) V(N) - r V(max(N, N_max)).
-/// First loading follows V; unloading and loading again below N_max are stiffer by 1/(1 - r), and r V(N_max) stays. A
-/// cycle dissipates the area between the branches, never less than 0. With the equation of Bandis et al. (1983) for V,
-/// but a rule of its own for unloading: theirs, a closure that stays by JRC and JCS, was not at hand.
+/// Normal closure, m, with the hyperbola V of Barton and Bandis, the compression N and its largest value so far, N_max:
+///   B = -(1 - r) V(N) - r V(max(N, N_max))
+/// First loading follows V. Below N_max the joint is stiffer by the factor 1/(1 - r). The closure r V(N_max) remains
+/// after unloading. A cycle dissipates the area between its branches, which is never negative. V is the equation of
+/// Bandis et al. (1983). The unloading rule is specific to Sprekk; the one of the paper, by JRC and JCS, was not
+/// available.
 struct BartonBandisCycles : BartonBandisClosure {
   static constexpr int n_history = 1;  ///< N_max, Pa
   Real retained = 0;                   ///< r

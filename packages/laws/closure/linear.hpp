@@ -1,4 +1,4 @@
-// A joint that closes like a spring.
+// Linear closure of a joint.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// Normal closure in proportion to the traction, m: B = lambda_n/K_n.
+/// Normal closure, m, proportional to the traction: B = lambda_n/K_n.
 struct LinearClosure {
   Real compliance = 0;  ///< 1/K_n, m/Pa
 

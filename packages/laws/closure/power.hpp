@@ -1,4 +1,4 @@
-// Closure of a joint whose normal stiffness grows with a power of the compression.
+// Closure of a joint with a normal stiffness that increases with a power of the compression.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -7,10 +7,10 @@
 
 namespace sprekk::laws {
 
-/// Normal closure, m, of the stiffness dN/dV = K_n (1 + N/N_r)^m under the compression N = -lambda_n:
-///   B = -N_r/(K_n (1 - m)) ((1 + N/N_r)^(1-m) - 1).
-/// m = 0 is linear, m = 1 semi-logarithmic, m = 2 the hyperbola of Barton and Bandis with Du = N_r/K_n; for m > 1 the
-/// closure has the bound N_r/(K_n (m - 1)).
+/// Normal closure, m, for the stiffness dN/dV = K_n (1 + N/N_r)^m under the compression N = -lambda_n:
+///   B = -N_r/(K_n (1 - m)) ((1 + N/N_r)^(1-m) - 1)
+/// m = 0 is linear, m = 1 semi-logarithmic, m = 2 the hyperbola of Barton and Bandis with Du = N_r/K_n. For m > 1 the
+/// closure is below N_r/(K_n (m - 1)).
 struct PowerClosure {
   Real stiffness = 1;  ///< K_n at zero traction, Pa/m
   Real reference = 1;  ///< N_r, Pa

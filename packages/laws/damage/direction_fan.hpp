@@ -1,4 +1,4 @@
-// A history of slip in all directions of the plane, in constant memory, and how far it may be from the exact one.
+// Directional table of the slip history in all directions of the plane, in constant memory, with an error bound.
 #pragma once
 
 #include "base/view.hpp"
@@ -8,26 +8,27 @@
 
 namespace sprekk::laws {
 
-/// Lambda(m) = sum of k `|<m.b> - <m.a>|` over the segments a -> b of a path in the plane, as a function of the unit
-/// vector m = (cos t, sin t); `<x>` = max(x, 0). A segment's term is m.V with one V between each two of the directions
-/// across a, across b, and the one across b - a where m.a = m.b > 0. So the sum is piecewise m.V on a fan of angles,
-/// and exact as long as the path has few directions, however often it goes there. Of more than `capacity` angles those
-/// are given up that cost least. Between two angles t_0 and t_1, w = t_1 - t_0 <= pi/2, c in the middle:
-///   Lambda = (v_0 sin(t_1 - t) + v_1 sin(t - t_0))/sin w + q (1 - cos(t - c)/cos(w/2)),   Lambda'' + Lambda = q,
-/// q what angles given up there leave as curvature. Each sector keeps an interval [low, high] that contains the exact
-/// value less this one, but for rounding. The angles of the axes stay, and in each step that of b, where the value that
-/// the step ended with is not changed.
+/// Damage history of a path in the plane, as a function of the unit vector m = (cos t, sin t):
+///   Lambda(m) = sum of k `|<m.b> - <m.a>|` over the segments a -> b,  `<x>` = max(x, 0)
+/// The term of a segment is m.V with constant V between neighbours of these directions: perpendicular to a, to b, and
+/// to b - a where m.a = m.b > 0. The sum is therefore piecewise m.V on a set of angles. It is exact as long as the path
+/// has few directions. Beyond `capacity` angles, those whose removal causes the smallest error are removed. Between two
+/// angles t_0 and t_1, with w = t_1 - t_0 <= pi/2 and the centre c:
+///   Lambda = (v_0 sin(t_1 - t) + v_1 sin(t - t_0))/sin w + q (1 - cos(t - c)/cos(w/2)),   Lambda'' + Lambda = q
+/// The curvature q results from angles removed there. Each sector stores an interval [low, high] that contains the
+/// exact value minus this one, up to round-off. The angles of the axes are never removed. In each step the angle of b
+/// is not removed either, so the value there at the end of the step is unchanged.
 class DirectionFan {
  public:
   static constexpr int capacity = 64;
-  static constexpr int n_numbers = 1 + 5 * capacity;  ///< how many, and five of each; all 0: no path yet
+  static constexpr int n_numbers = 1 + 5 * capacity;  ///< count, five numbers per angle; all 0: no path
 
-  /// Lambda(m) = constant + gradient.m for directions m near one.
+  /// Lambda(m) = constant + gradient.m for directions m near a given one.
   struct Form {
     Real constant = 0, gradient[2] = {};
   };
 
-  /// Reads what write() has kept.
+  /// Reads numbers written by write().
   KOKKOS_INLINE_FUNCTION explicit DirectionFan(const History& kept) : size_(size_of(kept)) {
     for (int j = 0; j < size_; ++j) nodes_[j] = node(kept, j);
   }
@@ -40,13 +41,13 @@ class DirectionFan {
     }
   }
 
-  /// Of the fan that was kept, near the direction of u.
+  /// Returns the stored Lambda near the direction of (u, v).
   KOKKOS_INLINE_FUNCTION static Form form(const History& kept, Real u, Real v) {
     using std::atan2, std::cos, std::sin;
     const int size = size_of(kept);
     if (size == 0) return {};
     const Real t = wrapped(atan2(v, u));
-    int j = 0;  // the last node not above t
+    int j = 0;  // last node with an angle <= t
     for (int end = size; end - j > 1;) {
       const int middle = (j + end) / 2;
       (node(kept, middle).angle <= t ? j : end) = middle;
@@ -58,7 +59,7 @@ class DirectionFan {
     return {first.curvature, {along * cos(c) - across * sin(c), along * sin(c) + across * cos(c)}};
   }
 
-  /// The path goes on from a to b, where a unit of length counts k.
+  /// Adds the segment from a to b with the weight k per length.
   KOKKOS_INLINE_FUNCTION void add(const Real (&a)[2], const Real (&b)[2], Real k) {
     using std::abs, std::atan2, std::cos, std::sin;
     const Real d[] = {b[0] - a[0], b[1] - a[1]};
@@ -79,7 +80,7 @@ class DirectionFan {
     compress(present);
   }
 
-  /// The largest distance from the exact values over all directions, and the largest value at an angle.
+  /// Error bound over all directions; largest value at an angle of the table.
   KOKKOS_INLINE_FUNCTION Real error() const {
     Real most = 0;
     for (int j = 0; j < size_; ++j) most = larger(most, larger(nodes_[j].high, -nodes_[j].low));
@@ -93,22 +94,22 @@ class DirectionFan {
 
  private:
   static constexpr Real quarter = 1.57079632679489661923, turn = 4 * quarter;
-  static constexpr Real same = 1e-13;  ///< angles that differ by less are one
-  static constexpr int more = 6;       ///< angles that a segment adds at the most
+  static constexpr Real same = 1e-13;  ///< tolerance of equal angles
+  static constexpr int more = 6;       ///< largest number of angles added by a segment
   static constexpr Real endless = 1e300;
 
-  /// An angle, the value there, and what holds of the sector that begins there.
+  /// Angle, value there, and properties of the sector that begins there.
   struct Node {
     Real angle, value, curvature, low, high;
   };
-  /// The sector that two become without the node between them; `cost` is the larger end of its interval.
+  /// Sector that results from the removal of the node between two sectors. `cost` is the error bound of its interval.
   struct Merged {
     Real curvature, low, high, cost;
   };
   struct Range {
     Real low, high;
   };
-  /// Of a sector: w, tan(w/2), sin(w), cos(w).
+  /// Width w of a sector: w, tan(w/2), sin(w), cos(w).
   struct Width {
     Real angle, half, sine, cosine;
 
@@ -131,7 +132,7 @@ class DirectionFan {
     const auto own = kept.from(1 + 5 * j);
     return {own[0], own[1], own[2], own[3], own[4]};
   }
-  KOKKOS_INLINE_FUNCTION static Real wrapped(Real t) {  // of (-2 pi, 4 pi), to [0, 2 pi)
+  KOKKOS_INLINE_FUNCTION static Real wrapped(Real t) {  // from (-2 pi, 4 pi) to [0, 2 pi)
     if (t < 0) t += turn;
     return t >= turn ? t - turn : t;
   }
@@ -139,7 +140,7 @@ class DirectionFan {
     return t == 0 || t == quarter || t == 2 * quarter || t == 3 * quarter;
   }
 
-  /// Splits the sector of t there; the function stays the same.
+  /// Splits the sector that contains the angle t. The function is unchanged.
   KOKKOS_INLINE_FUNCTION void insert(Real t) {
     using std::cos, std::sin;
     t = wrapped(t);
@@ -156,13 +157,13 @@ class DirectionFan {
     nodes_[j] = added;
   }
 
-  /// 1 - cos(t - c)/cos(w/2) at the distances l and r from the ends of a sector.
+  /// Returns 1 - cos(t - c)/cos(w/2) at the distances l and r from the ends of a sector.
   KOKKOS_INLINE_FUNCTION static Real bow(Real l, Real r) {
     using std::cos, std::sin;
     return -2 * sin(l / 2) * sin(r / 2) / cos((l + r) / 2);
   }
 
-  /// Keeps the axes and the angle `present`.
+  /// Removes nodes until `capacity` remain, but not the axes and the angle `present`.
   KOKKOS_INLINE_FUNCTION void compress(Real present) {
     using std::abs;
     if (size_ <= capacity) return;
@@ -177,7 +178,7 @@ class DirectionFan {
     };
     for (int j = 0; j < size_; ++j) consider(j);
     while (size_ > capacity) {
-      int best = 0;  // an axis
+      int best = 0;  // an axis, never removed
       for (int j = 1; j < size_; ++j)
         if (without[j].cost < without[best].cost) best = j;
       Node& sector = nodes_[best - 1];
@@ -196,14 +197,15 @@ class DirectionFan {
     }
   }
 
-  /// Either the slope's jump at the node is spread over both sectors, or the value at the node is kept, whichever is
-  /// nearer to the function so far. A node where nothing changes but by `rounding` costs nothing.
+  /// Returns the sector without node j. Its curvature either spreads the slope jump at the node over both sectors or
+  /// preserves the value at the node, whichever gives the smaller error. A node with changes below `rounding` costs
+  /// nothing.
   KOKKOS_INLINE_FUNCTION Merged merged(int j, const Width* widths, Real rounding) const {
     using std::abs;
     const int previous = j > 0 ? j - 1 : size_ - 1;
     const Node &at = nodes_[j], &l = nodes_[previous], &r = nodes_[next(j)];
     const Width &to_l = widths[previous], &to_r = widths[j];
-    // slopes of m.V on either side, and of the function
+    // Slopes of m.V on both sides, and slope jump of the function.
     const Real before = (at.value - l.value) / to_l.sine - at.value * to_l.half,
                after = (r.value - at.value) / to_r.sine + at.value * to_r.half;
     const Real jump = after - before - at.curvature * to_r.half - l.curvature * to_l.half;
@@ -224,8 +226,8 @@ class DirectionFan {
     return best;
   }
 
-  /// The least and the largest value in [0, w] of D with D'' + D = a, D(0) = 0, D(w) = d. The slope is `first` at 0 and
-  /// changes its sign once at most, for w <= pi/2.
+  /// Returns the smallest and largest value in [0, w] of D with D'' + D = a, D(0) = 0, D(w) = d. The slope is `first`
+  /// at 0; it changes sign at most once, because w <= pi/2.
   KOKKOS_INLINE_FUNCTION static Range range(Real a, Real d, const Width& w) {
     using std::sqrt;
     const Real first = d / w.sine - a * w.half, last = a * w.sine + first * w.cosine;

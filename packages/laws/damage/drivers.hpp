@@ -1,4 +1,4 @@
-// What a unit of slip counts in the history of damage.
+// Damage drivers: damage k per unit of slip.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// k = 1
+/// Damage by slip: k = 1.
 struct SlipDriver {
   static constexpr const char *name = "slip", *meaning = "slip counts as it is";
   static std::vector<Parameter<SlipDriver>> parameters() { return {}; }
@@ -17,7 +17,7 @@ struct SlipDriver {
   }
 };
 
-/// k = N/sigma_r, N = -lambda_n: wear in proportion to compression and path (Archard).
+/// Damage by slip times compression (Archard's law of wear): k = N/sigma_r with N = -lambda_n, 0 in tension.
 struct CompressionDriver {
   Real reference = 1e6;  ///< sigma_r, Pa
 
@@ -34,7 +34,7 @@ struct CompressionDriver {
   }
 };
 
-/// k = |lambda_t|/sigma_r: the work of friction. Implicit, since friction depends on what is worn.
+/// Damage by frictional work: k = |lambda_t|/sigma_r. Implicit, because friction depends on damage.
 struct WorkDriver {
   Real reference = 1e6;  ///< sigma_r, Pa
 

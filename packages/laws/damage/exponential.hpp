@@ -1,4 +1,4 @@
-// Exponential decay of friction and dilation with what slip has worn.
+// Damage laws with exponential decay of friction and dilation.
 #pragma once
 
 #include "laws/damage/direction_fan.hpp"
@@ -9,12 +9,12 @@
 
 namespace sprekk::laws {
 
-/// What is left of friction and dilation, each d = r + (1 - r) exp(-Lambda/L), with the history Lambda, m, of the slip:
-/// the form of PorePy's fracture_damage after White (2014), there with d0 = 1/r and mu the residual coefficient.
-/// `lambda` and how it is kept is what damages differ in.
+/// Remaining fractions of friction and dilation, each d = r + (1 - r) exp(-Lambda/L), with the damage history Lambda,
+/// m. This is the form of PorePy's fracture_damage after White (2014), with d0 = 1/r and mu the residual coefficient
+/// there. Derived laws define Lambda and its history variables.
 struct ExponentialDecay {
-  Real friction = 0, dilation = 0;                               ///< r
-  Real friction_length = std::numeric_limits<Real>::infinity();  ///< L, m
+  Real friction = 0, dilation = 0;                               ///< r of each
+  Real friction_length = std::numeric_limits<Real>::infinity();  ///< L of each, m
   Real dilation_length = std::numeric_limits<Real>::infinity();
 
   template <class Law>
@@ -50,7 +50,7 @@ struct ExponentialDecay {
   }
 };
 
-/// Lambda is the length of the path that was slipped, weighted by the driver k: sum of k |du|, whatever the direction.
+/// Damage by slip in any direction. Lambda = sum of k |du|, the path length of slip weighted by the driver k.
 struct IsotropicDamage : ExponentialDecay {
   static constexpr int n_history = 1;  ///< Lambda
   static constexpr const char *name = "isotropic", *meaning = "by slip in any direction";
@@ -71,14 +71,17 @@ struct IsotropicDamage : ExponentialDecay {
   }
 };
 
-/// Asperities wear on the sides that face the slip: Lambda(m) = sum of k |<m.u> - <m.u_before>|, <> the positive part
-/// and m the present direction of the plastic jump u, as in PorePy's fracture_damage. In 2D m is one of two, and two
-/// numbers are the history; in 3D it is a fan of directions, with a bound of its error.
-/// Where u passes through 0 what is left jumps from one side's to the other's, and the bound may have no value at which
-/// the rock is in equilibrium. So within w = 1e-3 of the (smaller) damage length it goes from one to the other: in 2D
-/// linearly, in 3D by s^2 (3 - 2 s), s = |u|/w, from what is left with the mean of Lambda over all m, sum of k |du|/pi.
+/// Damage of the asperity flanks that face the slip, as in PorePy's fracture_damage:
+///   Lambda(m) = sum of k |<m.u> - <m.u_before>|
+/// < > is the positive part and m the present direction of the plastic jump u. In 2D there are two directions, and two
+/// history variables suffice. In 3D Lambda is a directional table with an error bound.
+///
+/// At u = 0 the fractions jump from one direction's value to the other's, and some loads would have no equilibrium.
+/// Therefore they are interpolated for |u| < w, with w = 1e-3 of the smaller damage length:
+/// * in 2D linearly between both directions;
+/// * in 3D by s^2 (3 - 2 s), s = |u|/w, from the fractions at the mean of Lambda over all m, sum of k |du|/pi.
 struct AnisotropicDamage : ExponentialDecay {
-  static constexpr int n_history = 1 + DirectionFan::n_numbers;  ///< sum of k |du|, the fan of Lambda(m)
+  static constexpr int n_history = 1 + DirectionFan::n_numbers;  ///< sum of k |du|, table of Lambda(m)
   static constexpr int n_history_2d = 2;                         ///< Lambda(+t), Lambda(-t)
   static constexpr const char *name = "anisotropic", *meaning = "by slip on the side of the present plastic jump";
   static std::vector<Parameter<AnisotropicDamage>> parameters() { return entries<AnisotropicDamage>(); }
@@ -117,12 +120,12 @@ struct AnisotropicDamage : ExponentialDecay {
     }
   }
 
-  /// Lambda on the side of the present plastic jump, m.
+  /// Lambda in the direction of the present plastic jump, m.
   template <class T>
   KOKKOS_INLINE_FUNCTION T history(const Contact<T>& at) const {
     return at.dim == 3 ? history_along(at) : history_of_side(at, at.plastic_jump[0] < 0);
   }
-  /// How far what is kept may be from the exact history, over the largest of all directions.
+  /// Error bound of the stored history, relative to its largest value over all directions.
   KOKKOS_INLINE_FUNCTION Real error(const Contact<Real>& at) const {
     if (at.dim != 3) return 0;
     const DirectionFan fan(at.history.from(1));
@@ -156,7 +159,8 @@ struct AnisotropicDamage : ExponentialDecay {
     const T s = size / width();
     return between(mean, after(history_along(at)), T(s * s * (3 - 2 * s)));
   }
-  /// Lambda(u/|u|), with that of the step: slip is along the traction, so |m.u - m.u_before| is its part along m.
+  /// Lambda(u/|u|) including this step. Slip is parallel to the traction, so |m.u - m.u_before| is its component along
+  /// m.
   template <class T>
   KOKKOS_INLINE_FUNCTION T history_along(const Contact<T>& at) const {
     const T& size = at.plastic_slip;

@@ -1,4 +1,4 @@
-// A joint that slip does not wear.
+// Joint without damage.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// What damage leaves of friction and of dilation, 1: all.
+/// Remaining fractions of friction and dilation; 1: undamaged.
 template <class T>
 struct Left {
   T friction = 1, dilation = 1;

@@ -1,4 +1,4 @@
-// Dilation by a constant angle.
+// Dilation with a constant angle.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// Shear dilation, the middle term of (14), m: tan(theta) |u_t^p|.
+/// Opening by slip, the middle term of (14), m: tan(theta) |u_t^p|.
 struct ConstantDilation {
   Real tangent = 0;  ///< tan(theta)
 

@@ -1,4 +1,4 @@
-// Dilation by an angle that slip wears.
+// Dilation with an angle that decreases with slip.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -7,9 +7,9 @@
 
 namespace sprekk::laws {
 
-/// Shear dilation, m, whose slope falls exponentially with the distance u = |u_t^p| from tan(theta) to tan(theta_r):
-///   tan(theta_r) u + (tan(theta) - tan(theta_r)) D (1 - exp(-u/D)),
-/// without a residual angle at most D tan(theta). As any function of u it is undone when slip is.
+/// Opening by slip, m. The slope decays exponentially with u = |u_t^p| from tan(theta) to tan(theta_r):
+///   tan(theta_r) u + (tan(theta) - tan(theta_r)) D (1 - exp(-u/D))
+/// Without a residual angle it is at most D tan(theta). As a function of u it is reversed with the slip.
 struct DecayingDilation {
   Real tangent = 0, residual = 0;  ///< tan(theta), tan(theta_r)
   Real distance = 1;               ///< D, m

@@ -1,4 +1,4 @@
-// Shear dilation up to a largest opening.
+// Dilation up to a maximum opening.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,9 +6,9 @@
 
 namespace sprekk::laws {
 
-/// Shear dilation, m: tan(theta) u with u = |u_t^p|, until the joint has opened by the height h, where it stays: rough
-/// faces ride on the tops of their asperities then. Within 5 % of h a parabola joins both lines, below them by up to
-/// 0.0125 h. As any function of u it is undone when slip is.
+/// Opening by slip, m: tan(theta) u with u = |u_t^p|, at most h, where rough faces ride on the tips of their
+/// asperities. A parabola within 5 % of h joins both lines; it is below them by up to 0.0125 h. As a function of u,
+/// dilation is reversed with the slip.
 struct LimitedDilation {
   Real tangent = 0;  ///< tan(theta)
   Real height = 1;   ///< h, m

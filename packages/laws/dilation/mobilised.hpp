@@ -1,4 +1,4 @@
-// Dilation of a rough joint as slip mobilises and wears its roughness.
+// Dilation of a rough joint, with roughness mobilised and worn by slip.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,16 +6,17 @@
 
 namespace sprekk::laws {
 
-/// Shear dilation, m, after Barton: slip du away from the start opens the joint by tan(d) du, slip back closes it by as
-/// much, with d = f(s/delta_p) JRC log10(JCS/N)/M degrees after the path s, never negative, under the compression N.
-/// Over a step the mean of tan(d) over the path is taken, with the N of its end: exact at constant N, else of first
-/// order.
+/// Opening by slip, m, after Barton. Slip du away from the initial position opens the joint by tan(d) du; slip back
+/// closes it. The angle after the path s, under the compression N, is
+///   d = f(s/delta_p) JRC log10(JCS/N)/M degrees, never negative
+/// A step uses the mean of tan(d) along its path with N at its end. This is exact at constant N and first-order
+/// accurate otherwise.
 struct MobilisedDilation {
-  static constexpr int n_history = 2;  ///< s, opening so far; m
+  static constexpr int n_history = 2;  ///< path length s, present opening; m
   Real roughness = 0;                  ///< JRC, degree
   Real wall_strength = 1;              ///< JCS, Pa
   Real damage = 2;                     ///< M
-  Real length = 0, sample = 0.1;       ///< as in friction, m
+  Real length = 0, sample = 0.1;       ///< joint and sample length as in friction, m
   Real peak_slip = 0;                  ///< delta_p, m
 
   static constexpr const char *name = "mobilised", *meaning = "of a rough joint, by JRC and JCS, as slip mobilises it";
@@ -47,9 +48,9 @@ struct MobilisedDilation {
     constexpr Real degree = 3.14159265358979323846 / 180;
     const Real* old = at.last_plastic_jump;
     const T moved = at.plastic_slip - sqrt(old[0] * old[0] + old[1] * old[1]);
-    T angle = 0;  // d over f, radians
+    T angle = 0;  // d/f, radians
     const T N = -at.lambda_n;
-    const Real least = 1e-6 * wall_strength;  // below it the angle does not grow further
+    const Real least = 1e-6 * wall_strength;  // constant angle below this compression
     if (N < wall_strength) angle = degree * roughness / damage * (N > least ? T(log10(wall_strength / N)) : T(6));
     return at.history[1] + moved * mean_tangent(at.history[0] / peak_slip, T(at.rubs * at.slip_of_step), angle);
   }
@@ -59,14 +60,14 @@ struct MobilisedDilation {
   }
 
  private:
-  /// The mean of tan(f angle) over a slip that begins at s/delta_p = x.
+  /// Mean of tan(f angle) over a slip that begins at s/delta_p = x.
   template <class T>
   KOKKOS_INLINE_FUNCTION T mean_tangent(Real x, const T& slip, const T& angle) const {
     static constexpr auto table = mobilised_roughness();
     const T end = x + slip / peak_slip;
     if (!(slip > 1e-9 * peak_slip)) return tangent_over(T(angle * table.sharp(end)), T(0));
     T sum = 0, from = x;
-    for (int k = 0; from < end; ++k) {  // from kink to kink
+    for (int k = 0; from < end; ++k) {  // from corner to corner of f
       const bool last = k == table.size;
       if (!last && !(from < table.x[k])) continue;
       const T to = last || end < table.x[k] ? end : T(table.x[k]);
@@ -76,11 +77,11 @@ struct MobilisedDilation {
     }
     return sum / (end - x);
   }
-  /// The mean of tan between a and a + by.
+  /// Mean of tan between a and a + by.
   template <class T>
   KOKKOS_INLINE_FUNCTION static T tangent_over(const T& a, const T& by) {
     using std::cos, std::log, std::tan;
-    if (by < 0.03 && by > -0.03) {  // there the logarithm loses digits: the series about the middle
+    if (by < 0.03 && by > -0.03) {  // series about the midpoint, because the logarithm loses digits
       const T t = tan(a + by / 2), q = t * t, h = by * by;
       const T second = 2 + 2 * q, fourth = 16 + q * (40 + 24 * q), sixth = 272 + q * (1232 + q * (1680 + 720 * q));
       return t * (1 + h * (second / 24 + h * (fourth / 1920 + h * sixth / 322560)));

@@ -1,4 +1,4 @@
-// The peak strength of a rough joint.
+// Peak strength of a rough joint.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -9,15 +9,15 @@
 namespace sprekk::laws {
 
 /// Bound on |lambda_t|, Pa, under the compression N = -lambda_n, Barton and Choubey (1977):
-///   b = N tan(a),  a = phi_r + JRC log10(JCS/N) degrees, kept between phi_r and `steepest`.
-/// The cap makes b linear near N = 0, where the logarithm has no bound; b(0) = 0. For N < 0 the line goes on.
+///   b = N tan(a),  a = phi_r + JRC log10(JCS/N) degrees,  phi_r <= a <= `steepest`
+/// The cap bounds the logarithm as N -> 0: b is linear near N = 0, b(0) = 0, and continues linearly for N < 0.
 struct BartonChoubeyFriction {
   Real roughness = 0;        ///< JRC, degree
   Real wall_strength = 1;    ///< JCS, Pa
   Real residual_angle = 30;  ///< phi_r, degree
-  Real steepest = 70;        ///< degree
-  Real length = 0;           ///< of the joint, m; 0: JRC and JCS are those of the joint
-  Real sample = 0.1;         ///< length of the samples that JRC and JCS are of otherwise, m
+  Real steepest = 70;        ///< largest friction angle, degree
+  Real length = 0;           ///< joint length, m; 0: JRC and JCS are values of the joint
+  Real sample = 0.1;         ///< sample length of JRC and JCS if length > 0, m
 
   static constexpr const char *name = "Barton-Choubey", *meaning = "peak strength of a rough joint, by JRC and JCS";
   static std::vector<Parameter<BartonChoubeyFriction>> parameters() {

@@ -1,4 +1,4 @@
-// Friction composed of that of the rock, of riding over asperities, and of shearing through them.
+// Friction composed of rock friction, riding over asperities, and shearing of asperities.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -8,14 +8,14 @@
 
 namespace sprekk::laws {
 
-/// Bound on |lambda_t|, Pa, under the compression N = -lambda_n, after Patton (1966) at low and with sheared asperities
-/// at high stress (Ladanyi and Archambault 1970), in the form of PorePy's composed friction:
-///   b = N mu,  mu = (mu_b + tan psi)/(1 - mu_b tan psi) + a mu_a d_f,  tan psi = (1 - a) tan psi_0 d_d,
-///   a = 1 - (1 - N/N_T)^K,  the part of the asperities that is sheared, 1 from N_T on.
-/// d_f and d_d are what damage leaves of friction and dilation; the friction mu_b of the rock is not damaged.
-/// For N < 0 the line of N = 0 goes on.
+/// Bound on |lambda_t|, Pa, under the compression N = -lambda_n, after Patton (1966) at low and Ladanyi and Archambault
+/// (1970) at high compression, in the form of PorePy's composed friction:
+///   b = N mu,  mu = (mu_b + tan psi)/(1 - mu_b tan psi) + a mu_a d_f,  tan psi = (1 - a) tan psi_0 d_d
+///   a = 1 - (1 - N/N_T)^K,  sheared share of the asperities, 1 for N >= N_T
+/// d_f and d_d are the factors of damage for friction and dilation. The rock friction mu_b is not damaged. For N < 0
+/// the tangent at N = 0 continues.
 struct ComposedFriction {
-  static constexpr bool takes_damage = true;  ///< applies what damage leaves itself
+  static constexpr bool takes_damage = true;  ///< applies the factors of damage itself
   Real basic = 0;                             ///< mu_b
   Real asperity = 0;                          ///< tan psi_0
   Real sheared = 0;                           ///< mu_a

@@ -1,4 +1,4 @@
-// Coulomb's friction.
+// Coulomb friction.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// Coulomb's bound on |lambda_t|, Pa (13): b = -mu lambda_n.
+/// Bound on |lambda_t|, Pa, Coulomb (13): b = -mu lambda_n.
 struct CoulombFriction {
   Real coefficient = 0;  ///< mu
 

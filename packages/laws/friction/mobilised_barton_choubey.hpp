@@ -1,15 +1,16 @@
-// The strength of a rough joint as slip mobilises and wears its roughness.
+// Strength of a rough joint, with roughness mobilised and worn by slip.
 #pragma once
 
 #include "laws/friction/barton_choubey.hpp"
 
 namespace sprekk::laws {
 
-/// Bound on |lambda_t|, Pa, after the path s slipped, Barton and Choubey (1977) with Barton's mobilised roughness:
-///   b = N tan(phi_r r(x) + f(x) i(N)),  i = JRC log10(JCS/N) degrees, kept between 0 and steepest - phi_r,  x =
-///   s/delta_p
-/// with f the part of the roughness, r that of the residual friction: roughness.hpp. b = 0 at x = 0: slip begins with
-/// the first shear traction, beside the elastic part of the jump. For N < 0 the line of N = 0 goes on.
+/// Bound on |lambda_t|, Pa, Barton and Choubey (1977) with Barton's mobilised roughness and the path length of slip s:
+///   b = N tan(phi_r r(x) + f(x) i(N)),  x = s/delta_p
+///   i = JRC log10(JCS/N) degrees,  0 <= i <= steepest - phi_r
+/// f and r are the mobilised fractions of roughness and residual friction, see roughness.hpp. At x = 0 the bound is 0:
+/// the joint slips under the first shear traction, in addition to the elastic jump. For N < 0 the line at N = 0
+/// continues.
 struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
   static constexpr int n_history = 1;  ///< s, m
   Real peak_slip = 0;                  ///< delta_p, m
@@ -40,7 +41,7 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
     static constexpr auto of_friction = mobilised_friction();
     static constexpr auto of_roughness = mobilised_roughness();
     const T N = -at.lambda_n, x = (at.history[0] + at.slip_of_step) / peak_slip;
-    T rough = steepest - residual_angle;  // i
+    T rough = steepest - residual_angle;  // i, degree
     if (N >= wall_strength) {
       rough = 0;
     } else if (N > 0) {

@@ -1,4 +1,4 @@
-// Faces that do not slip while they touch.
+// Closed faces without slip.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,7 +6,7 @@
 
 namespace sprekk::laws {
 
-/// A bound on |lambda_t| that no shear traction reaches, Pa: b = -1e6 lambda_n. 0 where faces do not touch.
+/// Bound on |lambda_t|, Pa, that no shear traction reaches: b = -1e6 lambda_n; 0 on unloaded faces.
 struct NoSlip {
   static constexpr Real coefficient = 1e6;
 

@@ -1,4 +1,4 @@
-// Friction that falls with the length of the path slipped.
+// Friction that decreases with the path length of slip.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -6,9 +6,10 @@
 
 namespace sprekk::laws {
 
-/// Linear slip weakening, Pa: b = -lambda_n (mu_r + (mu_p - mu_r) max(0, 1 - s/D)), s the length of the path that was
-/// slipped while the faces touched. There is no healing. Where the bound falls faster than the rock unloads,
-/// N (mu_p - mu_r)/D > k, slip runs away to a state that is not near.
+/// Bound on |lambda_t|, Pa, with linear slip weakening:
+///   b = -lambda_n (mu_r + (mu_p - mu_r) max(0, 1 - s/D))
+/// s is the path length of slip of closed faces. There is no healing. If the bound decreases faster than the rock
+/// unloads, N (mu_p - mu_r)/D > k, slip is unstable and jumps to a distant state.
 struct SlipWeakeningFriction {
   static constexpr int n_history = 1;  ///< s, m
   Real peak = 0, residual = 0;         ///< mu_p, mu_r

@@ -1,4 +1,4 @@
-// The elastic part of the tangential jump.
+// Linear tangential elasticity of a joint.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -8,9 +8,9 @@
 
 namespace sprekk::laws {
 
-/// Elastic part of the tangential jump (12), m: u_t^e = lambda_t / K_t.
+/// Elastic part of the tangential jump (12), m: u_t^e = lambda_t/K_t.
 struct LinearShear {
-  Real inverse_stiffness = 0;  ///< 1/K_t, m/Pa; 0 is a rigid joint
+  Real inverse_stiffness = 0;  ///< 1/K_t, m/Pa; 0: rigid
 
   static constexpr const char *name = "linear", *meaning = "in proportion to the shear traction (12)";
   static std::vector<Parameter<LinearShear>> parameters() {
@@ -22,7 +22,7 @@ struct LinearShear {
                  .also_called({"ks", "kt", "jks", "shear stiffness"})}};
   }
 
-  /// u_t^e per lambda_t, m/Pa.
+  /// Compliance, u_t^e per lambda_t, m/Pa.
   template <class T>
   KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>&) const {
     return inverse_stiffness;

@@ -1,4 +1,4 @@
-// A tangential stiffness that grows with the compression.
+// Tangential stiffness that increases with the compression.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -7,8 +7,9 @@
 
 namespace sprekk::laws {
 
-/// Elastic part of the tangential jump, m: u_t^e = lambda_t/(K_t (1 + N/N_r)^m) under the compression N = -lambda_n. A
-/// secant stiffness: where N changes at constant shear traction, the joint does work that it does not store.
+/// Elastic part of the tangential jump, m: u_t^e = lambda_t/(K_t (1 + N/N_r)^m) under the compression N = -lambda_n.
+/// The stiffness is a secant stiffness without stored energy: if N changes at constant shear traction, the joint does
+/// net work.
 struct PowerShear {
   Real stiffness = 1;  ///< K_t at zero compression, Pa/m
   Real reference = 1;  ///< N_r, Pa
