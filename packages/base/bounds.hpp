@@ -1,4 +1,4 @@
-// The values that a parameter may take.
+// Admissible values of a parameter.
 #pragma once
 
 #include <limits>
@@ -9,8 +9,8 @@
 
 namespace sprekk::base {
 
-/// An interval of numbers; an array's bounds hold for each element, and may fix the array's length too:
-/// base::between(0, 1).size(3). NaN is never inside, infinity only where it is said.
+/// Interval of admissible numbers. For an array, it applies to each element, and the length may be prescribed:
+/// base::between(0, 1).size(3). NaN is never admissible, infinity only after or_infinite().
 class Bounds {
  public:
   Bounds& above(Real low) { return low_ = low, low_is_open_ = true, *this; }
@@ -18,7 +18,7 @@ class Bounds {
   Bounds& below(Real high) { return high_ = high, high_is_open_ = true, *this; }
   Bounds& to(Real high) { return high_ = high, high_is_open_ = false, *this; }
   Bounds& or_infinite() { return infinite_ = true, *this; }
-  Bounds& or_word(const std::string& word) { return word_ = word, *this; }  ///< of expressions, e.g. "free"
+  Bounds& or_word(const std::string& word) { return word_ = word, *this; }  ///< in expressions, e.g. "free"
   Bounds& size(std::size_t n) { return size_ = n, *this; }
 
   bool contains(Real value) const;
@@ -26,7 +26,7 @@ class Bounds {
   std::optional<std::size_t> size() const { return size_; }
   const std::string& word() const { return word_; }
 
-  std::string text() const;         ///< "at least 0"; "finite" if every finite number is inside
+  std::string text() const;         ///< "at least 0"; "finite" without bounds
   std::string length_text() const;  ///< "3 elements"; empty if any length is allowed
 
  private:

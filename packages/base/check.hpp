@@ -1,4 +1,4 @@
-// Two kinds of checks and errors that every rank sees.
+// Checks, and errors that all ranks throw.
 #pragma once
 
 #include "base/types.hpp"
@@ -11,7 +11,7 @@
 
 namespace sprekk {
 
-/// An error that a user can understand and mend. What: "where: what is wrong; what is allowed".
+/// Error that a user can understand and correct. Format of the message: "where: what is wrong; what is allowed".
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,20 +19,20 @@ class Error : public std::runtime_error {
 
 namespace base {
 
-/// Runs `work` on every rank and then, if it threw on any, throws an Error with the text of the lowest failing rank on
-/// all of them, so that no rank is left waiting. Collective.
+/// Runs `work` on every rank. If it throws on any rank, all ranks throw an Error with the message of the lowest failing
+/// rank, so no rank waits forever. Collective.
 void collectively(const Comm& comm, const std::function<void()>& work);
 
 }  // namespace base
 }  // namespace sprekk
 
-/// A check that is always on: SPREKK_CHECK(n > 0, "cells must be positive, got {}", n);
+/// Throws an Error if the condition is false, in all builds: SPREKK_CHECK(n > 0, "cells must be positive, got {}", n);
 #define SPREKK_CHECK(condition, ...)                                   \
   do {                                                                 \
     if (!(condition)) throw ::sprekk::Error(fmt::format(__VA_ARGS__)); \
   } while (false)
 
-/// The same for inner loops of host code; only in builds with SPREKK_DEBUG_CHECKS.
+/// Check for inner loops of host code, active in builds with SPREKK_DEBUG_CHECKS only.
 #ifdef SPREKK_DEBUG_CHECKS
 #define SPREKK_DEBUG_CHECK(condition, ...) SPREKK_CHECK(condition, __VA_ARGS__)
 #else

@@ -18,7 +18,7 @@ using Teuchos::ParameterList;
 
 namespace {
 
-/// Uses the entry as a T if it is one.
+/// Calls use(value) and returns true if the entry is of type T.
 template <class T, class Use>
 bool if_type(const ParameterEntry& entry, const Use& use) {
   if (!entry.isType<T>()) return false;
@@ -32,7 +32,7 @@ void wrong_type(const ParameterEntry& entry, Reading& reading, const std::string
 
 bool inside(Reading& reading, const std::string& suffix, Real value) {
   constexpr Real smallest = std::numeric_limits<Real>::min();
-  const bool is_lost = value != 0 && std::abs(value) < smallest;  // fewer digits, and 1/value may be infinite
+  const bool is_lost = value != 0 && std::abs(value) < smallest;  // denormal: fewer digits, and 1/value may be infinite
   if (is_lost)
     reading.fail(suffix, fmt::format("is {}, too small for a double; give 0, or at least {:.3g}", value, smallest));
   if (is_lost || reading.bounds.contains(value)) return !is_lost;
@@ -48,7 +48,7 @@ bool length_fits(Reading& reading, std::size_t n) {
 
 std::string index(std::size_t i) { return fmt::format("[{}]", i); }
 
-/// Calls use() with the number that a quantity is in `unit`, unless there is none, which it reports.
+/// Calls use() with the quantity converted to `unit`. If the conversion fails, reports an error.
 template <class Use>
 void convert(Reading& reading, const std::string& suffix, const std::string& unit, const Quantity& value,
              const Use& use) {
@@ -61,7 +61,7 @@ void convert(Reading& reading, const std::string& suffix, const std::string& uni
   use(*number);
 }
 
-/// The unit of one element: units of elements are separated by ", ".
+/// Unit of one element. The units of elements are separated by ", ".
 std::string unit_of_element(const std::string& units, std::size_t i) {
   std::size_t begin = 0;
   for (std::size_t end; i > 0 && (end = units.find(", ", begin)) != units.npos; --i) begin = end + 2;
@@ -97,7 +97,7 @@ bool decode_integer(const ParameterEntry& entry, Reading& reading, T& target) {
   return if_type<int>(entry, use) || if_type<long long>(entry, use);
 }
 
-/// One expression from a number, a quantity or a text.
+/// Creates an expression from a number, a quantity or a text.
 void decode_expression(Reading& reading, const std::string& suffix, const std::string&, Real value,
                        Expression& target) {
   if (inside(reading, suffix, value)) target = Expression(value);
@@ -109,7 +109,7 @@ void decode_expression(Reading& reading, const std::string& suffix, const std::s
 void decode_expression(Reading& reading, const std::string& suffix, const std::string& unit, const std::string& text,
                        Expression& target) {
   if (const auto number = parse_number(text)) return decode_expression(reading, suffix, unit, *number, target);
-  if (const auto quantity = parse_quantity(text)) {  // no expression opens like one
+  if (const auto quantity = parse_quantity(text)) {  // no expression begins like a quantity
     const std::string defect = defect_of_unit(quantity->unit);
     if (defect.empty()) return decode_expression(reading, suffix, unit, *quantity, target);
     const bool calculates = quantity->unit.find_first_of("*+-(") != std::string::npos;

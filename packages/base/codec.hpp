@@ -1,4 +1,4 @@
-// How each type of parameter is read from an entry of a parameter list, and written to it.
+// Conversion between entries of a parameter list and C++ types.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -11,22 +11,21 @@
 
 namespace sprekk::base {
 
-/// Where a value comes from, what it may be, and what is wrong with it.
+/// Context of the conversion of an entry: its place, unit, bounds, and the list of errors.
 struct Reading {
   std::string place;  ///< `scene.xml: Sprekk > Time > "end"`
-  std::string
-      unit;  ///< that numbers are kept in, "-" for none; "m, Pa" if the elements of an array have different ones
+  std::string unit;   ///< of stored numbers, "-" for none; "m, Pa": one for each element
   const Bounds& bounds;
-  std::shared_ptr<const Tables> tables;  ///< that expressions may call; null: they are not compiled
-  const Expression::Named& named;        ///< the same
+  std::shared_ptr<const Tables> tables;  ///< callable from expressions; null: do not compile
+  const Expression::Named& named;        ///< callable expressions
   std::vector<std::string>& errors;
 
   void fail(const std::string& suffix, const std::string& what) { errors.push_back(place + suffix + ": " + what); }
 };
 
-/// Converts an entry to the type of `target` and checks the bounds; on an error, which goes to reading.errors, `target`
-/// stays what it was. A number may be written as an integer, as a quantity of any unit that measures the same, and,
-/// both in a string, as "infinite" where the bounds allow it.
+/// Converts an entry to the type of `target` and checks the bounds. On an error, appends a message to reading.errors
+/// and leaves `target` unchanged. A number may also be an integer, a quantity in any compatible unit, or "infinite" if
+/// the bounds allow it (both as strings).
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, double& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, int& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, long long& target);
@@ -35,11 +34,11 @@ void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::string& 
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<double>& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<int>& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<std::string>& target);
-/// A number, a quantity, or a string with an expression; bounds are checked of constants only.
+/// Converts a number, a quantity, or a string with an expression. Bounds are checked for constants only.
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, Expression& target);
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::vector<Expression>& target);
 
-/// Sets list[name] such that decode turns it back into `value`.
+/// Sets list[name] such that decode() reproduces `value`.
 void encode(Teuchos::ParameterList& list, const std::string& name, double value);
 void encode(Teuchos::ParameterList& list, const std::string& name, int value);
 void encode(Teuchos::ParameterList& list, const std::string& name, long long value);
@@ -51,7 +50,7 @@ void encode(Teuchos::ParameterList& list, const std::string& name, const std::ve
 void encode(Teuchos::ParameterList& list, const std::string& name, const Expression& value);
 void encode(Teuchos::ParameterList& list, const std::string& name, const std::vector<Expression>& value);
 
-/// The name of the type in the reference.
+/// Name of the type in the parameter reference.
 inline std::string type_name(const double&) { return "double"; }
 inline std::string type_name(const int&) { return "int"; }
 inline std::string type_name(const long long&) { return "long long"; }
@@ -63,7 +62,7 @@ inline std::string type_name(const std::vector<std::string>&) { return "Array(st
 inline std::string type_name(const Expression&) { return "double or expression (string)"; }
 inline std::string type_name(const std::vector<Expression>&) { return "Array(double) or expressions (Array(string))"; }
 
-/// An optional entry that is absent stays empty, and is not written.
+/// Overloads for optional entries. An absent entry stays empty and is not written.
 template <class T>
 void decode(const Teuchos::ParameterEntry& entry, Reading reading, std::optional<T>& target) {
   T value{};

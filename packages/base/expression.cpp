@@ -17,14 +17,14 @@ struct Expression::Compiled {
   Real x = 0, y = 0, z = 0, t = 0;
   std::shared_ptr<const Tables> tables;
 
-  /// An expression that this one calls by name.
+  /// Expression called by name.
   struct Call {
     const Compiled* from;
     Expression expression;
   };
   std::map<std::string, Call> calls;
 
-  /// Called by muParser.
+  /// Callback for muParser.
   static double evaluate_named(void* call) {
     const auto& [from, expression] = *static_cast<const Call*>(call);
     return expression({from->x, from->y, from->z}, from->t);
@@ -43,7 +43,7 @@ struct Expression::Compiled {
 
 namespace {
 
-/// Called by muParser; `named_table` points to an entry of the Tables that the expression holds.
+/// Callback for muParser; `named_table` points to an entry of the expression's Tables.
 double evaluate_table(void* named_table, double argument) {
   const auto& [name, table] = *static_cast<const Tables::value_type*>(named_table);
   try {
@@ -69,7 +69,7 @@ std::vector<std::string> known_names(const mu::Parser& parser) {
   return names;
 }
 
-/// Refuses names that cannot be called, or have a meaning already.
+/// Throws an Error if a name is not an identifier or already has a meaning.
 void check_new_name(const mu::Parser& parser, const char* what, const std::string& name) {
   const bool taken = parser.GetFunDef().count(name) || parser.GetVar().count(name) || parser.GetConst().count(name);
   SPREKK_CHECK(!taken, "{} must not be named \"{}\", which has a meaning in expressions", what, name);
@@ -86,7 +86,7 @@ void define_tables(mu::Parser& parser, const Tables& tables) {
   }
 }
 
-/// Calls visit(name, position) for each name in a text. An "e" in a number is no name, as it follows a digit.
+/// Calls visit(name, position) for each name in a text. The "e" in a number is not a name, because it follows a digit.
 template <class Visit>
 void for_each_name(const std::string& text, const Visit& visit) {
   const auto in_word = [](char c) { return is_letter(c) || is_digit(c) || c == '.'; };
@@ -97,7 +97,7 @@ void for_each_name(const std::string& text, const Visit& visit) {
   }
 }
 
-/// Refuses names that nothing has.
+/// Throws an Error for an unknown name.
 void check_names(const std::string& text, const mu::Parser& parser) {
   const auto names = known_names(parser);
   for_each_name(text, [&](const std::string& name, std::size_t position) {
@@ -116,7 +116,7 @@ std::string syntax_error(const mu::ParserError& error) {
   return has_position ? message : fmt::format("{} at position {}", message, error.GetPos());
 }
 
-/// muParser takes "a, b" for two results and "x = 1" for an assignment; neither is a function of place and time.
+/// Throws an Error for "a, b", which has two results in muParser, and for "x = 1", which is an assignment.
 void check_single_value(const std::string& text) {
   const auto parts = parse_list("{" + text + "}");
   SPREKK_CHECK(!parts || parts->size() == 1, "must be one expression, is {}", parts->size());
@@ -128,7 +128,7 @@ void check_single_value(const std::string& text) {
   }
 }
 
-/// The text with "name()" for every "name".
+/// Replaces every "name" in the text by "name()".
 std::string with_call(const std::string& text, const std::string& called) {
   std::string result;
   std::size_t done = 0;
@@ -140,7 +140,7 @@ std::string with_call(const std::string& text, const std::string& called) {
   return result + text.substr(done);
 }
 
-/// Whether all expressions that one calls have a property.
+/// True if all called expressions have a property.
 template <class Compiled>
 bool calls_all(const Compiled& compiled, bool (Expression::*has)() const) {
   return std::all_of(compiled.calls.begin(), compiled.calls.end(),
@@ -171,14 +171,14 @@ void Expression::compile(std::shared_ptr<const Tables> tables, const Named& name
     compiled->define_names();
     define_tables(parser, *tables);
     compiled->tables = std::move(tables);
-    for (const auto& [name, expression] : named) {  // first as variables, so that positions in messages are right
+    for (const auto& [name, expression] : named) {  // first as variables, for correct positions in messages
       check_new_name(parser, "an expression", name);
       parser.DefineVar(name, &compiled->x);
     }
     check_single_value(text_);
     check_names(text_, parser);
     parser.SetExpr(text_);
-    for (const auto& variable : parser.GetUsedVar())  // muParser takes what it cannot read for a variable
+    for (const auto& variable : parser.GetUsedVar())  // muParser takes unreadable text for a variable
       SPREKK_CHECK(parser.GetVar().count(variable.first), "cannot read \"{}\"", variable.first);
     std::string text = text_;
     const auto used = parser.GetUsedVar();
@@ -203,7 +203,7 @@ void Expression::compile(std::shared_ptr<const Tables> tables, const Named& name
 Expression::Named Expression::compile_all(Named pending, const std::shared_ptr<const Tables>& tables,
                                           std::vector<std::string>& errors) {
   Named ready;
-  const auto first_pending = [&](const std::string& text) {  // of those that a text calls
+  const auto first_pending = [&](const std::string& text) {  // first uncompiled expression that a text calls
     std::string first;
     for_each_name(text, [&](const std::string& name, std::size_t) {
       if (first.empty() && pending.count(name)) first = name;
@@ -223,7 +223,7 @@ Expression::Named Expression::compile_all(Named pending, const std::shared_ptr<c
     for (; seen.insert(name).second && !(next = first_pending(pending[name].text_)).empty(); name = next)
       path += fmt::format("\"{}\" calls ", name);
     const auto& expression = pending[name];
-    if (!next.empty()) {  // the name came back
+    if (!next.empty()) {  // circular call
       path = path.substr(path.find(fmt::format("\"{}\" calls ", name)));
       finish(name,
              fmt::format("{}: in \"{}\": calls itself: {}\"{}\"", expression.place_, expression.text_, path, name));

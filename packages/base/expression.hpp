@@ -1,4 +1,4 @@
-// Functions of place and time that a user writes.
+// User-defined functions of position and time.
 #pragma once
 
 #include <array>
@@ -12,37 +12,37 @@
 
 namespace sprekk::base {
 
-/// A scalar function of x, y, z and t: a constant, or a text such as "-0.1*ramp(t)*sin(pi*x)". A text must be compiled
-/// before it is evaluated, because the tables and expressions that it calls by name are read from the same input.
-/// Copies share what was compiled.
+/// Scalar function of x, y, z and t: a constant, or a text such as "-0.1*ramp(t)*sin(pi*x)". A text must be compiled
+/// before evaluation, because the called tables and expressions are read from the same input. Copies share the compiled
+/// text.
 class Expression {
  public:
   using Named = std::map<std::string, Expression>;
 
-  /// Throws an Error if `constant` is not a number; infinity is one.
+  /// Creates a constant, which may be infinite. Throws an Error for NaN.
   Expression(Real constant = 0);
 
-  /// `place` opens the messages of errors, e.g. `scene.xml: Sprekk > Loads > "force"[1]`. Text that is a number is a
-  /// constant, exactly that number.
+  /// Creates a function from a text. `place` begins the error messages, e.g. `scene.xml: Sprekk > Loads > "force"[1]`.
+  /// The text of a number gives exactly that constant. Throws an Error if the text is empty.
   explicit Expression(std::string text, std::string place = "expression");
 
-  /// Reads the text; constants need no compiling. A text without x, y, z and t becomes a constant. Throws an Error with
-  /// the text, the position and the names that are allowed. Those of `named` that it calls must be compiled, and are
-  /// evaluated where the text needs their value: not in the branch of "? :" that is not taken.
+  /// Parses the text; no effect on constants. A text without x, y, z and t becomes a constant. Throws an Error with the
+  /// text, the position and the allowed names. Called expressions of `named` must be compiled. They are evaluated on
+  /// demand: not in the unused branch of "? :".
   void compile(std::shared_ptr<const Tables> tables = std::make_shared<Tables>(), const Named& named = {});
 
-  /// Compiles expressions that may call each other. What cannot be, or calls itself through others, gets a line in
-  /// `errors`, and something of which only the name counts in its place.
+  /// Compiles expressions that may call each other. For an expression with a syntax error or a circular call, it
+  /// appends a message to `errors` and returns a placeholder of this name.
   static Named compile_all(Named named, const std::shared_ptr<const Tables>& tables, std::vector<std::string>& errors);
 
-  /// The value at the point x (metre) and time t (second). Throws an Error with point and time if it is not finite, if
-  /// a table's range is left, or if the text was not compiled.
+  /// Value at the point x (m) and time t (s). Throws an Error with point and time if it is not finite, if the argument
+  /// of a table is out of range, or if the text was not compiled.
   Real operator()(const std::array<Real, 3>& x, Real t) const;
 
   bool is_constant() const { return text_.empty() || constant_at_compile_; }
-  bool constant_in_time() const;  ///< t does not occur; of a text, known once it is compiled
+  bool constant_in_time() const;  ///< does not depend on t; for a text valid after compile()
 
-  std::string text() const;  ///< as written; of a number, its shortest exact form
+  std::string text() const;  ///< as written; for a number, its shortest exact form
 
  private:
   struct Compiled;
@@ -56,7 +56,7 @@ class Expression {
   std::shared_ptr<Compiled> compiled_;
 };
 
-/// Why expressions cannot call something, "a table" or "an expression", by this name; empty if they can.
+/// Returns an error message if expressions cannot call `what` ("a table" or "an expression") by this name; else "".
 std::string defect_of_name(const char* what, const std::string& name);
 
 }  // namespace sprekk::base

@@ -1,4 +1,4 @@
-// Input files, read without trust.
+// Input files with checks of their kind and size.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,10 @@
 
 namespace sprekk::base {
 
-/// The content of the file at `path`, which should be `kind`, e.g. "an XML file". Before all of it is read,
-/// `check_start` may refuse its first 4096 bytes, so that a wrong file costs no memory. Throws an Error that names the
-/// file if there is none, if it is a folder or no regular file (reading which may never end), cannot be read, or is
-/// larger than `limit` bytes or than the memory of this machine. Not collective.
+/// Returns the content of the file at `path`. `kind` describes the expected kind in messages, e.g. "an XML file".
+/// `check_start` receives the first 4096 bytes before the rest is read and may throw, so a wrong file costs no memory.
+/// Throws an Error with the path if the file does not exist, is not a regular file or is unreadable, or is larger than
+/// `limit` bytes or the memory of this machine. Not collective.
 std::string read_file(const std::string& path, const std::string& kind, std::size_t limit,
                       const std::function<void(std::string_view)>& check_start);
 

@@ -1,4 +1,4 @@
-// How a program takes memory from the system.
+// Settings of the memory allocator.
 #pragma once
 
 #include <cstdlib>  // defines __GLIBC__
@@ -8,9 +8,8 @@
 
 namespace sprekk::base {
 
-/// The heap of the process grows by many pages at once, and keeps what steps free and take again: the kernel need not
-/// clear them anew. Arrays above 32 MB are returned as ever. To be called first in main(); without glibc it
-/// does nothing.
+/// Makes the heap grow by many pages at once and retain freed memory for the next steps, so the kernel need not clear
+/// pages again. Arrays above 32 MB are still returned to the system. Call it first in main(). No effect without glibc.
 inline void keep_heap() {
 #ifdef __GLIBC__
   constexpr int MB = 1 << 20;

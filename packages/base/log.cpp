@@ -34,7 +34,7 @@ void Log::line(std::ostream* to, const std::string& text) {
   if (path_.empty())
     early_ += text + '\n';
   else
-    write(text + '\n');  // at first, so that a line that has been seen is in the file
+    write(text + '\n');  // before the stream, so a visible line is also in the file
   if (to) *to << text << std::endl;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double GB = 1e9;
 
-/// The number of bytes that a file of the system holds; infinite if it holds none.
+/// Returns the number of bytes in a system file; infinity if it contains no number.
 double bytes_in(const char* path) {
   double bytes = 0;
   return std::ifstream(path) >> bytes ? bytes : std::numeric_limits<double>::infinity();

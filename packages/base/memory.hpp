@@ -1,15 +1,15 @@
-// How much memory there is.
+// Available memory.
 #pragma once
 
 #include <string>
 
 namespace sprekk::base {
 
-/// Bytes that this process could take at most: of the machine, of its control group, or of its own limit (ulimit -v).
-/// Stored by the system. Not collective.
+/// Returns the memory in bytes that this process may use: the smallest of physical memory, limit of its control group
+/// and address space limit (ulimit -v). Not collective.
 double memory_limit();
 
-/// What to say where memory has ended: what this process has taken, what there is, and what helps.
+/// Returns a message for an out-of-memory error: memory used by this process, memory limit, and remedies.
 std::string out_of_memory();
 
 }  // namespace sprekk::base

@@ -1,4 +1,4 @@
-// Sums and extremes over all ranks, and what one of them knows. All are collective.
+// Reductions and broadcasts over all ranks. All functions are collective.
 #pragma once
 
 #include "base/types.hpp"
@@ -14,7 +14,7 @@ namespace sprekk::base {
 
 namespace detail {
 
-/// The numbers of nested arrays lie one after another.
+/// Pointer to the first number of nested arrays, which are contiguous.
 template <class T>
 T* first_number(T& value) {
   return &value;
@@ -30,7 +30,8 @@ const auto* first_number(const std::array<T, n>& values) {
 
 }  // namespace detail
 
-/// Of a number, or of a container of numbers or arrays, as long on all ranks, element by element.
+/// Reduces a number, or each element of a container of numbers or arrays. The container must have the same length on
+/// all ranks.
 template <class T>
 T over_ranks(const Comm& comm, Teuchos::EReductionType how, const T& here) {
   T all = here;
@@ -58,16 +59,16 @@ T min_over_ranks(const Comm& comm, const T& here) {
   return over_ranks(comm, Teuchos::REDUCE_MIN, here);
 }
 
-/// Whether it is so on any rank, or on all.
+/// True if `here` is true on any rank, or on all ranks.
 inline bool on_any_rank(const Comm& comm, bool here) { return max_over_ranks(comm, static_cast<int>(here)) != 0; }
 inline bool on_all_ranks(const Comm& comm, bool here) { return min_over_ranks(comm, static_cast<int>(here)) != 0; }
 
-/// Whether any rank's answer is yes; without a question it is no.
+/// True if `question` returns true on any rank. False without a function; then all ranks must be without one.
 inline bool any_rank(const Comm& comm, const std::function<bool()>& question) {
   return question && on_any_rank(comm, question());
 }
 
-/// What `rank` has: a number, or a text or vector of any length.
+/// Returns the value of `rank`: a number, or a text or vector of any length.
 template <class T>
 T of_rank(const Comm& comm, int rank, T here) {
   if constexpr (requires { here.resize(1); }) {
@@ -79,7 +80,7 @@ T of_rank(const Comm& comm, int rank, T here) {
   return here;
 }
 
-/// All ranks' numbers, those of the first rank first; lengths may differ.
+/// Concatenates the numbers of all ranks in the order of ranks. Lengths may differ.
 template <class T>
 std::vector<T> gather_over_ranks(const Comm& comm, std::vector<T> here) {
   std::vector<int> lengths(comm.getSize());

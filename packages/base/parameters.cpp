@@ -72,7 +72,7 @@ void Section::named_expressions(Expression::Named& target, const std::string& na
 
 void Section::expressions_call(const Tables& tables, Expression::Named& named) {
   if (mode_ != Mode::read) return;
-  const Table nothing{{-1e9, 1e9}, {0, 0}};  // in place of a table whose defect is reported, so that names are known
+  const Table nothing{{-1e9, 1e9}, {0, 0}};  // replaces an invalid table, so that its name is known
   auto callable = std::make_shared<Tables>();
   for (const auto& [name, table] : tables) {
     const std::string defect = defect_of_name("a table", name);
@@ -174,7 +174,7 @@ void Section::finish(const std::string& meaning) {
   specification_.meaning = meaning;
   if (mode_ != Mode::read) return;
   for (const auto& name : unknown_names()) {
-    if (is_unreadable(*input_->getEntryPtr(name)) && name[0] == '<') continue;  // it has no name
+    if (is_unreadable(*input_->getEntryPtr(name)) && name[0] == '<') continue;  // an element without a name
     const auto hint = hints_.find(without_separators(name));
     std::string help = hint == hints_.end() ? did_you_mean(name, names_) : hint->second;
     if (help.empty()) help = names_.empty() ? "; nothing is allowed here" : "; allowed are " + quoted_list(names_);

@@ -1,5 +1,5 @@
-// Parameters: one expression each, in the describe() of the struct that holds them, says what there is to know. The
-// same describe() reads the struct from a parameter list, writes it to one, and documents it.
+// Parameters. Each one is declared once, in the describe() of the struct that contains it. describe() reads the struct
+// from a parameter list, writes it to a list, and documents it.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -19,31 +19,31 @@
 
 namespace sprekk::base {
 
-/// What is wrong with the input.
+/// Errors in the input.
 struct Report {
-  std::vector<std::string> errors;           ///< a line each
-  std::set<std::string> defective;           ///< paths of the sections that have errors in them, `Sprekk > Mesh`
-  std::set<std::string> with_unknown_names;  ///< of those with unknown names: what they lack may be there, misspelt
+  std::vector<std::string> errors;           ///< one line each
+  std::set<std::string> defective;           ///< paths of sections with errors, e.g. `Sprekk > Mesh`
+  std::set<std::string> with_unknown_names;  ///< those with unknown names: a missing entry may be misspelt
 
   bool is_sound(const std::string& section) const { return !defective.count(section); }
 };
 
-/// An S as far as it could be read: what could not be is what it was before.
+/// Struct S read from the input; unreadable parts retain their default values.
 template <class S>
 struct Draft {
   S value{};
   Report report;
 };
 
-/// One section of the input, as a struct's `void describe(Section&)` sees it.
+/// Section of the input, the argument of `void describe(Section&)` of a struct.
 ///
 /// Targets of entries are double, int, long long, bool, std::string, Expression, vectors of double, int, string and
-/// Expression, and std::optional of those, which stay empty if the entry is absent. An entry's default is what the
-/// target holds when describe() is called. Units are those that value_in() knows, "-" for none; an array of expressions
-/// may have one for each element, "m, Pa".
+/// Expression, and std::optional of these. An absent optional entry stays empty. The default of an entry is the value
+/// of the target when describe() is called. Units are those of value_in(), "-" for none. An array of expressions may
+/// have one unit for each element, "m, Pa".
 class Section {
  public:
-  /// An entry that may be left out.
+  /// Declares an optional entry.
   template <class T>
   void entry(T& target, const std::string& name, const std::string& unit, const Bounds& bounds,
              const std::string& meaning) {
@@ -54,7 +54,7 @@ class Section {
     visit(target, {name, unit, any(), meaning, false, {}});
   }
 
-  /// An entry that must be there.
+  /// Declares a required entry.
   template <class T>
   void required(T& target, const std::string& name, const std::string& unit, const Bounds& bounds,
                 const std::string& meaning) {
@@ -65,7 +65,7 @@ class Section {
     visit(target, {name, unit, any(), meaning, true, {}});
   }
 
-  /// One word out of a list; T is std::string or an optional one.
+  /// Declares a word from a list of choices; T is std::string or std::optional<std::string>.
   template <class T>
   void choice(T& target, const std::string& name, const std::vector<std::string>& allowed, const std::string& meaning) {
     visit(target, {name, "-", any(), meaning, false, allowed});
@@ -76,51 +76,51 @@ class Section {
     visit(target, {name, "-", any(), meaning, true, allowed});
   }
 
-  /// A section of entries. One that is absent is read as if it were empty.
+  /// Declares a section of entries. An absent section is read as an empty one.
   template <class S>
   void section(S& target, const std::string& name, const std::string& meaning);
-  /// A section that may be absent, which leaves the target as it is.
+  /// Declares an optional section. If it is absent, the target is unchanged.
   template <class S>
   void section(std::optional<S>& target, const std::string& name, const std::string& meaning);
-  /// A section of sections with names that the user chooses.
+  /// Declares a section of sections with user-defined names.
   template <class S>
   void named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning);
-  /// The same with entries beside them, which common(section, first) describes; `first` is what each struct is before
-  /// it is read.
+  /// Declares a section of sections with user-defined names, and common entries described by common(section, first).
+  /// Each struct is a copy of `first` before it is read.
   template <class S, class Common>
   void named_sections(std::map<std::string, S>& target, const std::string& name, const std::string& meaning,
                       const Common& common);
-  /// A section of expressions with names that the user chooses, which expressions_call() may compile.
+  /// Declares a section of expressions with user-defined names, to be compiled by expressions_call().
   void named_expressions(Expression::Named& target, const std::string& name, const std::string& meaning);
-  /// A section that is handed on as it is.
+  /// Declares a section that is copied unchanged.
   void passthrough(Teuchos::ParameterList& target, const std::string& name, const std::string& meaning);
 
-  /// All sections that are not described before, handed on as they are.
+  /// Copies all sections not described before, unchanged.
   void other_sections(Teuchos::ParameterList& target, const std::string& meaning);
 
-  /// What to say of names that are unknown here but common elsewhere, compared without_separators(): `Did you mean
-  /// "normal stiffness"?` of "kn".
+  /// Adds a hint to the error message for names that are unknown here but common elsewhere, e.g. `Did you mean "normal
+  /// stiffness"?` for "kn". Names are compared by without_separators().
   void hint(const std::vector<std::string>& names, const std::string& what);
 
-  /// Reports what no single entry can tell, e.g. that two of them contradict each other; heard only while reading.
+  /// Reports an error that involves several entries, e.g. a contradiction. Ignored except while reading.
   void fail(const std::string& what);
   void fail(const std::string& entry, const std::string& what);
-  /// The same of something further inside: `what` opens with its path, e.g. `Bulk > "material": is ...`.
+  /// Reports an error inside a subsection. `what` begins with its path, e.g. `Bulk > "material": is ...`.
   void fail_inside(const std::string& what);
 
-  /// The tables and named expressions that the expressions of all later entries may call, and with which they are
-  /// compiled; the named ones are compiled here, and may call each other. Without this call expressions are not
+  /// Defines the tables and named expressions that the expressions of all later entries may call. Compiles the named
+  /// expressions, which may call each other, and then all later expressions. Without this call expressions are not
   /// compiled.
   void expressions_call(const Tables& tables, Expression::Named& named);
 
-  /// Whether nothing that this section has described so far is wrong.
+  /// True if no error has been found so far in this section.
   bool is_sound() const { return mode_ != Mode::read || report_->errors.size() == n_errors_before_; }
 
-  /// Whether all that the section could have is asked for, not what it has.
+  /// True while the available parameters are documented, not read or written.
   bool documents() const { return mode_ == Mode::document; }
 
-  /// Whether this section was read without an error and has no name that is not yet described: so that describe() can
-  /// compare entries after the last of them. A misspelt entry is not also told as a missing one.
+  /// True if this section was read without errors and all its names have been described. describe() may then compare
+  /// entries after the last declaration. So a misspelt entry is not reported a second time as missing.
   bool complete() const;
 
   template <class S>
@@ -145,28 +145,28 @@ class Section {
 
   template <class T>
   void visit(T& target, const Spec& spec);
-  /// Describes a struct by a section inside of this one, on `input` or `output`.
+  /// Describes a struct by a subsection, with `input` or `output`.
   template <class S>
   void descend(S& target, const std::string& name, const Teuchos::ParameterList* input, Teuchos::ParameterList* output,
                const std::string& meaning);
 
   Section child(const std::string& name) const;
   std::string place(const std::string& entry) const;                 ///< `file: path > "entry"`
-  const Teuchos::ParameterEntry* find(const Spec& spec);             ///< reports a required entry that is missing
-  const Teuchos::ParameterList* find_list(const std::string& name);  ///< null if absent; reports an entry of that name
-  bool is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry);        ///< reports a text that is not
-  void refuse_units(const Teuchos::ParameterList& list, const std::string& path);  ///< of a list that is handed on
-  bool is_unreadable(const Teuchos::ParameterEntry& entry);                        ///< reports what is in place of it
-  /// Adds the specification of an entry, whose default is in `defaults`, if there is one.
+  const Teuchos::ParameterEntry* find(const Spec& spec);             ///< reports a missing required entry
+  const Teuchos::ParameterList* find_list(const std::string& name);  ///< null if absent; reports an entry in its place
+  bool is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry);  ///< reports a word that is not a choice
+  void refuse_units(const Teuchos::ParameterList& list, const std::string& path);  ///< reports units in a copied list
+  bool is_unreadable(const Teuchos::ParameterEntry& entry);  ///< reports the message of an unreadable entry
+  /// Adds the specification of an entry. `defaults` contains its default, if any.
   void document(const Spec& spec, const std::string& type, const Teuchos::ParameterList& defaults);
   std::vector<std::string> unknown_names() const;
-  void finish(const std::string& meaning);  ///< reports names that are unknown; completes the specification
-  void note_defects();                      ///< that were reported since this section was opened
+  void finish(const std::string& meaning);  ///< reports unknown names; completes the specification
+  void note_defects();                      ///< marks this section if errors were reported since its beginning
 
   Mode mode_;
   std::string path_;                          ///< `Sprekk > Materials > joint`
-  std::vector<std::string> names_;            ///< of all entries and sections described so far
-  std::map<std::string, std::string> hints_;  ///< what to say of unknown names, without separators
+  std::vector<std::string> names_;            ///< names of all entries and sections described so far
+  std::map<std::string, std::string> hints_;  ///< hints by unknown name without separators
   // reading
   std::string file_;
   const Teuchos::ParameterList* input_ = nullptr;
@@ -180,18 +180,18 @@ class Section {
   SectionSpecification specification_;
 };
 
-/// An S filled from `list` as far as possible, and what is wrong, after `errors` that are known before; `file` and
-/// `root` open the paths in messages. The same on all ranks if the list is.
+/// Reads an S from `list` as far as possible and collects errors after the known `errors`. `file` and `root` begin the
+/// paths in messages. The result is the same on all ranks if the list is.
 template <class S>
 Draft<S> draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
                std::vector<std::string> errors = {}) {
   return Section::draft<S>(list, file, root, std::move(errors));
 }
 
-/// Throws one Error with all lines, if there are any.
+/// Throws one Error with all lines if there are any.
 void throw_errors(const std::vector<std::string>& errors);
 
-/// The same, where everything must be right: throws one Error with a line for each thing that is wrong.
+/// Reads an S from `list`. Throws one Error with one line for each error.
 template <class S>
 S read(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
        std::vector<std::string> errors = {}) {
@@ -200,14 +200,14 @@ S read(const Teuchos::ParameterList& list, const std::string& file, const std::s
   return std::move(result.value);
 }
 
-/// All parameters with their values, defaults included; read() turns it back into an equal S. Every required entry of
-/// `target` must hold a value.
+/// Returns all parameters with their values, including defaults. read() reproduces an equal S. Every required entry of
+/// `target` must have a value.
 template <class S>
 Teuchos::ParameterList effective(S& target, const std::string& root) {
   return Section::effective(target, root);
 }
 
-/// All entries and sections that S{} can have.
+/// Returns all entries and sections available in S.
 template <class S>
 SectionSpecification specification(const std::string& root) {
   return Section::specification<S>(root);
@@ -246,7 +246,7 @@ void Section::section(S& target, const std::string& name, const std::string& mea
   names_.push_back(name);
   const Teuchos::ParameterList nothing;
   const auto* input = mode_ == Mode::read ? find_list(name) : nullptr;
-  if (mode_ == Mode::read && !input && input_->isParameter(name)) return;  // not a section, which is reported
+  if (mode_ == Mode::read && !input && input_->isParameter(name)) return;  // not a section: already reported
   auto* output = mode_ == Mode::write ? &output_->sublist(name) : nullptr;
   descend(target, name, input ? input : &nothing, output, meaning);
 }

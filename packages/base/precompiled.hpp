@@ -1,5 +1,5 @@
-// Headers outside of Sprekk that most source files of the packages read: compiled once, before them. A source includes
-// the headers that it uses nevertheless.
+// External headers used by most source files of the packages, compiled once. A source file still includes the headers
+// that it uses.
 #pragma once
 
 #include <Kokkos_Core.hpp>

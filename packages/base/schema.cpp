@@ -1,6 +1,6 @@
-// The RELAX NG of a specification. The order of a parameter list is free, but the interleave of RELAX NG cannot tell
-// elements of one name apart. So the content of a section that needs the entries a and b is: anything else, then either
-// a and the content of a section that needs b, or b and that of one that needs a.
+// RELAX NG schema of a specification. The order of a parameter list is free, but the interleave of RELAX NG cannot
+// distinguish elements of the same name. The content of a section with required entries a and b is therefore: optional
+// elements, then either a and the content of a section that requires b, or b and the content of one that requires a.
 #include <fmt/format.h>
 
 #include <cctype>
@@ -12,7 +12,7 @@ namespace sprekk::base {
 
 namespace {
 
-/// The attributes type and value: one of `types`, and what matches a regular expression.
+/// Attributes type (one of `types`) and value (matches a regular expression).
 std::string typed(const std::vector<std::string>& types, const std::string& pattern) {
   std::string names;
   for (const auto& type : types) names += fmt::format("<value>{}</value>", type);
@@ -35,7 +35,7 @@ const char* const integer = "\\s*[+\\-]?[0-9]+\\s*";
 const char* const number = "\\s*([+\\-]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+\\-]?[0-9]+)?|-?infinite)\\s*";
 const char* const anything = "(.|\\n|\\r)*";
 
-/// The attributes of all types of entries, by the names that attributes_of() gives them.
+/// Definitions of the attributes of all entry types, with the names used by attributes_of().
 std::string value_definitions() {
   const std::string any_list = std::string("\\s*\\{") + anything + "\\}\\s*";
   std::string text = definition("int", typed({"int", "long long"}, integer)) +
@@ -84,14 +84,14 @@ std::string element(const std::string& tag, const std::string& name, const std::
 
 std::string reference_to(const std::string& name) { return fmt::format("      <ref name=\"{}\"/>\n", name); }
 
-/// A name that a definition can have, from a path like "Sprekk > Mesh".
+/// Converts a path like "Sprekk > Mesh" to a valid name of a definition.
 std::string identifier(const std::string& path) {
   std::string name;
   for (char c : path) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
 }
 
-/// The definitions of a section and of all inside of it.
+/// Definitions of a section and its subsections.
 std::string section_definitions(const SectionSpecification& section, const std::string& path) {
   const std::string name = identifier(path);
   std::string optional, inner;

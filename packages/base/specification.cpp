@@ -8,7 +8,7 @@ namespace sprekk::base {
 
 namespace {
 
-/// For a cell of a Markdown table.
+/// Escapes a text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string escaped;
   for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -37,7 +37,7 @@ std::string to_markdown(const SectionSpecification& section, const std::string& 
     else
       inner += to_markdown(child, fmt::format("{} > {}", path, child.name.empty() ? "NAME" : child.name));
   }
-  // a list of sections alone needs no heading of its own
+  // A section that contains only sections has no heading.
   if (section.meaning.empty() && rows.empty()) return inner;
   std::string text = fmt::format("## {}\n\n", path);
   if (!section.meaning.empty()) text += section.meaning + "\n\n";

@@ -1,4 +1,4 @@
-// What a program knows of its parameters, as data, and as documents for people and for editors.
+// Specification of the parameters of a program as data, and its output as Markdown and as an XML schema.
 #pragma once
 
 #include <string>
@@ -8,32 +8,32 @@
 
 namespace sprekk::base {
 
-/// An entry of a section.
+/// Entry of a section.
 struct EntrySpecification {
-  std::string name;  ///< empty if the user chooses it
+  std::string name;  ///< empty if user-defined
   std::string type, unit;
-  std::string value;  ///< the default, "absent" or "required"
+  std::string value;  ///< default, "absent" or "required"
   std::string meaning;
   Bounds bounds;
   bool required;
-  std::vector<std::string> choices;  ///< if not empty, all allowed values
+  std::vector<std::string> choices;  ///< all allowed values; empty: no restriction
 };
 
-/// A section with its entries and sections.
+/// Section with its entries and subsections.
 struct SectionSpecification {
-  std::string name;  ///< empty if the user chooses it
+  std::string name;  ///< empty if user-defined
   std::string meaning;
   std::vector<EntrySpecification> entries;
   std::vector<SectionSpecification> sections;
-  bool open = false;  ///< handed on as it is, anything may be inside
+  bool open = false;  ///< copied unchanged; any content
 };
 
-/// Markdown: for every section a table with one row for each entry. `path` leads to the section: "Sprekk > Solver".
-/// Sections named by the user are called NAME.
+/// Returns Markdown with a table for each section and a row for each entry. `path` is the path of the section, "Sprekk
+/// > Solver". User-defined names are printed as NAME.
 std::string to_markdown(const SectionSpecification& section, const std::string& path);
 
-/// A RELAX NG schema (XML syntax) of files whose outermost list is any of `roots`: names, types, words that are
-/// choices, and required entries of the sections that are there; not bounds, nor that names occur once.
+/// Returns a RELAX NG schema (XML syntax) of files whose outermost list is any of `roots`. It contains names, types,
+/// choices, and required entries of present sections. It does not check bounds and duplicate names.
 std::string to_relax_ng(const std::vector<SectionSpecification>& roots);
 
 }  // namespace sprekk::base

@@ -11,21 +11,21 @@ namespace sprekk::base {
 
 class Section;
 
-/// Points (arguments[i], values[i]), joined by straight lines; not defined outside of them.
+/// Linear interpolation of the points (arguments[i], values[i]); undefined outside.
 struct Table {
   std::vector<Real> arguments, values;
 
   void describe(Section& section);
 
-  /// What is wrong with the points: fewer than two, lengths that differ, values that are not finite, arguments that do
-  /// not increase strictly; empty if nothing is.
+  /// Returns an error message, or "". Errors: fewer than two points, different lengths, values that are not finite,
+  /// arguments that do not increase strictly.
   std::string defect() const;
 
-  /// The value at `argument`. Throws an Error with the argument and the range if it lies outside.
+  /// Value at `argument`. Throws an Error with the argument and the range if it is outside.
   Real operator()(Real argument) const;
 };
 
-/// Tables by the names under which expressions call them.
+/// Tables by their names in expressions.
 using Tables = std::map<std::string, Table>;
 
 }  // namespace sprekk::base

@@ -28,7 +28,7 @@ std::optional<T> parse_whole(std::string_view text) {
   return value;
 }
 
-/// The number of insertions, deletions, replacements and swaps of neighbours that turn a into b.
+/// Number of insertions, deletions, replacements and swaps of neighbours that convert a to b.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -113,7 +113,7 @@ std::string number_text(Real value) {
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 40;  // in a message; the nearest name is given separately
+  constexpr std::size_t most = 40;  // in a message; the most similar name is given separately
   std::string text;
   for (std::size_t k = 0; k < std::min(most, names.size()); ++k)
     text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(names[k]));
@@ -124,7 +124,7 @@ std::string shortened(const std::string& text) {
   constexpr std::size_t longest = 200, shown = 60;
   if (text.size() <= longest) return text;
   std::size_t end = shown;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // within a character of UTF-8
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // inside a UTF-8 character
   return fmt::format("{}... ({} bytes)", text.substr(0, end), text.size());
 }
 

@@ -1,4 +1,4 @@
-// Time spent in named phases, on the clock and by this process, and memory.
+// Wall-clock and CPU time of named phases, and peak memory.
 #pragma once
 
 #include <sys/resource.h>
@@ -11,15 +11,15 @@
 
 namespace sprekk::base {
 
-/// Time of phases on this rank: `auto scope = timers.scope("assembly");` adds the life of `scope`. Phases may lie
-/// inside of each other; each counts its whole time.
+/// Time of phases on this rank: `auto scope = timers.scope("assembly");` adds the lifetime of `scope`. Phases may be
+/// nested; each includes its inner phases.
 class Timers {
  public:
   struct Phase {
     std::string name;
-    double seconds = 0;      ///< on the clock
-    double cpu_seconds = 0;  ///< of this process: what others take of the machine does not count
-    long long count = 0;     ///< how often it was entered
+    double seconds = 0;      ///< wall-clock time
+    double cpu_seconds = 0;  ///< CPU time of this process
+    long long count = 0;     ///< number of calls
   };
 
   class Scope {
@@ -50,13 +50,13 @@ class Timers {
     return Scope(*this, phase);
   }
 
-  const std::vector<Phase>& phases() const { return phases_; }  ///< in the order of their first use
+  const std::vector<Phase>& phases() const { return phases_; }  ///< in the order of first use
 
  private:
   std::vector<Phase> phases_;
 };
 
-/// The largest amount of memory that this process has held so far, in bytes.
+/// Returns the peak memory of this process in bytes.
 inline std::size_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

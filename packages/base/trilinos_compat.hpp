@@ -1,4 +1,4 @@
-// The one place that knows names which differ between Trilinos 13.2, with Kokkos 3.4, and later ones.
+// Names that differ between Trilinos 13.2 with Kokkos 3.4 and later versions. They occur in this file only.
 #pragma once
 
 #include <Kokkos_Core.hpp>
@@ -9,7 +9,8 @@ namespace sprekk::base {
 
 namespace detail {
 
-// The second argument, 0, prefers the first function of each pair: names since Trilinos 13.4. Then those before.
+// The second argument, 0, prefers the first function of each pair (names since Trilinos 13.4) to the second (older
+// names).
 template <class Map>
 auto n_elements(const Map& map, int) -> decltype(map.getLocalNumElements()) {
   return map.getLocalNumElements();
@@ -53,7 +54,7 @@ auto n_entries(const Matrix& matrix, long) -> decltype(matrix.getNodeNumEntries(
 
 }  // namespace detail
 
-/// What a map of Tpetra has on this rank: how many indices, and these, in their local order.
+/// Number and list of the indices of a Tpetra map on this rank, in local order.
 template <class Map>
 std::size_t n_local_elements(const Map& map) {
   return detail::n_elements(map, 0);
@@ -63,7 +64,7 @@ auto local_elements(const Map& map) {
   return detail::elements(map, 0);
 }
 
-/// What a matrix of Tpetra has on this rank.
+/// Number of rows, columns and entries of a Tpetra matrix on this rank.
 template <class Matrix>
 std::size_t n_local_rows(const Matrix& matrix) {
   return detail::n_rows(matrix, 0);

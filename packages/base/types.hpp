@@ -1,4 +1,4 @@
-// The few types that every package speaks.
+// Types used by all packages.
 #pragma once
 
 #include "base/view.hpp"

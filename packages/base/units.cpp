@@ -14,7 +14,7 @@ namespace sprekk::base {
 
 namespace {
 
-/// factor 10^ten m^a kg^b s^c rad^d K^e with the powers a, b, c, d, e.
+/// Unit factor 10^ten m^a kg^b s^c rad^d K^e with the powers a, b, c, d, e.
 struct Unit {
   std::array<int, 5> powers;
   int ten;
@@ -34,7 +34,7 @@ constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1, 0}, 0, radians}; }
 constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
 
 constexpr Real foot = 0.3048, inch = foot / 12, darcy = 9.869232667160128e-13;  // 1 cP cm^2/s/atm
-constexpr Real psi = 4.4482216152605 / (inch * inch);                           // a pound-force per square inch
+constexpr Real psi = 4.4482216152605 / (inch * inch);                           // pound-force per square inch
 constexpr std::array<Symbol, 41> symbols{{{"m", true, length},
                                           {"micron", false, {length.powers, -6, 1}},
                                           {"microns", false, {length.powers, -6, 1}},
@@ -92,7 +92,7 @@ constexpr std::array<Prefix, 10> prefixes{{{"", 0},
                                            {"\u03bc", -6},
                                            {"n", -9}}};
 
-/// What a user is offered in place of the first symbol of a unit.
+/// Units listed in messages instead of the first symbol of a unit.
 constexpr std::array<std::array<const char*, 6>, 11> offered{{{"Pa", "kPa", "MPa", "GPa", "bar", "psi"},
                                                               {"m", "km", "cm", "mm", "um", "ft"},
                                                               {"s", "min", "h", "day", "year"},
@@ -105,13 +105,13 @@ constexpr std::array<std::array<const char*, 6>, 11> offered{{{"Pa", "kPa", "MPa
                                                               {"K", "\u00b0C", nullptr, nullptr, nullptr},
                                                               {"degree", "rad", nullptr, nullptr, nullptr}}};
 
-/// 0 degrees Celsius in K; names of that scale, which is no multiple of K.
+/// 0 degrees Celsius in K, and names of this scale, which is not a multiple of K.
 constexpr Real zero_celsius = 273.15;
 constexpr std::array<std::string_view, 3> celsius{"\u00b0C", "degC", "\u2103"};
 
 bool is_celsius(std::string_view name) { return std::find(celsius.begin(), celsius.end(), name) != celsius.end(); }
 
-/// Raised digits and points as text of ASCII: "kg/m\u00b3" -> "kg/m^3", "Pa\u00b7s" and "Pa.s" -> "Pa*s".
+/// Replaces superscripts and dots by ASCII: "kg/m\u00b3" -> "kg/m^3", "Pa\u00b7s" and "Pa.s" -> "Pa*s".
 std::string plain(std::string text) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> written{{{"\u207b\u00b9", "^-1"},
                                                                                   {"\u207b\u00b2", "^-2"},
@@ -130,7 +130,7 @@ bool opens_symbol(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;
 }
 
-/// Calls use(name, unit) for every symbol with every prefix that it takes.
+/// Calls use(name, unit) for every symbol with each admissible prefix.
 template <class Use>
 void for_each_symbol(const Use& use) {
   for (const auto& symbol : symbols)
@@ -149,14 +149,14 @@ Unit unit_called(const std::string& name) {
   });
   if (found) return *found;
   if (is_celsius(name)) throw Error(fmt::format("\"{}\" can only stand alone, for an entry in K; write K here", name));
-  std::vector<std::string> usual;  // nobody means "Gs"
+  std::vector<std::string> usual;  // common units only, e.g. not "Gs"
   for (const auto& row : offered)
     for (const char* unit : row)
       if (unit) usual.emplace_back(unit);
   throw Error(fmt::format("unknown unit \"{}\"{}", name, did_you_mean(name, usual)));
 }
 
-/// a b^power
+/// Returns a b^power.
 Unit product(Unit a, const Unit& b, int power) {
   for (std::size_t i = 0; i < a.powers.size(); ++i) a.powers[i] += power * b.powers[i];
   a.ten += power * b.ten;
@@ -164,13 +164,13 @@ Unit product(Unit a, const Unit& b, int power) {
   return a;
 }
 
-/// Reads a whole text as a unit; throws an Error.
+/// Parses a whole text as a unit. Throws an Error if it is invalid.
 class UnitParser {
  public:
   explicit UnitParser(const std::string& text) : text_(plain(text)), given_(text) {}
 
   Unit parse() {
-    constexpr std::size_t longest = 40;  // the parser descends into parentheses
+    constexpr std::size_t longest = 40;  // limits the recursion into parentheses
     if (text_.size() > longest) fail();
     const Unit unit = factors();
     if (at_ != text_.size()) fail();
@@ -223,7 +223,7 @@ class UnitParser {
   std::size_t at_ = 0;
 };
 
-/// value 10^ten, rounded once, as if the exponent were written behind the number.
+/// Returns value 10^ten with a single rounding, like a number written with this exponent.
 Real shifted(Real value, int ten) {
   std::string digits = number_text(value);
   if (const auto e = digits.find('e'); e != digits.npos) {
@@ -283,7 +283,7 @@ std::string defect_of_unit(const std::string& unit) {
 
 namespace {
 
-/// In an expression t would be the time.
+/// True if the unit contains t. A user may have meant the time.
 bool has_tonne(const std::string& unit) {
   const auto is_letter = [&](std::size_t at) {
     return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at]));

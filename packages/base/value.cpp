@@ -14,7 +14,7 @@ namespace {
 
 using Teuchos::Array;
 
-/// Calls use(T(), "name of T") for every type of value that XML can carry.
+/// Calls use(T(), "name of T") for every type that XML can represent.
 template <class Use>
 void for_each_type(const Use& use) {
   use(int(), "int");
@@ -72,7 +72,7 @@ std::string write(double value) { return number_text(value); }
 std::string write(const Quantity& value) { return quantity_text(value); }
 std::string write(bool value) { return value ? "true" : "false"; }
 std::string write(const std::string& value) { return value; }
-/// With quotes where a list's element needs them. Text with both kinds of quotes cannot be an element.
+/// Adds quotes if the element of a list requires them. A text with both kinds of quotes cannot be an element.
 std::string element_text(const std::string& value) {
   const auto read_back = parse_list("{" + value + "}");
   if (read_back && read_back->size() == 1 && read_back->front() == value) return value;
@@ -90,7 +90,7 @@ template <class T>
 void set(Teuchos::ParameterList& list, const std::string& name, const T& value) {
   list.set(name, value);
 }
-/// Without units, a double or an array of them.
+/// Sets a double, or an array of doubles, if there are no units.
 void set(Teuchos::ParameterList& list, const std::string& name, const Quantity& value) {
   value.unit.empty() ? list.set(name, value.value) : list.set(name, value);
 }
@@ -109,7 +109,7 @@ void set_from_text(Teuchos::ParameterList& list, const std::string& name, const 
   std::vector<std::string> types;
   for_each_type([&](auto value, const char* candidate) {
     using T = decltype(value);
-    if constexpr (!std::is_same_v<T, double> && !std::is_same_v<T, Array<double>>) {  // they are read as quantities
+    if constexpr (!std::is_same_v<T, double> && !std::is_same_v<T, Array<double>>) {  // read as quantities
       types.push_back(candidate);
       if (type != candidate) return;
       parse(text, value);

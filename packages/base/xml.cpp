@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t largest_file = std::size_t(64) << 20;  // bytes
 
-/// Refuses what the XML parser would take amiss: text that is not UTF-8, and references to characters beyond ASCII.
+/// Throws an Error for characters that the XML parser does not handle: invalid UTF-8, and references beyond ASCII.
 void check_characters(const std::string& text, const std::string& file) {
   const auto line = [&](std::size_t at) { return 1 + std::count(text.begin(), text.begin() + at, '\n'); };
   const auto bad = where_not_utf8(text);
@@ -41,7 +41,7 @@ void check_characters(const std::string& text, const std::string& file) {
   }
 }
 
-/// What a Teuchos exception says, without the source line and the test that threw it, on one printable line.
+/// Returns the message of a Teuchos exception on one printable line, without source line and failed test.
 std::string reason(const std::string& what) {
   const std::string test = "Throw test that evaluated to true:";
   std::string text = what;
@@ -57,7 +57,7 @@ std::string reason(const std::string& what) {
   return text;
 }
 
-/// Refuses elements so deep inside of each other that recursion would exhaust the stack.
+/// Throws an Error if nested elements are so deep that recursion could exhaust the stack.
 void check_depth(const std::string& text, const std::string& file) {
   constexpr int limit = 1000;
   int depth = 0;
@@ -76,8 +76,8 @@ void check_depth(const std::string& text, const std::string& file) {
   }
 }
 
-/// Converts the children of an XML element. What cannot be read becomes an Unreadable, whose message opens with
-/// `place`; what has no name gets one that opens with "<".
+/// Converts the children of an XML element. An unreadable child becomes an Unreadable with a message that begins with
+/// `place`. A child without a name gets a name that begins with "<".
 class Converter {
  public:
   static void fill(ParameterList& list, const XMLObject& element, const std::string& place) {
@@ -141,7 +141,8 @@ void write_list(std::string& text, const ParameterList& list, const std::string&
   text += indent + "</ParameterList>\n";
 }
 
-/// The first name in a path like "Time.step.size": the longest that `list` has, else what is before the first ".".
+/// Returns the first name in a path like "Time.step.size": the longest one in `list`, else the text before the first
+/// ".".
 std::string first_name(const ParameterList& list, const std::string& path) {
   std::string name;
   for (const auto& named_entry : list) {
@@ -161,7 +162,7 @@ bool set_if_it_is(ParameterList& list, const std::string& name, const std::strin
   return true;
 }
 
-/// Whether an entry is a text like "25 GPa", which may stand for a number.
+/// True for a text like "25 GPa", which can replace a number.
 bool is_quantity_in_text(const Teuchos::ParameterEntry& entry) {
   if (!entry.isType<std::string>()) return false;
   const auto quantity = parse_quantity(Teuchos::getValue<std::string>(entry));

@@ -1,4 +1,4 @@
-// Scene files: XML parameter lists, read strictly.
+// Scene files: XML parameter lists with strict checks.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -9,32 +9,32 @@
 
 namespace sprekk::base {
 
-/// What becomes of duplicate names, unknown elements, attributes and types, and values that are not of their type: an
-/// Error with a line for each of them, or an Unreadable in their places, of which base::read tells.
+/// Treatment of duplicate names, unknown elements, attributes and types, and values of a wrong type. `refuse` throws
+/// one Error with a line for each. `keep` puts an Unreadable in their place, which base::read reports.
 enum class Defects { refuse, keep };
 
-/// The parameter list in the file at `path`, whose outermost list must be called `root`. Rank 0 reads. Throws an Error
-/// with the file and the line or the path in it if it cannot be read, is larger than 64 MiB, not UTF-8, or not
-/// well-formed XML. Collective.
+/// Reads the parameter list in the file at `path`. The outermost list must have the name `root`. Rank 0 reads the file.
+/// Throws an Error with the file and the line or path in it if the file is unreadable, larger than 64 MiB, not UTF-8,
+/// or not well-formed XML. Collective.
 Teuchos::ParameterList read_xml(const Comm& comm, const std::string& path, const std::string& root,
                                 Defects defects = Defects::refuse);
 
-/// The same from text; `file` names it in messages. Not collective.
+/// Reads the parameter list in a text; `file` is its name in messages. Throws as read_xml(). Not collective.
 Teuchos::ParameterList parse_xml(const std::string& text, const std::string& file, const std::string& root,
                                  Defects defects = Defects::refuse);
 
-/// Text that parse_xml turns back into exactly the same list. Throws an Error if an entry has a type that XML cannot
-/// carry.
+/// Returns the text from which parse_xml() reproduces exactly the same list. Throws an Error if XML cannot represent
+/// the type of an entry.
 std::string to_xml(const Teuchos::ParameterList& list);
 
-/// Applies "Section.Inner section.entry name=value" to `list`; sections that are not there are added. The value keeps
-/// the type of the entry that it replaces if it can be read as such, a text with a unit standing for a number, else it
-/// is the first it can be of int, double, bool, {a, b} of int, double or string, and string. Throws an Error if the
-/// text has no "=", or its path ends at a section or leads through an entry.
+/// Applies "Section.Inner section.entry name=value" to `list` and adds missing sections. The value has the type of the
+/// entry that it replaces, if possible. Otherwise it has the first possible type of int, double, bool, {a, b} of int,
+/// double or string, and string. An existing text with a unit counts as a number. Throws an Error if the text has no
+/// "=", or if its path ends at a section or passes through an entry.
 void apply_override(Teuchos::ParameterList& list, const std::string& text);
 
-/// Applies all that can be applied to a list, in their order; of the others what apply_override throws, after `file`,
-/// which the list was read from.
+/// Applies all valid overrides in their order. Returns the messages of the others, which begin with `file`, the name of
+/// the list's file.
 std::vector<std::string> apply_overrides(Teuchos::ParameterList& list, const std::string& file,
                                          const std::vector<std::string>& texts);
 
