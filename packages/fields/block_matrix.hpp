@@ -1,4 +1,4 @@
-// A matrix of named blocks.
+// Matrix of named blocks.
 #pragma once
 
 #include "fields/kept_rows.hpp"
@@ -8,8 +8,8 @@
 
 namespace sprekk::fields {
 
-/// n x n blocks of Tpetra matrices; a block that no module writes is absent (null). Row maps, domain and range maps of
-/// block (i, j) are the owned maps of blocks i and j.
+/// Matrix of n x n Tpetra matrices. A block without contributions is null. Block (i, j) has the owned map of block i as
+/// row and range map, and the owned map of block j as domain map.
 class BlockMatrix {
  public:
   explicit BlockMatrix(int n_blocks = 0) : n_(n_blocks), blocks_(n_blocks * n_blocks), kept_(n_blocks) {}
@@ -18,15 +18,15 @@ class BlockMatrix {
   const RCP<CrsMatrix>& operator()(int row, int column) const { return blocks_[row * n_ + column]; }
   RCP<CrsMatrix>& operator()(int row, int column) { return blocks_[row * n_ + column]; }
 
-  /// From now on block (b, b) is stored in another matrix, as `kept` knows; (b, b) itself is null.
+  /// Declares that block (b, b) is stored in another matrix, described by `kept`. The block itself becomes null.
   void share(int b, const std::shared_ptr<KeptRows>& kept) {
     (*this)(b, b) = Teuchos::null;
     kept_[b] = kept;
   }
-  /// Null where (b, b) stands by itself.
+  /// Returns the storage of block (b, b) in another matrix; null if the block is stored here.
   const std::shared_ptr<KeptRows>& kept(int b) const { return kept_[b]; }
 
-  /// y = sum_j A_ij x_j for every i. Collective.
+  /// Computes y_i = sum_j A_ij x_j for every i. Collective.
   void apply(const BlockVector& x, BlockVector& y) const {
     for (int i = 0; i < n_; ++i) {
       y[i]->putScalar(0);
@@ -38,7 +38,7 @@ class BlockMatrix {
     }
   }
 
-  /// y += A_ij x, x with ghosts; nothing where the block is absent. Local.
+  /// Computes y += A_ij x with the ghosts of x. No effect if the block is absent. Local.
   void add_local_product(int i, int j, const Vector& x, Vector& y) const {
     if (i == j && kept_[i])
       kept_[i]->add_local_product(x, y);
@@ -49,7 +49,7 @@ class BlockMatrix {
  private:
   int n_;
   std::vector<RCP<CrsMatrix>> blocks_;
-  std::vector<std::shared_ptr<KeptRows>> kept_;  // [block on the diagonal]
+  std::vector<std::shared_ptr<KeptRows>> kept_;  // [diagonal block]
 };
 
 }  // namespace sprekk::fields

@@ -1,4 +1,4 @@
-// What a solver needs to know of a problem, and all that it may know: the meeting point of physics and solve.
+// Interface between physics and solvers: all that a solver knows of a problem.
 #pragma once
 
 #include "fields/block_matrix.hpp"
@@ -12,14 +12,13 @@
 
 namespace sprekk::fields {
 
-/// Vectors that a matrix makes small, [owned unknown, mode], which are made when they are asked for. make() is
-/// collective where there are any.
+/// Near-null-space vectors of a matrix, [owned unknown, mode], computed on demand. make() is collective if n() > 0.
 class Modes {
  public:
   Modes() = default;
   Modes(int n, std::function<RCP<const MultiVector>()> make) : n_(n), make_(std::move(make)) {}
 
-  int n() const { return n_; }  ///< 0: there are none
+  int n() const { return n_; }  ///< number of vectors
   RCP<const MultiVector> make() const { return n_ > 0 ? make_() : Teuchos::null; }
 
  private:
@@ -27,40 +26,40 @@ class Modes {
   std::function<RCP<const MultiVector>()> make_;
 };
 
-/// A block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components +
-/// component, in local and in global numbering.
+/// Block of unknowns. The unknowns of one entity (node, fracture face) are adjacent: entity * n_components + component,
+/// in local and in global numbering.
 struct Block {
   std::string name;
   RCP<const Map> map;                  ///< owned unknowns
   int n_components;                    ///< unknowns per entity
-  Real kinematic_scale;                ///< typical size of an unknown of this block under the present loads
-  Real residual_scale;                 ///< typical size of a row of this block under the present loads
-  RCP<const MultiVector> coordinates;  ///< [owned entity, dim], metre; null where multigrid has no use for it
-  Modes near_null_space;               ///< none likewise
-  /// Of order 2: from the unknowns of order 1 that multigrid starts from, and that coordinates and near_null_space
-  /// belong to, to those of the block. Null: multigrid starts from the block itself.
+  Real kinematic_scale;                ///< typical size of an unknown under the present loads
+  Real residual_scale;                 ///< typical size of a row under the present loads
+  RCP<const MultiVector> coordinates;  ///< [owned entity, dim], m; null if not used by multigrid
+  Modes near_null_space;               ///< empty if not used by multigrid
+  /// For elements of order 2: interpolation from the unknowns of order 1 to those of the block. Multigrid then starts
+  /// from order 1, and coordinates and near_null_space are those of order 1. Null: multigrid starts from the block.
   RCP<const CrsMatrix> interpolation = {};
-  std::string enriches = "";        ///< the block whose functions it adds to: multigrid smooths it with that one
-  std::string condensed_into = "";  ///< its own matrix is about diagonal: preconditioners eliminate it from this block
-  bool advected = false;            ///< a flow carries it: its own matrix may be far from symmetric
-  bool balance = false;             ///< its rows are balances of rates: they may differ by many orders of magnitude
+  std::string enriches = "";        ///< block enriched by this one; multigrid smooths both together
+  std::string condensed_into = "";  ///< its matrix is nearly diagonal: preconditioners eliminate it into this block
+  bool advected = false;            ///< advected by a flow: its matrix may be far from symmetric
+  bool balance = false;             ///< its rows are rate balances, which may differ by many orders of magnitude
 };
 
-/// Blocks whose unknowns couple only within one entity among themselves, so that they can be eliminated entity by
-/// entity. The i-th owned entity holds the unknowns i * n_components(b) ... of every block b of the group.
+/// Blocks with couplings among themselves within one entity only, eliminated entity by entity. The i-th owned entity
+/// has the unknowns i * n_components(b) ... of every block b of the group.
 struct LocalGroup {
   std::string name;
   std::vector<int> blocks;
 };
 
-/// One measure of convergence, relative to the loads: converged when every value is at or below the tolerance.
+/// Measure of convergence, relative to the loads. The solution has converged if no value exceeds the tolerance.
 struct Measure {
   std::string name;
   Real value;
 };
 
-/// f(x; committed state, t) = 0. residual and jacobian are pure in x: state changes only by set_time and commit.
-/// All members are collective unless they return stored data.
+/// Nonlinear problem f(x; committed state, t) = 0. residual() and jacobian() depend on x without side effects on the
+/// state. Only set_time() and commit() change the state. All members are collective unless they return stored data.
 class BlockProblem {
  public:
   virtual ~BlockProblem() = default;
@@ -69,47 +68,51 @@ class BlockProblem {
   virtual const std::vector<Block>& blocks() const = 0;
   virtual const std::vector<LocalGroup>& local_groups() const = 0;
 
-  /// Where the loads of the next solve stand: the end t of the step and its length dt.
+  /// Sets the end t and the length dt of the next time step, in s.
   virtual void set_time(Real t, Real dt) = 0;
-  /// Accepts x as the state at the current time: histories move on. Until then nothing changes, so a step that failed
-  /// is undone by starting again from the last accepted x.
+  /// Accepts x as the state at the current time and updates the history variables. Before this call the state is
+  /// unchanged, so a failed step can restart from the last accepted x.
   virtual void commit(const BlockVector& x) = 0;
 
-  /// r = f(x). The row of a constrained unknown is x - x_D(t).
+  /// Computes r = f(x). The row of a constrained unknown is x - x_D(t).
   virtual void residual(const BlockVector& x, BlockVector& r) = 0;
-  /// r without the constraints: in the rows of constrained unknowns stand the reactions.
+  /// Computes r without constraints. The rows of constrained unknowns are the reactions.
   virtual void raw_residual(const BlockVector& x, BlockVector& r) = 0;
-  /// Fills matrix() with df/dx at x, without the constraints (rows and columns of constrained unknowns are there).
+  /// Assembles matrix() = df/dx at x, without constraints: rows and columns of constrained unknowns are included.
   virtual void jacobian(const BlockVector& x) = 0;
   virtual const BlockMatrix& matrix() const = 0;
-  /// A block on the diagonal of matrix() that never changes: is asked to be stored in J from now on, a matrix whose
-  /// local columns begin with those of the block, with its values as they are and zeros elsewhere. Returns where
-  /// numbers are to be kept before J is changed, and gives J those that already are; null if the block stays where it
-  /// is.
+  /// Stores a constant diagonal block of matrix() in J to save memory. The local columns of J must begin with those of
+  /// the block. J must contain the values of the block and zeros elsewhere. Returns the object that saves values of the
+  /// block before J is changed. If the block is already shared, its saved values are restored in J. Returns null if the
+  /// block is not constant; it then remains in matrix().
   virtual std::shared_ptr<KeptRows> share(int block, const RCP<const Matrix>& J) { return nullptr; }
-  /// What is stored over a time step enters f, so that shorter steps are easier to solve; else only their loads count.
+  /// True if f contains storage terms over the time step. Shorter steps are then easier to solve. Otherwise only the
+  /// loads depend on the step.
   virtual bool stores() const { return false; }
-  /// The present matrix() is symmetric after elimination of the local groups.
+  /// True if the present matrix() is symmetric after elimination of the local groups.
   virtual bool symmetric() const = 0;
-  /// Its blocks on the diagonal are.
+  /// True if the diagonal blocks of the present matrix() are symmetric.
   virtual bool symmetric_blocks() const { return symmetric(); }
-  /// The owned unknowns of a block whose value is prescribed: 1, else 0. [owned unknown]
+  /// Flags of the unknowns with prescribed values: 1, else 0. [owned unknown]
   virtual ConstView<char*> constrained(int block) const = 0;
 
-  /// How far x, with r = residual(x), is from a solution, in every unit that matters.
+  /// Measures of convergence of x with r = residual(x), at least one for each unit.
   virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
-  /// A squared energy norm of r, for line searches.
+  /// Squared energy norm of r, for line searches.
   virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
-  /// About what elimination of all other blocks adds to the diagonal of a block [owned unknown] in the Jacobian of the
-  /// last jacobian(), for preconditioners; null where that is nothing.
+  /// Estimate of the contribution of all other blocks to the diagonal of a block, if they were eliminated. [owned
+  /// unknown], for the Jacobian of the last jacobian(), for preconditioners. Null if there is no contribution.
   virtual RCP<const Vector> schur(int block) const { return Teuchos::null; }
   enum class Lag { none, follow, widest };
-  /// Coefficients of fluxes may depend on x by high powers, which misleads Newton's method far from a solution. From
-  /// now on f takes them as given: `follow`, first those of x, then nearer to those of x with each call; `widest`, as
-  /// large as they may become under the present loads. none: f is as it is. Returns the largest |ln| of the ratio of
-  /// those of x to those that were given before; below zero where there are none, and f stays as it is. Collective.
+  /// Fixes the flux coefficients of f from now on. They may depend on x by high powers, which misleads Newton's method
+  /// far from a solution.
+  /// * none: the coefficients depend on x again.
+  /// * follow: at the first call, the values at x; in later calls, values closer to those at x.
+  /// * widest: the largest values possible under the present loads.
+  /// Returns the largest |ln| of the ratio of the values at x to the previous fixed ones. Returns a negative number if
+  /// there are no such coefficients; f is then unchanged. Collective.
   virtual Real lag(Lag how, const BlockVector& x) { return -1; }
-  /// What it offers where f is not smooth.
+  /// Globalisation of Newton's method, for f that is not smooth.
   virtual Globalisation& globalisation() { return smooth_; }
 
  private:

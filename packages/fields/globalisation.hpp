@@ -1,4 +1,4 @@
-// What a problem that is not smooth offers beside its residual, so that Newton's method finds a zero from afar.
+// Operations of a non-smooth problem that help Newton's method to converge from a distant start.
 #pragma once
 
 #include "fields/types.hpp"
@@ -9,43 +9,47 @@
 
 namespace sprekk::fields {
 
-/// f has pieces, told apart by discrete states of entities; bodies may be free to move in some of them. All members are
-/// collective unless they return stored data. As it is here: f is smooth, and holds every body.
+/// Globalisation of a piecewise smooth f. Discrete states of entities distinguish the pieces. In some states, bodies
+/// may be free to move. All members are collective unless they return stored data. This base class is for smooth f
+/// without free bodies.
 class Globalisation {
  public:
   virtual ~Globalisation() = default;
 
-  /// The discrete states of x on this rank, one of each owned entity that has one, in a fixed order.
+  /// Discrete states of x on this rank, one for each owned entity with states, in a fixed order.
   virtual std::vector<char> states(const BlockVector& x) { return {}; }
-  /// A hash of them, the same on every rank and for any partition.
+  /// Hash of the states of all ranks: the same on every rank and for any partition.
   virtual std::size_t state_hash(const std::vector<char>& states) { return 0; }
-  /// The resistance of joints may decrease with slip, so that a full Newton step may diverge. Collective.
+  /// True if the resistance of joints decreases with slip, so that a full Newton step may diverge. Collective.
   virtual bool weakens(const BlockVector& x) { return false; }
-  /// Where the entities are that are flagged, in the order of states(), in words; empty if none is on any rank.
+  /// Description of the location of flagged entities (order of states()) for messages; empty if none is flagged on any
+  /// rank.
   virtual std::string where(const std::vector<char>& flagged) { return ""; }
 
-  /// A positive diagonal of a block [owned unknown] that linear solves add to the Jacobian of the last jacobian(), so
-  /// that it is regular also where bodies are free to move; null where none is needed. Solutions do not depend on it.
+  /// Positive diagonal of a block [owned unknown] that linear solves add to the Jacobian of the last jacobian(). It
+  /// makes the Jacobian regular if bodies are free to move. Null if not needed. Solutions do not depend on it.
   virtual RCP<const Vector> proximal(int block) const { return Teuchos::null; }
-  /// For a step dx from the x of the last jacobian(): replaces its share of motions that nothing resists, whose length
-  /// means nothing, by one after which something does. Empty, or which body finds no resistance wherever it goes.
+  /// Replaces the component of a step dx along unresisted motions, whose length is arbitrary, by a step after which the
+  /// motion is resisted. dx starts from the x of the last jacobian(). Returns an empty text, or a description
+  /// of the body whose motion meets no resistance.
   virtual std::string balance(const BlockVector& x, BlockVector& dx) { return ""; }
-  /// What nothing holds in the state of the last jacobian() or commit(), in words; empty if all is held. Stored data.
+  /// Description of a floating body in the state of the last jacobian() or commit(); empty if there is none. Stored
+  /// data.
   virtual std::string loose() const { return ""; }
-  /// From now on jacobian() makes what is free to slide or part resist it, so that steps are shorter: by the larger of
-  /// `everywhere` and `here` [as states()] (1: about as much as the rock around it does; empty: zero). Zero is the
-  /// derivative of f. Solutions do not depend on it. Local.
+  /// Adds stiffness to the Jacobian for entities free to slide or open, so that steps are shorter. The relative
+  /// stiffness is the larger of `everywhere` and `here` [as states(); empty: zero]; 1 is about the stiffness of the
+  /// surrounding rock. Zero gives the derivative of f. Solutions do not depend on it. Local.
   virtual void damp(Real everywhere, const std::vector<Real>& here) {}
-  /// From now on f is that of bodies whose contact resists any motion away from x, like a spring of `stiffness` (1:
-  /// about as much as the rock around it does): so every body is held, and what it did before decides little. Zero is f
-  /// as it is. False where there is no contact, and f stays as it is.
+  /// Adds springs to f that pull contacts towards their state at x. They constrain every body and reduce the influence
+  /// of the earlier state. `stiffness` is relative; 1 is about the stiffness of the surrounding rock, 0 removes the
+  /// springs. Returns false if there is no contact; f is then unchanged.
   virtual bool tether(Real stiffness, const BlockVector& x) { return false; }
-  /// To be called for the iterates of one solve that balance the linear part of f, in their order, `first` for the
-  /// first. From what lies between two of them, constants that f has but its zeros do not may be set anew: then true,
-  /// and f is another function. The same on every rank.
+  /// May change constants that affect f but not its zeros, from the difference of two iterates. Call it for the
+  /// iterates of one solve that satisfy the linear part of f, in their order, with `first` for the first one. Returns
+  /// true if f has changed. The result is the same on every rank.
   virtual bool calibrate(const BlockVector& x, bool first) { return false; }
-  /// Where f leaves it open where a body is, replaces the zero x of f by the one nearest to the last accepted x, and
-  /// returns true if x moved farther than rounding. x may then be a zero to a lesser accuracy.
+  /// If the position of a body is not determined by f, replaces the zero x of f by the one nearest to the last accepted
+  /// x. Returns true if x moved by more than round-off. x may then be a zero of lower accuracy.
   virtual bool settle(BlockVector& x) { return false; }
 };
 

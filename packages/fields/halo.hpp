@@ -1,4 +1,4 @@
-// What neighbouring ranks know of each other's nodes.
+// Exchange of nodal values between neighbouring ranks.
 #pragma once
 
 #include <vector>
@@ -7,28 +7,28 @@
 
 namespace sprekk::fields {
 
-/// Nodes that a rank has values of: those it owns, then ghosts, in the order of a map. Values of a node lie together.
+/// Nodes with values on this rank: owned nodes, then ghosts, in the order of a map. The values of a node are adjacent.
 /// All members are collective unless they return stored data.
 class Halo {
  public:
-  /// `all` begins with the nodes of `owned`, in their order.
+  /// Creates the exchange. `all` must begin with the nodes of `owned` in their order; otherwise throws an Error.
   Halo(RCP<const Map> owned, RCP<const Map> all);
 
   LocalIndex n_owned() const { return static_cast<LocalIndex>(base::n_local_elements(*owned_)); }
   LocalIndex n_all() const { return static_cast<LocalIndex>(base::n_local_elements(*all_)); }
   const RCP<const Map>& owned() const { return owned_; }
   const RCP<const Map>& all() const { return all_; }
-  std::vector<LocalIndex> sent_nodes() const;  ///< owned ones that are ghosts of other ranks, perhaps several times
+  std::vector<LocalIndex> sent_nodes() const;  ///< owned nodes that are ghosts of other ranks; may repeat
 
-  /// Of an exchange, that this rank receives. Stored data.
+  /// Number of messages received by this rank in an exchange. Stored data.
   std::size_t n_messages() const;
 
-  /// Takes the `width` values of each ghost, x(width * node) ..., from its owner.
+  /// Copies the `width` values of each ghost, x(width * node) ..., from its owner.
   template <class T>
   void exchange(const View<T*>& x, int width) const;
 
-  /// The same for rows of different lengths: that of a node has the values width * start(node) up to
-  /// width * start(node + 1), and is as long as its owner's.
+  /// Copies rows of different lengths. The values of a node are width * start(node) up to width * start(node + 1). A
+  /// ghost must have the length of its owner's row.
   template <class T>
   void exchange_rows(const View<std::size_t*>& start, const View<T*>& x, int width) const;
 

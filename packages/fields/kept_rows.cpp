@@ -6,7 +6,7 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Of marks that have those before.
+/// True if no marks have been added.
 bool same(const KeptRows::Marks& before, const KeptRows::Marks& now) {
   if (before.bits.extent(0) != now.bits.extent(0)) return false;
   std::size_t n_other = 0;
@@ -65,7 +65,7 @@ void KeptRows::keep(const Marks& marks) {
   const auto J = J_->numbers();
   const Policy rows(0, marks.row.extent(0));
   if (same(before.marks, marks)) return;
-  // visit(word, bit, value of A) for the marks of a row; those that it had before are a part of them
+  // Calls visit(word, bit, value of A) for the marks of a row. They include all its earlier marks.
   const auto for_values = KOKKOS_LAMBDA(LocalIndex k, const auto& visit) {
     const LocalIndex k_before = before.marks.number(marks.row(k));
     std::size_t i = k_before < 0 ? 0 : before.first_value(k_before), place = J.row(marks.row(k)).begin;
@@ -116,7 +116,7 @@ void KeptRows::restore(const Matrix& matrix) const {
       });
 }
 
-/// Rows that have marks are summed up as others are: to the same bits.
+/// The order of summation is that of unmarked rows, so the results are bitwise identical.
 void KeptRows::add_local_product(const Vector& x, Vector& y) const {
   const auto J = J_->numbers();
   const auto kept = kept_;
@@ -136,7 +136,7 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
           const std::size_t length = w * row.n_nodes;
           Real sums[n_sums] = {};
           std::size_t place = 0;
-          const auto add = [&](Real a) {  // that of the next place
+          const auto add = [&](Real a) {  // the value at the next place
             if (a != 0) sums[place % n_sums] += a * from(J.column(row.first_node + place / w) * w + place % w, 0);
             ++place;
           };

@@ -1,4 +1,4 @@
-// Numbers of a matrix as they were before others wrote over them.
+// Saved values of a matrix that shares its storage with another one.
 #pragma once
 
 #include <cstdint>
@@ -8,56 +8,56 @@
 
 namespace sprekk::fields {
 
-/// A matrix A that never changes, stored in another one, J, but for numbers that may change in J: those of A are kept
-/// here. The local columns of J begin with those of A; in others, rows that keep nothing have no places, and numbers of
-/// J that are not marked are zero. All members are local unless they say otherwise.
+/// Constant matrix A stored in another matrix J. Values of A that may change in J are saved here. The local columns of
+/// J begin with those of A. In other columns, rows without saved values have no entries, and unmarked values of J are
+/// zero. All members are local unless stated otherwise.
 class KeptRows {
  public:
-  /// Which numbers of which rows: bit p % 64 of word p / 64 of a row belongs to place p of the row.
+  /// Marks of values: bit p % 64 of word p / 64 of a row belongs to place p of the row.
   struct Marks {
     static constexpr std::size_t word = 64;
 
-    View<LocalIndex*> number;       // [owned row] -1: none of its numbers
+    View<LocalIndex*> number;       // [owned row] -1: no marks
     View<LocalIndex*> row;          // [number]
     View<std::size_t*> first_word;  // [number + 1]
     View<std::uint64_t*> bits;
 
-    /// One thread for each row.
+    /// Marks a place of a row. Rows may be processed in parallel, but each row by one thread only.
     KOKKOS_FORCEINLINE_FUNCTION void set(LocalIndex of_row, std::size_t place) const {
       bits(first_word(number(of_row)) + place / word) |= std::uint64_t(1) << place % word;
     }
   };
 
-  /// The numbers of J are those of A, all of them so far.
+  /// Creates the storage. J must contain the values of A; none is saved yet.
   explicit KeptRows(RCP<const Matrix> J);
 
-  /// Room for marks in these rows, [owned row] not 0, and the marks of what is kept already.
+  /// Returns marks with space for these rows ([owned row], not 0) and the marks of all saved values.
   Marks marks(const View<char*>& rows) const;
 
-  /// From now on the marked numbers may change in J, for good.
+  /// Saves the marked values of J. From now on they may change in J, permanently.
   void keep(const Marks& marks);
 
-  /// Those that have marks. [number]
+  /// Rows with marks. [number]
   const View<LocalIndex*>& rows() const { return kept_.marks.row; }
   const RCP<const Matrix>& J() const { return J_; }
 
-  /// Gives the numbers that are kept back, to J or a matrix with its graph.
+  /// Copies the saved values to J or to a matrix with its graph.
   void restore(const Matrix& matrix) const;
 
-  /// y += A x, x with the ghosts of A.
+  /// Computes y += A x with the ghosts of x.
   void add_local_product(const Vector& x, Vector& y) const;
 
-  /// y += A x. Collective.
+  /// Computes y += A x. Collective.
   void add_product(const Vector& x, Vector& y) const;
 
  private:
   struct Kept {
     Marks marks;
-    View<std::uint64_t*> present;    // as marks.bits: it is not zero
+    View<std::uint64_t*> present;    // as marks.bits: the value is not zero
     View<std::size_t*> first_value;  // [number + 1]
-    View<Real*> value;               // those that are not zero
+    View<Real*> value;               // non-zero saved values
 
-    /// visit(place, value) for what is kept of a row, in the order of places.
+    /// Calls visit(place, value) for the saved values of a row, in the order of places.
     template <class Visit>
     KOKKOS_FORCEINLINE_FUNCTION void for_values(LocalIndex k, const Visit& visit) const {
       std::size_t i = first_value(k), first = 0;

@@ -80,7 +80,7 @@ RCP<const Map> map_of(const Field& field, const mesh::Mesh& mesh, LocalIndex n, 
   return make_map(ids, mesh.comm);
 }
 
-/// The owned map itself where no rank has ghosts.
+/// Returns the owned map itself if no rank has ghosts.
 RCP<const Map> map_with_ghosts(const Field& field, const mesh::Mesh& mesh, const RCP<const Map>& owned) {
   const auto all = map_of(field, mesh, n_entities(mesh, field.entity, true));
   return all->getGlobalNumElements() == owned->getGlobalNumElements() ? owned : all;

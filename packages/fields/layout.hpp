@@ -1,4 +1,4 @@
-// Where a field lives: which entities carry it and how its unknowns are numbered on the ranks.
+// Layout of a field: its entities and the numbering of its unknowns on the ranks.
 #pragma once
 
 #include "fields/types.hpp"
@@ -13,7 +13,7 @@ enum class Entity {
   cell,
   fracture_face,
   enriched_node,  ///< nodes around crack tips, see mesh::Mesh::enriched
-  facet           ///< what cells and fracture faces end in, see mesh::Facets
+  facet           ///< boundaries of cells and fracture faces, see mesh::Facets
 };
 
 std::string name_of(Entity entity);
@@ -25,8 +25,8 @@ struct Field {
   std::string unit;
 };
 
-/// The unknowns of one field on this rank: owned ones first, ghosts after them, so that an index below n_owned() is a
-/// row of this rank. Unknown = entity * n_components + component, locally and globally. Construction is collective.
+/// Unknowns of one field on this rank: owned ones first, then ghosts. Unknown = entity * n_components + component,
+/// locally and globally. An index below n_owned() is a row of this rank. Construction is collective.
 class Layout {
  public:
   Layout(const Field& field, const mesh::Mesh& mesh);
@@ -37,9 +37,9 @@ class Layout {
   const RCP<const Import>& import() const { return import_; }
   LocalIndex n_owned_entities() const { return n_owned_entities_; }
   LocalIndex n_owned() const { return n_owned_entities_ * field_.n_components; }
-  /// Bytes that this rank receives when the field's ghosts are updated once.
+  /// Bytes received by this rank in one update of the ghosts.
   std::size_t halo_bytes() const { return import_->getNumRemoteIDs() * sizeof(Real); }
-  /// In how many messages they come: the other ranks that own some of them.
+  /// Number of messages of such an update, i.e. of ranks that own ghosts of this rank.
   std::size_t halo_messages() const;
 
  private:
@@ -49,16 +49,16 @@ class Layout {
   RCP<const Import> import_;
 };
 
-/// The numbers of a field's unknowns on owned entities. Collective.
+/// Map of the global numbers of the unknowns on owned entities. Collective.
 RCP<const Map> owned_map(const Field& field, const mesh::Mesh& mesh);
 
-/// The same by their numbers in the mesh that this one is a part of, see mesh::Mesh::origin. Collective.
+/// Map of their numbers in the mesh that this one is a part of, see mesh::Mesh::origin. Collective.
 RCP<const Map> whole_map(const Field& field, const mesh::Mesh& mesh);
 
-/// Number of entities of a kind with unknowns of their own on this rank, owned only or with ghosts.
+/// Number of entities of a kind with unknowns on this rank, owned only or with ghosts.
 LocalIndex n_entities(const mesh::Mesh& mesh, Entity entity, bool with_ghosts);
 
-/// The values of a vector on the device, [entity, component]: a view of the vector's own memory.
+/// Values of a vector on the device, [entity, component]. The view shares the memory of the vector.
 View<Real**> by_entity(Vector& vector, int n_components);
 
 }  // namespace sprekk::fields

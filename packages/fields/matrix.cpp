@@ -8,7 +8,7 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Whether the unknowns of every node of columns lie together, and the rows of every node have the same ones.
+/// True if the unknowns of every column node are adjacent, and the rows of every node have the same columns.
 bool in_blocks(const Map& columns, const View<std::size_t*>& start, const View<LocalIndex*>& column, int height,
                int width) {
   constexpr int most = 3;

@@ -1,4 +1,4 @@
-// Sparse matrices that name the unknowns of a node together.
+// Sparse matrices with one column index for all unknowns of a node.
 #pragma once
 
 #include <type_traits>
@@ -7,10 +7,10 @@
 
 namespace sprekk::fields {
 
-/// A sparse matrix on this rank, in blocks [height, width], one for each pair of nodes that couple. Row node i has the
-/// column nodes column(start(i)) ... column(start(i + 1) - 1). Its `height` rows of numbers follow one another, from
-/// value(height * width * start(i)) on: as in a matrix of Tpetra, but each node is named once instead of
-/// height * width times. The unknowns of local node n are width * n ... width * n + width - 1.
+/// Sparse matrix on this rank in blocks [height, width], one for each pair of coupled nodes. Row node i has the column
+/// nodes column(start(i)) ... column(start(i + 1) - 1). Its `height` rows of values are consecutive and begin with
+/// value(height * width * start(i)), as in a Tpetra matrix. Each column node is stored once instead of height * width
+/// times. The unknowns of local node n are width * n ... width * n + width - 1.
 struct NodeRows {
   int height = 1, width = 1;  ///< 1 to 3
   View<std::size_t*> start;
@@ -18,8 +18,8 @@ struct NodeRows {
   View<Real*> value;
 
   struct Row {
-    std::size_t first_node, n_nodes;  ///< in column
-    std::size_t begin;                ///< its first number
+    std::size_t first_node, n_nodes;  ///< range in column
+    std::size_t begin;                ///< index of its first value
   };
 
   LocalIndex n_rows() const { return height * (static_cast<LocalIndex>(start.extent(0)) - 1); }
@@ -31,7 +31,7 @@ struct NodeRows {
   KOKKOS_FORCEINLINE_FUNCTION std::size_t length(LocalIndex i) const {
     return width * (start(i / height + 1) - start(i / height));
   }
-  /// visit(column, place of the number in value) in the order of places.
+  /// Calls visit(column, index in value) in the order of places.
   template <class Visit>
   KOKKOS_FORCEINLINE_FUNCTION void for_row(LocalIndex i, const Visit& visit) const {
     const Row r = row(i);
@@ -40,8 +40,8 @@ struct NodeRows {
       for (int c = 0; c < width; ++c) visit(column(k) * width + c, place++);
   }
 
-  /// The sum of a row times x [column]; w is the width. Terms take turns in a few sums, so that an addition need not
-  /// wait for the one before: that of place p of the row is for sums[p % n_sums<w>].
+  /// Product of a row with x [column]; w is the width. Terms are distributed over several sums, so additions do not
+  /// depend on the previous one. Place p of the row contributes to sums[p % n_sums<w>].
   template <int w>
   static constexpr int n_sums = w == 3 ? 6 : 4;
   template <int w>
@@ -67,7 +67,7 @@ struct NodeRows {
   }
 };
 
-/// Calls work(w) with the width as a constant of compile time.
+/// Calls work(w) with the width as a compile-time constant.
 template <class Work>
 void with_width(int width, const Work& work) {
   if (width == 3)
@@ -78,46 +78,47 @@ void with_width(int width, const Work& work) {
     work(std::integral_constant<int, 1>());
 }
 
-/// A distributed matrix of such rows. Where unknowns do not come in nodes, blocks are single numbers.
+/// Distributed matrix of NodeRows. Without nodal blocks, the blocks are single numbers.
 class Matrix : public Operator {
  public:
-  /// Zeros on the graph that a matrix of Tpetra would have: row i has the columns column(start(i)) ...
-  /// column(start(i + 1) - 1), local numbers of `columns`, ascending. In blocks [height, width] if it is made of such
-  /// blocks, neither of them is more than 3, and nodes have the unknowns width * n ... of `columns`, too. Collective.
+  /// Creates a zero matrix with a graph in the format of Tpetra. Row i has the columns column(start(i)) ...
+  /// column(start(i + 1) - 1), ascending local numbers of `columns`. Blocks [height, width] are used if the graph
+  /// consists of such blocks, both are at most 3, and nodes have the unknowns width * n ... in `columns`. Collective.
   Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain,
          const View<std::size_t*>& start, const View<LocalIndex*>& column, int height, int width);
-  /// Of these rows, on nodes as `columns` and `rows` number them. Stored data.
+  /// Creates a matrix of these rows, on the nodes of `rows` and `columns`. Collective unless `domain` and `columns` are
+  /// the same object.
   Matrix(const RCP<const Map>& rows, const RCP<const Map>& columns, const RCP<const Map>& domain, NodeRows numbers);
-  /// A itself: it shares the numbers. Stored data.
+  /// Wraps A and shares its values. Not collective.
   explicit Matrix(const RCP<const CrsMatrix>& A);
 
   RCP<const Map> getDomainMap() const override { return domain_; }
   RCP<const Map> getRangeMap() const override { return rows_; }
   const RCP<const Map>& row_map() const { return rows_; }
   const RCP<const Map>& column_map() const { return columns_; }
-  const RCP<const Import>& import() const { return import_; }  ///< null: the columns are those of the domain
+  const RCP<const Import>& import() const { return import_; }  ///< null: columns and domain are the same
 
   const NodeRows& numbers() const { return numbers_; }
 
-  /// The matrix for those who need one of Tpetra, with the same numbers. It is made at the first call, which is
-  /// collective, and kept.
+  /// Returns a Tpetra matrix that shares the values. The first call is collective and stores the matrix.
   RCP<CrsMatrix> crs() const;
 
-  /// y = alpha A x + beta y, of which x is no part; both with constant stride. Collective.
+  /// Computes y = alpha A x + beta y for different x and y, both with constant stride. Throws an Error for a transposed
+  /// product. Collective.
   void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode = Teuchos::NO_TRANS, Real alpha = 1,
              Real beta = 0) const override;
 
-  /// d <- the diagonal, d [row]; zero where it has no place. Local.
+  /// Copies the diagonal to d [row]; zero where the graph has no entry. Local.
   void copy_diagonal(Vector& d) const;
 
-  /// values <- x with ghosts; x [domain], values [column]. Collective.
+  /// Copies x [domain] with its ghosts to values [column]. Collective.
   void spread(const Vector& x, Vector& values) const;
 
  private:
   RCP<const Map> rows_, columns_, domain_;
   RCP<const Import> import_;
   NodeRows numbers_;
-  mutable RCP<MultiVector> x_;  // [column]; null until there are ghosts to take
+  mutable RCP<MultiVector> x_;  // [column] x with ghosts; null before the first use
   mutable RCP<CrsMatrix> crs_;
 };
 

@@ -1,5 +1,5 @@
-// What kernels on blocks of nodes share, and all that depends on the compiler: vector types, prefetching, wide
-// instructions, each with a fallback. Device code of these kernels has never been compiled.
+// Shared parts of kernels on nodal blocks, and all compiler-dependent code: vector types, prefetching, wide
+// instructions. Each has a fallback. The device code of these kernels has never been compiled.
 #pragma once
 
 #include "base/view.hpp"
@@ -9,16 +9,16 @@
 
 namespace sprekk::fields {
 
-#if defined(__GNUC__)  // Clang has them as well
+#if defined(__GNUC__)  // also Clang
 template <int n>
 struct Pack {
   typedef Real Type __attribute__((vector_size(n * sizeof(Real)), aligned(alignof(Real)), may_alias));
 };
 
-/// Asks memory for what will be read soon.
+/// Prefetches memory that will soon be read.
 KOKKOS_FORCEINLINE_FUNCTION void prefetch(const void* address) { __builtin_prefetch(address); }
 
-/// The number of the lowest bit that is set; there must be one.
+/// Index of the lowest set bit; bits must not be 0.
 KOKKOS_FORCEINLINE_FUNCTION std::size_t lowest_bit(std::uint64_t bits) { return __builtin_ctzll(bits); }
 #else
 template <int n>
@@ -50,7 +50,7 @@ KOKKOS_FORCEINLINE_FUNCTION std::size_t lowest_bit(std::uint64_t bits) {
 }
 #endif
 
-/// n numbers that lie together, in vectors of 4, 2 and 1 of them.
+/// Array of n adjacent numbers in vectors of 4, 2 and 1.
 template <int n>
 struct Numbers {
   static constexpr int here = n >= 4 ? 4 : n >= 2 ? 2 : 1;
@@ -73,7 +73,7 @@ struct Numbers {
     *reinterpret_cast<Vector*>(to) = head;
     rest.store(to + here);
   }
-  /// += a x
+  /// Computes += a x.
   KOKKOS_FORCEINLINE_FUNCTION void add(Real a, const Numbers& x) {
     head += a * x.head;
     rest.add(a, x.rest);
@@ -88,13 +88,13 @@ struct Numbers<0> {
   KOKKOS_FORCEINLINE_FUNCTION void add(Real, const Numbers&) {}
 };
 
-/// Finds columns in a list that has none twice: fast where they come in its order, or nearly so.
+/// Search for columns in a list without duplicates. Fast if the columns are searched nearly in the order of the list.
 struct Cursor {
   const LocalIndex* column;
   std::size_t n;
-  std::size_t at = 0;  // where the next one is looked for first
+  std::size_t at = 0;  // first index of the next search
 
-  /// n if it is not there.
+  /// Returns the index of a column, or n if it is not in the list.
   KOKKOS_FORCEINLINE_FUNCTION std::size_t find(LocalIndex wanted) {
     for (std::size_t looked_at = 0; looked_at < n; ++looked_at) {
       const std::size_t here = at;
@@ -108,7 +108,7 @@ struct Cursor {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && \
     !defined(KOKKOS_ENABLE_SYCL)
 #define SPREKK_WIDE_INSTRUCTIONS
-/// work() with all that it calls, in instructions on four numbers at a time.
+/// Runs work() and all functions that it calls with AVX2 and FMA instructions.
 template <class Work>
 __attribute__((target("avx2,fma"), flatten)) void in_wide_instructions(const Work& work) {
   work();
@@ -122,8 +122,8 @@ void in_wide_instructions(const Work& work) {
 inline bool has_wide_instructions() { return false; }
 #endif
 
-/// work(), compiled a second time for processors with wider instructions than every x86-64 has, and run in these where
-/// the present one has them.
+/// Runs work() with AVX2 and FMA instructions if the processor supports them. For this purpose work() is compiled
+/// twice.
 template <class Work>
 void in_widest_instructions(const Work& work) {
   if (has_wide_instructions())

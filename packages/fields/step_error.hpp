@@ -1,4 +1,4 @@
-// How far a time step is off because it is as long as it is.
+// Relative error of a time step due to its length.
 #pragma once
 
 #include "base/types.hpp"
@@ -8,9 +8,9 @@
 
 namespace sprekk::fields {
 
-/// A relative error, of order `order` in the length of steps.
+/// Relative error, of the order `order` in the step length.
 struct StepError {
-  static constexpr Real unknown = 0;  ///< an order: not known of this step
+  static constexpr Real unknown = 0;  ///< value of `order` if it is unknown for this step
   std::string name;
   Real value = 0, order = 1;
 };

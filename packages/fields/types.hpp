@@ -1,4 +1,4 @@
-// Distributed vectors and matrices as the project names them.
+// Types of distributed vectors and matrices.
 #pragma once
 
 #include "base/trilinos_compat.hpp"
@@ -24,7 +24,7 @@ using Import = Tpetra::Import<LocalIndex, GlobalIndex>;
 using Export = Tpetra::Export<LocalIndex, GlobalIndex>;
 using Operator = Tpetra::Operator<Real, LocalIndex, GlobalIndex>;
 
-/// One vector per block, in the order of the blocks.
+/// One vector for each block, in the order of the blocks.
 using BlockVector = std::vector<RCP<Vector>>;
 
 inline BlockVector create_like(const BlockVector& x) {
@@ -33,8 +33,8 @@ inline BlockVector create_like(const BlockVector& x) {
   return y;
 }
 
-/// The map with these numbers on this rank. Where they are 0, 1, ... over all ranks it stores none until it is asked
-/// for the list, as imports do. Collective.
+/// Creates the map with these global numbers on this rank. If they are 0, 1, ... over all ranks, it stores no list
+/// until the list is requested, for instance by an import. Collective.
 RCP<const Map> make_map(const std::vector<GlobalIndex>& numbers, const RCP<const Comm>& comm);
 
 inline void copy(const BlockVector& from, BlockVector& to) {

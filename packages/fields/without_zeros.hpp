@@ -1,11 +1,11 @@
-// Matrices with places for what they have only.
+// Removal of stored zeros from matrices.
 #pragma once
 
 #include "fields/types.hpp"
 
 namespace sprekk::fields {
 
-/// A without places for zeros, on the same maps; A itself where it has none. Collective.
+/// Returns A without stored zeros, on the same maps. Returns A itself if it has none on any rank. Collective.
 RCP<CrsMatrix> without_zeros(const RCP<CrsMatrix>& A);
 
 }  // namespace sprekk::fields
