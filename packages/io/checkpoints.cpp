@@ -24,9 +24,9 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int format = 4;  ///< of what is written; the first had no number
+constexpr int format = 4;  ///< version of the format; the first version had no number
 
-/// The seal of what has the seal `before`, and then `content`.
+/// Seal of `content` appended to data with the seal `before`.
 Seal seal_of(const std::string& content, const Seal& before = {}) {
   const auto* bytes = reinterpret_cast<const Bytef*>(content.data());
   return {before[0] + static_cast<long long>(content.size()),
@@ -39,7 +39,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Calls work(error); an Error names the path and the system's reason.
+/// Calls work(error). Throws an Error with the path and the system's reason.
 template <class Work>
 void attempt(const std::string& path, const char* what, const Work& work) {
   std::error_code error;
@@ -52,14 +52,15 @@ void write_durably(const std::string& path, const std::string& content) {
   bring_to_disk(path);
 }
 
-/// The journal and its copy.
+/// Paths of the journal and its copy.
 std::array<std::string, 2> journal_files(const std::string& path) {
   return {path + "/journal", path + "/journal_copy"};
 }
 
 std::string piece_file(const std::string& folder, int rank) { return fmt::format("{}/piece_{}.h5", folder, rank); }
 
-/// The text of a file that rank 0 reads, on all ranks; with a seal, only as many bytes as it says.
+/// Returns the text of a file on all ranks; rank 0 reads it. With a seal, only the first bytes are read, as many as the
+/// seal specifies. Throws an Error if they are damaged. Collective.
 std::string read_once(const Comm& comm, const std::string& path, const std::optional<Seal>& seal = {}) {
   std::string text;
   base::collectively(comm, [&] {
@@ -72,7 +73,7 @@ std::string read_once(const Comm& comm, const std::string& path, const std::opti
   return base::of_rank(comm, 0, text);
 }
 
-/// An entry a line.
+/// Parses a journal with one entry on each line.
 std::vector<json> entries_of(const std::string& journal) {
   std::vector<json> entries;
   std::istringstream lines(journal);
@@ -89,7 +90,7 @@ std::string Checkpoints::folder(long long number) const { return fmt::format("{}
 std::vector<long long> Checkpoints::numbers() const {
   std::vector<long long> found;
   base::collectively(*comm_, [&] {
-    std::error_code none;  // where there is no such directory
+    std::error_code none;  // if the directory does not exist
     if (comm_->getRank() != 0 || !fs::is_directory(path_, none)) return;
     fs::directory_iterator entries;
     attempt(path_, "read", [&](auto& error) { entries = fs::directory_iterator(path_, error); });
@@ -107,7 +108,7 @@ void Checkpoints::clear() {
   last_ = -1;
   journal_ = {};
   base::collectively(*comm_, [&] {
-    std::error_code none;  // where there is no such directory
+    std::error_code none;  // if the directory does not exist
     if (comm_->getRank() != 0 || !fs::is_directory(path_, none)) return;
     attempt(path_, "removed", [&](auto& error) { fs::remove_all(path_, error); });
   });
@@ -122,7 +123,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   const Seal journal = seal_of(news, journal_);
   const std::string part = folder(number) + ".part";
   const bool first = comm_->getRank() == 0;
-  const auto remove_parts = [&] {  // as far as possible; they do no harm
+  const auto remove_parts = [&] {  // as far as possible; remaining ones are ignored
     std::error_code left;
     for (const auto& entry : fs::directory_iterator(path_, left))
       if (entry.path().extension() == ".part") fs::remove_all(entry.path(), left);
@@ -131,7 +132,7 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   try {
     base::collectively(*comm_, [&] {
       if (!first) return;
-      remove_parts();  // of runs that were killed
+      remove_parts();  // of killed runs
       attempt(part, "made", [&](auto& error) { fs::create_directory(part, error); });
     });
     Seal seal;
@@ -161,9 +162,9 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
   journal_ = journal;
   base::collectively(*comm_, [&] {
     if (!first) return;
-    std::error_code left;  // what cannot be removed does no harm
+    std::error_code left;  // directories that remain are ignored
     for (const auto old : before)
-      if (old != kept) fs::rename(folder(old), folder(old) + ".part", left);  // at once, then in peace
+      if (old != kept) fs::rename(folder(old), folder(old) + ".part", left);  // quick rename first, then slow removal
     remove_parts();
   });
 }
@@ -203,7 +204,7 @@ std::string Checkpoints::read_journal(const Seal& seal, std::vector<std::string>
   try {
     if (comm_->getRank() == 0)
       for (const auto& file : damaged) write_durably(file, *text);
-  } catch (const Error&) {  // one of them is enough
+  } catch (const Error&) {  // one intact file is sufficient
   }
   return *text;
 }

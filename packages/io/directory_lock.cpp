@@ -18,16 +18,16 @@ namespace sprekk::io {
 
 namespace {
 
-constexpr int most_tries = 100;  // of runs that end at the same moment
+constexpr int most_tries = 100;  // of runs that end simultaneously
 
-/// Whether the path still names the open file: the process that had its lock removes it.
+/// True if the path still refers to the open file. A process that releases the lock removes the file.
 bool is_at(const std::string& path, int descriptor) {
   struct stat open, there;
   return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_ino == there.st_ino &&
          open.st_dev == there.st_dev;
 }
 
-/// Leaves in the file who has the lock, as far as the disk has room.
+/// Writes the owner of the lock to the file, if the disk has space.
 void sign(int descriptor) {
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
@@ -36,7 +36,7 @@ void sign(int descriptor) {
       ::ftruncate(descriptor, 0) == 0 && ::write(descriptor, text.data(), text.size()) > 0;
 }
 
-/// " (process 7 on node3)", or nothing if the file does not tell.
+/// Returns " (process 7 on node3)", or "" if the file has no owner.
 std::string holder(int descriptor) {
   char text[300];
   const auto n = ::pread(descriptor, text, sizeof text, 0);

@@ -1,4 +1,4 @@
-// One program at a time writes into a directory.
+// Lock of an output directory: one program at a time writes there.
 #pragma once
 
 #include "base/types.hpp"
@@ -7,8 +7,8 @@
 
 namespace sprekk::io {
 
-/// The lock of a directory, which rank 0 holds by flock(2) on the file DIRECTORY/.lock: the system releases it when the
-/// process ends, however it ends, and a file that is left over locks nothing.
+/// Lock of a directory. Rank 0 holds it by flock(2) on the file DIRECTORY/.lock. The system releases the lock when the
+/// process ends for any reason, so a remaining file does not lock the directory.
 class DirectoryLock {
  public:
   DirectoryLock(RCP<const Comm> comm, std::string directory);
@@ -16,12 +16,12 @@ class DirectoryLock {
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
-  /// Whether there is a directory to lock. Collective.
+  /// True if the directory exists. Collective.
   bool has_directory() const;
 
-  /// Makes the directory and takes its lock; the second call does nothing. Returns why the file system offers no locks,
-  /// or an empty text. Collective; Error on every rank, naming the directory: another process has the lock, which the
-  /// message names, or the directory cannot be made or written to.
+  /// Creates the directory and takes its lock; a second call has no effect. Returns an empty text, or the reason if the
+  /// file system does not support locks. Throws an Error with the directory on every rank if another process has the
+  /// lock (named in the message), or if the directory cannot be created or written to. Collective.
   std::string take();
 
  private:

@@ -14,12 +14,12 @@ namespace sprekk::io {
 
 namespace {
 
-/// Writes all of `content`; returns 0 or the system's error number.
+/// Writes all of `content`. Returns 0 or the system's error number.
 int write_all(const std::string& path, const std::string& content) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return errno;
   int error = std::fwrite(content.data(), 1, content.size(), file) == content.size() ? 0 : errno;
-  if (std::fclose(file) != 0 && error == 0) error = errno;  // buffered bytes meet a full disk only here
+  if (std::fclose(file) != 0 && error == 0) error = errno;  // a full disk may be detected only here
   return error;
 }
 
@@ -50,7 +50,7 @@ void append_durably(const std::string& path, long long length, const std::string
   for (std::size_t done = 0; error == 0 && done < content.size();) {
     const auto n = ::write(file, content.data() + done, content.size() - done);
     if (n > 0) done += n;
-    if (n == 0) error = ENOSPC;  // as POSIX never does for a file; else this would go on for ever
+    if (n == 0) error = ENOSPC;  // does not occur in POSIX; avoids an endless loop
     if (n < 0 && errno != EINTR) error = errno;
   }
   if (error == 0 && ::fsync(file) != 0) error = errno;

@@ -1,4 +1,4 @@
-// Files and directories as a parallel program writes them: complete or not at all, and every rank learns of an error.
+// Files and directories of a parallel program. Files are complete or unchanged, and errors are reported.
 #pragma once
 
 #include "base/types.hpp"
@@ -7,23 +7,25 @@
 
 namespace sprekk::io {
 
-/// Writes `content` to a file beside `path` and renames it, so that `path` never holds half a file. Not collective.
-/// Error: the path and the system's reason; the file beside is removed and an earlier `path` stays as it was.
+/// Writes `content` to a temporary file and renames it to `path`, so that `path` is always complete. Throws an Error
+/// with the path and the system's reason; then the temporary file is removed and `path` is unchanged. Not collective.
 void write_file(const std::string& path, const std::string& content);
 
-/// Makes the file its first `length` bytes, 0 if there is none, and then `content`, and brings it to the disk. Not
-/// collective. Error: the path and the system's reason; the first `length` bytes stay.
+/// Truncates the file to its first `length` bytes, appends `content`, and flushes it to disk. A missing file requires
+/// length 0. Throws an Error with the path and the system's reason; the first `length` bytes are preserved. Not
+/// collective.
 void append_durably(const std::string& path, long long length, const std::string& content);
 
-/// Replaces the content of a file that has at least this length, in place and without a file beside it, as on a disk
-/// that is full; false if it is shorter, or on any error. Not collective.
+/// Replaces the content of a file in place, without a temporary file, for instance on a full disk. The file must be at
+/// least as long as `content`. Returns false if it is shorter, or on any error. Not collective.
 bool overwrite(const std::string& path, const std::string& content);
 
-/// Returns when a file's content, or a directory's names, would outlive a failure of power; at once for a directory
-/// that the file system cannot bring to the disk by itself. Not collective; Error: the path and the system's reason.
+/// Flushes the content of a file, or the names in a directory, to disk so that they survive a power failure. No effect
+/// on a directory if the file system does not support this. Throws an Error with the path and the system's reason. Not
+/// collective.
 void bring_to_disk(const std::string& path);
 
-/// Makes the directory with its parents; one that exists is fine. Collective, with the same error on every rank.
+/// Creates the directory and its parents; it may already exist. Throws the same Error on every rank. Collective.
 void make_directory(const Comm& comm, const std::string& path);
 
 }  // namespace sprekk::io

@@ -9,7 +9,7 @@ namespace {
 void write(hid_t group, const char* name, hid_t type, const void* data, hsize_t n) {
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "a data space");
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "properties");
-  check(H5Pset_obj_track_times(properties, false), "properties");  // the same values make the same file
+  check(H5Pset_obj_track_times(properties, false), "properties");  // equal values give equal files
   const Handle set(H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose, name);
   if (n > 0) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
 }
@@ -42,7 +42,7 @@ std::string to_hdf5(const NamedVectors& vectors) {
 void from_hdf5(const std::string& content, const std::string& name, std::map<std::string, NumberedValues>& values) {
   const Handle access(in_memory(), H5Pclose, "access in memory");
   check(H5Pset_file_image(access, const_cast<char*>(content.data()), content.size()), name);  // copied
-  const std::string in_memory_only = name + "/image";  // HDF5 refuses an image by the name of a file that exists
+  const std::string in_memory_only = name + "/image";  // HDF5 rejects an image with the name of an existing file
   const Handle file(H5Fopen(in_memory_only.c_str(), H5F_ACC_RDONLY, access), H5Fclose, name);
   H5G_info_t root;
   check(H5Gget_info(file, &root), name);

@@ -1,4 +1,4 @@
-// What sources of this package share that use HDF5; not for others.
+// Shared HDF5 code of this package; not for other packages.
 #pragma once
 
 #include "base/check.hpp"
@@ -9,7 +9,7 @@
 
 namespace sprekk::io {
 
-/// An identifier of HDF5, closed in the end.
+/// HDF5 identifier, closed by the destructor. Throws an Error if the identifier is invalid.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
@@ -27,7 +27,7 @@ class Handle {
 
 inline void check(herr_t status, const std::string& what) { SPREKK_CHECK(status >= 0, "HDF5: {} failed", what); }
 
-/// Access to files that are in memory only.
+/// Access properties of files in memory.
 inline hid_t in_memory() {
   constexpr std::size_t increment = 1 << 20;  // byte
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -35,7 +35,7 @@ inline hid_t in_memory() {
   return access;
 }
 
-/// The bytes of a file in memory.
+/// Returns the bytes of a file in memory.
 inline std::string image_of(hid_t file) {
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), "a file in memory");
   const auto size = H5Fget_file_image(file, nullptr, 0);

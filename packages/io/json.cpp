@@ -15,7 +15,7 @@ std::string in_one_line(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Indented, but for arrays without structure, whose values share a line: they may be many.
+/// Appends indented JSON. Arrays without nested structures are on one line, because they may be long.
 void append(std::string& text, const nlohmann::json& json, int indent) {
   const auto structured = [](const auto& one) { return one.is_structured(); };
   if (!json.is_structured() || (json.is_array() && std::none_of(json.begin(), json.end(), structured)) ||

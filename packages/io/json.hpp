@@ -1,4 +1,4 @@
-// Results as JSON.
+// Output of JSON files.
 #pragma once
 
 #include "io/file.hpp"
@@ -9,12 +9,12 @@
 
 namespace sprekk::io {
 
-/// Rank 0 writes `json` to `path`, indented; every double reads back to the same bits, NaN and infinities become null.
-/// The file is complete or untouched. Collective; Error on every rank, naming the path.
+/// Writes `json` to `path` on rank 0, indented. A double is reproduced exactly when read; NaN and infinities become
+/// null. The file is complete or unchanged. Throws an Error with the path on every rank. Collective.
 void write_json(const Comm& comm, const std::string& path, const nlohmann::json& json);
 
-/// The same into the room that the file has on the disk, without indentation; false if it has too little, or on any
-/// error. Killed meanwhile, the program leaves a damaged file. Collective.
+/// Writes `json` without indentation into the disk space of the existing file. Returns false if the file is too short,
+/// or on any error. If the program is killed during the call, the file is damaged. Collective.
 bool overwrite_json(const Comm& comm, const std::string& path, const nlohmann::json& json);
 
 }  // namespace sprekk::io

@@ -16,7 +16,7 @@ namespace {
 
 std::string title(const SeriesColumn& column) { return fmt::format("{} [{}]", column.name, column.unit); }
 
-/// A text attribute of an object.
+/// Adds a text attribute to an object.
 void describe(hid_t object, const char* name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "a type");
   check(H5Tset_size(type, std::max<std::size_t>(1, text.size())), "the size of a text");
@@ -25,7 +25,7 @@ void describe(hid_t object, const char* name, const std::string& text) {
   check(H5Awrite(attribute, type, text.data()), name);
 }
 
-/// A variable of a group with its unit.
+/// Variable of a group with its unit.
 class Variable {
  public:
   Variable(hid_t group, const SeriesColumn& column, const std::vector<hsize_t>& extents,
@@ -36,7 +36,7 @@ class Variable {
     if (!values.empty()) check(H5Dwrite(set_, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "data");
     describe(set_, "units", column.unit);
   }
-  /// Makes it a dimension.
+  /// Declares the variable as a dimension.
   void set_scale(const std::string& name) const { check(H5DSset_scale(set_, name.c_str()), "a dimension"); }
   void attach(const Variable& scale, unsigned dimension) const {
     check(H5DSattach_scale(set_, scale.set_, dimension), "a dimension");
@@ -44,8 +44,8 @@ class Variable {
 
  private:
   hid_t create(hid_t group, std::string name) const {
-    std::replace(name.begin(), name.end(), '/', ' ');                 // which is a group's
-    check(H5Pset_obj_track_times(properties_, false), "properties");  // the same values make the same file
+    std::replace(name.begin(), name.end(), '/', ' ');                 // / separates groups
+    check(H5Pset_obj_track_times(properties_, false), "properties");  // equal values give equal files
     return H5Dcreate2(group, name.c_str(), H5T_NATIVE_DOUBLE, space_, H5P_DEFAULT, properties_, H5P_DEFAULT);
   }
 

@@ -1,4 +1,4 @@
-// Tables that grow by a row, or one row for each place, in every step of a run: CSV and HDF5.
+// Time series in CSV and HDF5: tables with one row, or one row for each place, in every step of a run.
 #pragma once
 
 #include "base/types.hpp"
@@ -12,17 +12,18 @@ struct SeriesColumn {
   std::string name, unit;
 };
 
-/// The values at one time.
+/// Values at one time.
 struct SeriesRow {
   Real time;                 ///< s
   std::vector<Real> values;  ///< [place * columns + column]
 };
 
-/// What a table has in its columns behind the time: where its values are, as along a line, and the values.
+/// Table of a time series. Its columns after the time are the coordinates of each place, for instance along a line, and
+/// the values.
 struct SeriesTable {
   std::string name;
   std::vector<SeriesColumn> columns = {};
-  std::vector<SeriesColumn> place_columns = {};  ///< none: one place, which is not told
+  std::vector<SeriesColumn> place_columns = {};  ///< none: one place, without columns
   std::vector<Real> places = {};                 ///< [place * place columns + column]
   std::vector<SeriesRow> rows = {};
 
@@ -34,24 +35,24 @@ struct TimeUnit {
   Real seconds;
 };
 
-/// Text of a table: of its titles, `time [d],length [m]`, and all rows, or of the last row alone. Every number reads
-/// back to the same bits.
+/// Returns a table as CSV text. It contains the titles, `time [d],length [m]`, and all rows, or the last row only.
+/// Numbers are reproduced exactly when read.
 std::string to_csv(const SeriesTable& table, const TimeUnit& unit, bool last_alone = false);
 
-/// The content of an HDF5 file that is a netCDF-4 file, too: a group for each table with the variable of each column
-/// over the dimension `time`, of tables with places also over the first of their columns; units are attributes
-/// `units`. Error if HDF5 fails. Not collective.
+/// Returns the content of an HDF5 file that is also a netCDF-4 file. Each table is a group. Each column is a variable
+/// over the dimension `time` and, for tables with places, over the first place column. Attributes `units` contain the
+/// units. Throws an Error if HDF5 fails. Not collective.
 std::string to_netcdf(const std::vector<SeriesTable>& tables, const TimeUnit& unit);
 
-/// DIRECTORY/probes/NAME.csv of each table, complete after every step, and DIRECTORY/probes.h5 of all. Rank 0 alone
-/// keeps rows. All members are collective; Errors name the path, on every rank.
+/// Time series in DIRECTORY/probes/NAME.csv for each table, complete after every step, and in DIRECTORY/probes.h5 for
+/// all tables. Only rank 0 stores rows. All members are collective. Errors name the path and are thrown on every rank.
 class SeriesFiles {
  public:
-  /// Replaces what an earlier run left.
+  /// Creates the files and replaces those of an earlier run.
   SeriesFiles(RCP<const Comm> comm, const std::string& directory, std::vector<SeriesTable> tables, TimeUnit unit);
 
-  void add(Real time, std::vector<std::vector<Real>> values);  ///< of each table a row, the same on every rank
-  void write_all() const;                                      ///< the file of all tables
+  void add(Real time, std::vector<std::vector<Real>> values);  ///< one row of each table; same on every rank
+  void write_all() const;                                      ///< writes the file of all tables
   const std::vector<SeriesTable>& tables() const { return tables_; }
 
  private:

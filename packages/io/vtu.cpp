@@ -43,7 +43,7 @@ int face_type(mesh::Shape shape) {
   return linear ? VTK_QUAD : VTK_BIQUADRATIC_QUAD;
 }
 
-/// Adds nodes as corners of cells to a piece; a node becomes a point when it is first met.
+/// Builder of a piece from the corner nodes of its cells. A node becomes a point at its first occurrence.
 class PieceBuilder {
  public:
   PieceBuilder(const mesh::Mesh& mesh, int vtk_cell_type, int nodes_per_cell)
@@ -71,7 +71,8 @@ class PieceBuilder {
   Piece piece_;
 };
 
-/// VTK's view of an array that stays ours. VTK has no const arrays, the writer only reads; it does not escape names.
+/// Creates a VTK array that shares the memory of `values`. VTK has no const arrays, but the writer only reads. VTK does
+/// not escape names.
 template <class Array, class T>
 vtkNew<Array> borrowed(const std::vector<T>& values, int n_components, const std::string& name) {
   vtkNew<Array> array;
@@ -81,7 +82,7 @@ vtkNew<Array> borrowed(const std::vector<T>& values, int n_components, const std
   return array;
 }
 
-/// The piece as the content of a .vtu file: binary, appended, zlib.
+/// Returns the content of a .vtu file: binary, appended, zlib.
 std::string vtu_content(const Piece& piece) {
   vtkNew<vtkPoints> points;
   points->SetData(borrowed<vtkDoubleArray>(piece.points, 3, "Points"));
@@ -123,7 +124,7 @@ std::string vtk_file(const std::string& type, const std::string& body) {
       type, body);
 }
 
-/// The .pvtu without its list of pieces: the arrays, in their order.
+/// Returns the part of a .pvtu file that declares the arrays, in their order.
 std::string declared(const Piece& piece) {
   return fmt::format(
       " GhostLevel=\"0\">\n    <PPointData>\n{}    </PPointData>\n    <PCellData>\n{}    </PCellData>\n    <PPoints>\n"
@@ -131,7 +132,7 @@ std::string declared(const Piece& piece) {
       declarations(piece.point_data), declarations(piece.cell_data));
 }
 
-/// A file in a list of blocks.
+/// Returns the entry of a file in a list of blocks.
 std::string data_set(std::size_t index, const std::string& name, const std::string& file) {
   return fmt::format("      <DataSet index=\"{}\"{} file=\"{}\"/>\n", index, name, base::xml_escaped(file));
 }
