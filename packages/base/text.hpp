@@ -10,6 +10,7 @@
 
 namespace sprekk::base {
 
+/// Removes blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
 /// Converts the whole of `text` (except for blanks at the ends) to a number. Returns nothing for other texts, e.g.

@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::size_t largest_file = std::size_t(64) << 20;  // bytes
 
-/// Throws an Error for characters that the XML parser does not handle: invalid UTF-8, and references beyond ASCII.
+/// Throws an Error for characters that the XML parser does not handle: invalid UTF-8, bytes 0, and references beyond
+/// ASCII.
 void check_characters(const std::string& text, const std::string& file) {
   const auto line = [&](std::size_t at) { return 1 + std::count(text.begin(), text.begin() + at, '\n'); };
   const auto bad = where_not_utf8(text);

@@ -18,6 +18,7 @@ enum class Entity {
 
 std::string name_of(Entity entity);
 
+/// Field with unknowns on the entities of one kind.
 struct Field {
   std::string name;
   Entity entity;

@@ -122,6 +122,7 @@ class Matrix : public Operator {
   mutable RCP<CrsMatrix> crs_;
 };
 
+/// Wraps A as a Matrix that shares its values. Not collective.
 inline RCP<const Matrix> wrapped(const RCP<const CrsMatrix>& A) { return rcp(new const Matrix(A)); }
 
 }  // namespace sprekk::fields

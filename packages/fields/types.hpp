@@ -27,6 +27,7 @@ using Operator = Tpetra::Operator<Real, LocalIndex, GlobalIndex>;
 /// One vector for each block, in the order of the blocks.
 using BlockVector = std::vector<RCP<Vector>>;
 
+/// Creates zero vectors on the maps of x.
 inline BlockVector create_like(const BlockVector& x) {
   BlockVector y;
   for (const auto& v : x) y.push_back(rcp(new Vector(v->getMap())));
@@ -37,6 +38,7 @@ inline BlockVector create_like(const BlockVector& x) {
 /// until the list is requested, for instance by an import. Collective.
 RCP<const Map> make_map(const std::vector<GlobalIndex>& numbers, const RCP<const Comm>& comm);
 
+/// Copies the values of all blocks; the maps must agree.
 inline void copy(const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < from.size(); ++b) Tpetra::deep_copy(*to[b], *from[b]);
 }

@@ -59,7 +59,7 @@ std::array<std::string, 2> journal_files(const std::string& path) {
 
 std::string piece_file(const std::string& folder, int rank) { return fmt::format("{}/piece_{}.h5", folder, rank); }
 
-/// Returns the text of a file on all ranks; rank 0 reads it. With a seal, only the first bytes are read, as many as the
+/// Returns the text of a file on all ranks; rank 0 reads it. With a seal, only the first bytes are used, as many as the
 /// seal specifies. Throws an Error if they are damaged. Collective.
 std::string read_once(const Comm& comm, const std::string& path, const std::optional<Seal>& seal = {}) {
   std::string text;

@@ -25,6 +25,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Throws an Error if an HDF5 call has failed.
 inline void check(herr_t status, const std::string& what) { SPREKK_CHECK(status >= 0, "HDF5: {} failed", what); }
 
 /// Access properties of files in memory.

@@ -30,6 +30,7 @@ struct SeriesTable {
   std::size_t n_places() const { return place_columns.empty() ? 1 : places.size() / place_columns.size(); }
 };
 
+/// Unit of the times in files: name, and length in s.
 struct TimeUnit {
   std::string name;
   Real seconds;

@@ -31,6 +31,7 @@ struct Conduit {
     const Real a = aperture + widening;
     return a > least ? a : least;
   }
+  /// Hydraulic aperture, m.
   KOKKOS_INLINE_FUNCTION Real hydraulic_aperture(Real widening = 0) const {
     const Real e = walls.hydraulic(aperture + widening);
     return e > least ? e : least;

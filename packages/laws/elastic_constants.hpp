@@ -17,8 +17,8 @@ struct ElasticPair {
   int count() const { return E.has_value() + nu.has_value() + G.has_value() + lambda.has_value() + K.has_value(); }
 };
 
-/// Computes Lame's constants from two constants. Throws Error unless exactly two are given, and if the result is not a
-/// stable solid (G > 0, K > 0).
+/// Computes Lame's constants, Pa, from two constants. Throws an Error if the number of given constants is not two, or
+/// if the result is not a stable solid (G > 0, K > 0).
 inline Elasticity lame_constants(const ElasticPair& p) {
   SPREKK_CHECK(p.count() == 2, "{} elastic constants given, exactly two are needed", p.count());
   Elasticity e;

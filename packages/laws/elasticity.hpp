@@ -13,8 +13,8 @@ struct Elasticity {
 
   Real youngs_modulus() const { return G * (3 * lambda + 2 * G) / (lambda + G); }
 
-  /// Computes the stress [dim, dim], Pa, of the displacement gradient H_ij = du_i/dx_j: sigma = 2 G eps + lambda
-  /// tr(eps) I.
+  /// Computes the stress [dim, dim], Pa, of the displacement gradient H_ij = du_i/dx_j:
+  /// sigma = 2 G eps + lambda tr(eps) I.
   template <int dim>
   KOKKOS_INLINE_FUNCTION void stress(const Real (&H)[dim][dim], Real (&sigma)[dim][dim]) const {
     Real trace = 0;
@@ -23,8 +23,8 @@ struct Elasticity {
       for (int j = 0; j < dim; ++j) sigma[i][j] = G * (H[i][j] + H[j][i]) + (i == j ? lambda * trace : 0);
   }
 
-  /// Stiffness of components i, j for the gradients a, b of two shape functions: lambda a_i b_j + G (a_j b_i + delta_ij
-  /// a.b).
+  /// Stiffness of components i, j for the gradients a, b of two shape functions:
+  /// lambda a_i b_j + G (a_j b_i + delta_ij a.b).
   template <int dim>
   KOKKOS_INLINE_FUNCTION Real stiffness(const Real (&a)[dim], const Real (&b)[dim], int i, int j) const {
     Real dot = 0;

@@ -24,9 +24,11 @@ struct FluidResponse {
   Real distance = 1;             ///< distance of the knots
   ConstView<Real**> knots = {};  ///< [knot, 4] d, its slope times distance, m, likewise; empty: exponential
 
+  /// Factor d of the density.
   KOKKOS_INLINE_FUNCTION Factor density(Real u) const {
     return knots.extent(0) > 0 ? between(u, 0) : exponential(-expansion, u);
   }
+  /// Factor m, the inverse factor of the viscosity.
   KOKKOS_INLINE_FUNCTION Factor mobility(Real u) const {
     return knots.extent(0) > 0 ? between(u, 2) : exponential(thinning, u);
   }

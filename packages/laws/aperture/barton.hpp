@@ -8,9 +8,9 @@
 
 namespace sprekk::laws {
 
-/// Hydraulic aperture, m, at the mechanical aperture a, after Barton: a^2/JRC^2.5 in micrometres, at most a; 0 for a <
-/// 0. The derivative is discontinuous at a = JRC^2.5 micrometres. The formula was taken from source code (Lei's Y), not
-/// from the paper.
+/// Hydraulic aperture, m, at the mechanical aperture a, after Barton: a^2/JRC^2.5 in micrometres, at most a, and 0 for
+/// negative a. The derivative is discontinuous at a = JRC^2.5 micrometres. The formula was taken from source code
+/// (Lei's Y), not from the paper.
 struct BartonAperture {
   Real roughness = 0;  ///< JRC as given, that of the sample
   Real smooth = 0;     ///< aperture above which roughness has no effect, m

@@ -5,6 +5,7 @@
 
 namespace sprekk::laws {
 
+/// Hydraulic aperture of smooth walls, m: the mechanical aperture a.
 struct MechanicalAperture {
   static constexpr const char *name = "mechanical", *meaning = "that by which the walls are apart, of smooth walls";
   static std::vector<Parameter<MechanicalAperture>> parameters() { return {}; }

@@ -15,6 +15,7 @@ struct Cohesion {
   bool lost = true;  ///< separated sides transmit no traction
 };
 
+/// Joint without bond: no cohesion and no tensile strength.
 struct NoBond {
   static constexpr const char *name = "none", *meaning = "faces bear no tension, and no shear without compression";
   static std::vector<Parameter<NoBond>> parameters() { return {}; }

@@ -32,6 +32,7 @@ class DirectionFan {
   KOKKOS_INLINE_FUNCTION explicit DirectionFan(const History& kept) : size_(size_of(kept)) {
     for (int j = 0; j < size_; ++j) nodes_[j] = node(kept, j);
   }
+  /// Writes at most n_numbers numbers.
   KOKKOS_INLINE_FUNCTION void write(const Numbers<Real>& kept) const {
     kept[0] = size_;
     for (int j = 0; j < size_; ++j) {

@@ -9,8 +9,8 @@
 
 namespace sprekk::laws {
 
-/// Remaining fractions of friction and dilation, each d = r + (1 - r) exp(-Lambda/L), with the damage history Lambda,
-/// m. This is the form of PorePy's fracture_damage after White (2014), with d0 = 1/r and mu the residual coefficient
+/// Remaining fractions of friction and dilation, each d = r + (1 - r) exp(-Lambda/L). Lambda is the damage history, m.
+/// This is the form of PorePy's fracture_damage after White (2014), with d0 = 1/r and mu the residual coefficient
 /// there. Derived laws define Lambda and its history variables.
 struct ExponentialDecay {
   Real friction = 0, dilation = 0;                               ///< r of each

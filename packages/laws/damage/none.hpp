@@ -12,6 +12,7 @@ struct Left {
   T friction = 1, dilation = 1;
 };
 
+/// Joint without damage: both fractions are 1.
 struct NoDamage {
   static constexpr const char *name = "none", *meaning = "friction and dilation do not wear";
   static std::vector<Parameter<NoDamage>> parameters() { return {}; }

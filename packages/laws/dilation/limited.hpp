@@ -6,9 +6,9 @@
 
 namespace sprekk::laws {
 
-/// Opening by slip, m: tan(theta) u with u = |u_t^p|, at most h, where rough faces ride on the tips of their
-/// asperities. A parabola within 5 % of h joins both lines; it is below them by up to 0.0125 h. As a function of u,
-/// dilation is reversed with the slip.
+/// Opening by slip, m: tan(theta) u with u = |u_t^p|, up to the height h. Beyond h it is constant, because rough faces
+/// ride on the tips of their asperities. A parabola within 5 % of h joins both lines; it is below them by up to 0.0125
+/// h. As a function of u, dilation is reversed with the slip.
 struct LimitedDilation {
   Real tangent = 0;  ///< tan(theta)
   Real height = 1;   ///< h, m
