@@ -65,7 +65,7 @@ class Section {
     visit(target, {name, unit, any(), meaning, true, {}});
   }
 
-  /// Declares a word from a list of choices; T is std::string or std::optional<std::string>.
+  /// Declares a word from a list of choices; T is `std::string` or `std::optional<std::string>`.
   template <class T>
   void choice(T& target, const std::string& name, const std::vector<std::string>& allowed, const std::string& meaning) {
     visit(target, {name, "-", any(), meaning, false, allowed});

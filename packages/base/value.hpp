@@ -19,8 +19,8 @@ inline std::ostream& operator<<(std::ostream& out, const Unreadable& entry) { re
 std::vector<std::string> unreadable(const Teuchos::ParameterList& list);
 
 /// Sets list[name] to `text` converted to `type`: int, long long, double, bool, string, Array(int), Array(double) or
-/// Array(string). A double with a unit becomes a Quantity. An array of doubles becomes an Array<Quantity> if an element
-/// has a unit. Throws an Error such as "is "1.0abc", not a number ...", without a place.
+/// Array(string). A double with a unit becomes a Quantity. An array of doubles becomes an `Array<Quantity>` if an
+/// element has a unit. Throws an Error such as "is "1.0abc", not a number ...", without a place.
 void set_from_text(Teuchos::ParameterList& list, const std::string& name, const std::string& type,
                    const std::string& text);
 

@@ -72,9 +72,9 @@ struct IsotropicDamage : ExponentialDecay {
 };
 
 /// Damage of the asperity flanks that face the slip, as in PorePy's fracture_damage:
-///   Lambda(m) = sum of k |<m.u> - <m.u_before>|
-/// < > is the positive part and m the present direction of the plastic jump u. In 2D there are two directions, and two
-/// history variables suffice. In 3D Lambda is a directional table with an error bound.
+///   Lambda(m) = sum of k `|<m.u> - <m.u_before>|`
+/// `<x>` is the positive part of x and m the present direction of the plastic jump u. In 2D there are two directions,
+/// and two history variables suffice. In 3D Lambda is a directional table with an error bound.
 ///
 /// At u = 0 the fractions jump from one direction's value to the other's, and some loads would have no equilibrium.
 /// Therefore they are interpolated for |u| < w, with w = 1e-3 of the smaller damage length:
