@@ -1,5 +1,4 @@
-// One kernel for all modules: gather the unknowns of an entity, call the module's local operator, scatter what it
-// returns.
+// Generic kernel of all modules: gathers the unknowns of an entity, calls the local operator, scatters the result.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -9,18 +8,18 @@
 
 namespace sprekk::assembly {
 
-/// Runs a local operator over a loop. Op is copied into kernels and has
+/// Applies a local operator to all entities of a loop. Op is copied into kernels. Its members:
 ///   using Columns = Slots<...>, Rows = Slots<...>;                 unknowns read, rows written, in local order
 ///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;       device, overwrites r
 ///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device,
-///   overwrites J, and may have
-///   static constexpr bool couples(int row_slot, int column_slot);    false where J is always zero; these are not added
+///   overwrites J
+///   static constexpr bool couples(int row_slot, int column_slot);  optional; false: J is zero there and is not added
 template <class Op>
 class Assembler {
  public:
   using Columns = typename Op::Columns;
   using OpRows = typename Op::Rows;
-  enum class Positions { keep, once };  ///< keep scatter positions for further assemblies, or drop them
+  enum class Positions { keep, once };  ///< keep: save scatter positions for the next assembly; once: discard them
 
   /// row_fields, column_fields: block numbers in the order of the operator's slots.
   Assembler(const Context& context, Loop loop, std::vector<int> row_fields, std::vector<int> column_fields,
@@ -41,7 +40,7 @@ class Assembler {
   template <class T>
   using PerColumn = Kokkos::Array<T, Columns::n>;
 
-  /// Copies an entity's unknowns into one local array.
+  /// Copies the unknowns of an entity into one local array. Absent unknowns are zero.
   struct Gather {
     Op op;
     PerColumn<ConstView<LocalIndex**>> first;  // [entity, group]
@@ -55,7 +54,7 @@ class Assembler {
     }
   };
 
-  /// r[row field] += op.residual over all entities, owned rows only.
+  /// Adds op.residual of all entities to r[row field]. Writes owned rows only. Local.
   void add_residual(const Op& op, const State& state, const Rows& r) const {
     ResidualKernel kernel{gather(op, state), {}, {}, {}};
     for (int i = 0; i < OpRows::n; ++i) {
@@ -66,7 +65,7 @@ class Assembler {
     Kokkos::parallel_for("residual", Kokkos::RangePolicy<Execution>(0, n_entities_), kernel);
   }
 
-  /// Calls visit(entity, unknowns) for every entity of the loop; visit is device code.
+  /// Calls visit(entity, unknowns) for each entity of the loop. visit is device code. Local.
   template <class Visit>
   void for_each(const Op& op, const State& state, const Visit& visit) const {
     const Gather gathered = gather(op, state);
@@ -78,7 +77,8 @@ class Assembler {
         });
   }
 
-  /// J(row field, column field) += op.jacobian over all entities, owned rows only; absent blocks are skipped.
+  /// Adds op.jacobian of all entities to the blocks J(row field, column field). Writes owned rows only and skips absent
+  /// blocks. Local.
   void add_jacobian(const Op& op, const State& state, fields::BlockMatrix& J) {
     JacobianKernel kernel{gather(op, state), {}, {}, {}, {}, {}};
     if (positions_.empty()) find_all_positions(J);
@@ -126,7 +126,7 @@ class Assembler {
       for (int i = 0; i < OpRows::n; ++i)
         for (int g = 0; g < OpRows::count(i); ++g) {
           const LocalIndex row = first[i](e, g);
-          if (row < 0 || row >= n_owned[i]) continue;  // absent, or another rank's
+          if (row < 0 || row >= n_owned[i]) continue;  // absent, or row of another rank
           for (int c = 0; c < OpRows::width(i); ++c)
             Kokkos::atomic_add(&r[i](row + c), local[OpRows::offset(i) + g * OpRows::width(i) + c]);
         }
@@ -160,7 +160,7 @@ class Assembler {
       if (values[i][k].extent(0) == 0) return;
       for (int g = 0; g < OpRows::count(i); ++g) {
         const LocalIndex row = first[i](e, g);
-        if (row < 0 || row >= n_owned[i]) continue;  // absent, or another rank's
+        if (row < 0 || row >= n_owned[i]) continue;  // absent, or row of another rank
         std::size_t begin[height];
         for (int c = 0; c < height; ++c) begin[c] = row_begin[i][k](row + c);
         for (int h = 0; h < Columns::count(k); ++h) {

@@ -1,4 +1,4 @@
-// What kernels read of the mesh's cells, and the rule by which they integrate over one.
+// Mesh data of cells for kernels, and the choice of the quadrature rule of a cell.
 #pragma once
 
 #include "assembly/reference_cell.hpp"
@@ -9,7 +9,7 @@ struct Mesh;
 
 namespace sprekk::assembly {
 
-/// What a kernel over cells reads of the mesh, which must stay as it is.
+/// Mesh data that kernels over cells read. The views may refer to the mesh: do not change or destroy it.
 struct Geometry {
   ConstView<Real**> coordinates;  ///< [node, component], m
   ConstView<LocalIndex**> cells;  ///< [cell, local node]
@@ -26,7 +26,8 @@ struct Geometry {
   }
 };
 
-/// Calls use(rule) with the rule for a cell with nodes at X: `Straight`, or CurvedQuadrature where it is not straight.
+/// Calls use(rule) with the quadrature rule of a cell with nodes at X. The rule is `Straight` for straight cells and
+/// CurvedQuadrature for other cells of order 2.
 template <Shape shape, class Straight, class Use>
 KOKKOS_INLINE_FUNCTION void with_rule(const Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)], const Use& use) {
   if (ReferenceCell<shape>::is_straight(X))

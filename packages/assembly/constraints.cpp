@@ -26,8 +26,8 @@ bool DirichletCondition::holds_at(const std::array<Real, 3>& x) const {
 
 namespace {
 
-/// Collects entries, one per unknown. Where several faces give a condition to one, the least of their directions
-/// counts, in any order of faces.
+/// Collects entries, one per unknown. If several faces apply a condition to one unknown, the smallest direction is
+/// used. The result does not depend on the order of the faces.
 class Collector {
  public:
   Collector(Held& held, GlobalIndex n_owned) : held_(held), n_owned_(n_owned) {}
@@ -65,8 +65,8 @@ mesh::Vector centre_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& f
   return mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face));
 }
 
-/// What conditions on a field hold of the unknowns below n_owned, on a mesh or a rank's part of it. Nodes are those of
-/// faces, of the cell that has the face; entity_of(face, node) is what carries the unknowns there, -1 for nothing.
+/// Returns the unknowns below n_owned that conditions prescribe, on a whole mesh or the part of a rank. The nodes are
+/// those of boundary faces. entity_of(face, node) returns the entity with the unknowns, or -1.
 template <class AnyMesh, class EntityOf>
 Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
@@ -99,7 +99,7 @@ Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
                    [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
 }
 
-/// Of a field on cells, at their centres.
+/// Returns the prescribed unknowns of a field on cells, with the cell centres.
 Held find_held_cells(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
                      const std::vector<DirichletCondition>& conditions) {
   Held held;
@@ -112,12 +112,13 @@ Held find_held_cells(const mesh::Mesh& mesh, int n_components, LocalIndex n_owne
   return held;
 }
 
-/// Calls visit(facet, centre) for the facets in a region, once or twice.
+/// Calls visit(facet, centre) for the facets in a region, once or twice each.
 template <class Visit>
 void for_each_facet_in(const mesh::Mesh& mesh, int region, const Visit& visit) {
   const int n_faces = mesh::n_faces(mesh.shape);
   const auto& of_cell = mesh.facets->of_cell;
-  std::vector<int> outside(mesh.facets->id.size(), 1);  // cells that are missing for it to be in the region
+  std::vector<int> outside(mesh.facets->id.size(), 1);  // number of cells still missing for the facet to be in the
+                                                        // region
   for (const LocalIndex facet : mesh.facets->fracture_face) outside[facet] = 2;
   std::vector<int> cells(outside.size(), 0);
   for (std::size_t face = 0; face < of_cell.size(); ++face) {
@@ -130,7 +131,7 @@ void for_each_facet_in(const mesh::Mesh& mesh, int region, const Visit& visit) {
                                                                 static_cast<int>(face) % n_faces)));
 }
 
-/// Of a field on facets, at the mean of their corners.
+/// Returns the prescribed unknowns of a field on facets, with the facet centres.
 Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
                       const std::vector<DirichletCondition>& conditions) {
   Held held;
@@ -157,7 +158,8 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
   return held;
 }
 
-/// Of a field on enriched nodes: those of faces with a tip, for it vanishes on others.
+/// Returns the prescribed unknowns of a field. Fields on enriched nodes: only faces with a tip, since the enrichment is
+/// zero on other faces.
 Held find_held(const mesh::Mesh& mesh, const fields::Layout& layout,
                const std::vector<DirichletCondition>& conditions) {
   const int n_components = layout.field().n_components;
@@ -192,7 +194,7 @@ std::vector<Real> prescribed_values(const Held& held, const std::vector<Dirichle
   std::vector<Real> values;
   for (const auto& entry : held.entries) values.push_back(value(entry));
   const Real largest = largest_of(values);
-  std::map<std::array<int, 3>, std::string> found;  // one of each pair of conditions and component
+  std::map<std::array<int, 3>, std::string> found;  // one message per pair of conditions and component
   for (const auto& [number, entry] : held.repeated) {
     const Real first = values[number], second = value(entry);
     if (std::abs(first - second) <= 1e-12 * largest) continue;

@@ -1,4 +1,4 @@
-// Prescribed values of unknowns, on boundaries and in regions.
+// Prescribed values of unknowns on boundaries and in regions.
 #pragma once
 
 #include "base/expression.hpp"
@@ -13,63 +13,74 @@
 
 namespace sprekk::assembly {
 
-/// Values of a field on nodes or facets on a boundary, or of one on cells or facets in a region, per component; a
-/// component without value is free. Facets in a region are those between two cells of which one is in it, or both where
-/// a fracture is between them: fluxes through the boundary of the domain are left to conditions there.
+/// Dirichlet condition on one field. A component without a value is free. The condition applies either to nodes or
+/// facets
+/// on a boundary, or to cells or facets in a region. A facet is in a region if one of its two cells is in this region.
+/// On
+/// a fracture, both cells must be. Facets on the domain boundary are excluded: boundary conditions prescribe their
+/// fluxes.
 struct DirichletCondition {
-  std::string name;  ///< how messages call it
+  std::string name;  ///< name in messages
   std::string field;
-  int boundary;  ///< number of the mesh's boundary; -1: all of the region
+  int boundary;  ///< number of the boundary in the mesh; -1: everywhere in the region
   std::vector<std::optional<base::Expression>> values;
-  int region = -1;    ///< only on faces of cells of this region; -1: all
-  int fracture = -1;  ///< only where this fracture ends; -1: on faces, and, if no region is named, where fractures end
-  /// Of a field on nodes: only in this box, its lower and upper corner included.
+  int region = -1;    ///< restriction to faces of cells of this region; -1: all
+  int fracture = -1;  ///< restriction to the ends of this fracture; -1: faces, and fracture ends if no region is given
+  /// Box that restricts the condition, lower and upper corner included. For fields on nodes only.
   std::optional<std::array<std::array<Real, 3>, 2>> within = {};
   bool holds_at(const std::array<Real, 3>& x) const;
 };
 
-/// The unknowns that conditions on one node field hold.
+/// Unknowns of one field that conditions prescribe.
 struct Held {
   struct Entry {
-    GlobalIndex unknown;  ///< free node * components + component, by the numbers of the mesh that it was found on
+    GlobalIndex unknown;  ///< entity * components + component; entity: free node, cell, facet or enriched node of this
+                          ///< mesh
     int condition, component;
     std::array<Real, 3> x;
-    std::array<Real, 3> side = {};  ///< from x into a face of its own side, where a fracture ends; see one_sided()
+    std::array<Real, 3> side = {};  ///< from x into a face on the node's side, at ends of fractures; see one_sided()
   };
   std::vector<Entry> entries;                   ///< one per unknown
-  std::vector<std::pair<int, Entry>> repeated;  ///< (number of the first entry, a second condition on its unknown)
+  std::vector<std::pair<int, Entry>> repeated;  ///< (number of the first entry, second condition on its unknown)
 };
 
-/// The values of the entries at time t. Where two conditions ask different values of one unknown, `conflicts` gets a
-/// line that names both; one for each pair of conditions and component.
+/// Returns the values of the entries at time t. If two conditions prescribe different values of one unknown, a message
+/// with
+/// both is appended to `conflicts`, one per pair of conditions and component. Throws an Error where an expression has
+/// no
+/// value.
 std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
                                     std::vector<std::string>& conflicts);
 
-/// The conflicts at time t on a whole mesh, of conditions on the displacement. Not collective.
+/// Returns the conflicts at time t of conditions on the displacement, on a whole mesh. Not collective.
 std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
                                         Real t);
 
-/// All conditions on one node field: which owned unknowns they hold and to what value.
+/// Conditions on one field: the owned unknowns they prescribe, and the values.
 class Constraints {
  public:
-  /// Boundary values are taken face by face at the nodes of the owning cell. Where a fracture ends on the boundary and
-  /// a value jumps, each copy of the node has the value of its own side. `conditions` are those on this field.
+  /// Finds the prescribed unknowns. Boundary conditions apply to the nodes of boundary faces. If a value jumps where a
+  /// fracture
+  /// ends on the boundary, each copy of the node has the value of its own side. `conditions` must be those on this
+  /// field.
   Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions);
 
-  /// Evaluates all values at time t. Throws an Error that names both conditions where two of them ask different values
-  /// of one unknown. Local.
+  /// Evaluates all values at time t. Throws an Error with the names of both conditions if two prescribe different
+  /// values of
+  /// one unknown. Local.
   void evaluate(Real t);
 
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }
   const std::vector<Held::Entry>& entries() const { return held_.entries; }  ///< one per constrained owned unknown
-  std::vector<contact::Support> supports() const;                            ///< the same, for contact
+  std::vector<contact::Support> supports() const;                            ///< constrained unknowns and
+                                                                             ///< components, for contact
   ConstView<char*> mask() const { return mask_; }                            ///< [owned unknown] 1 if constrained
-  ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time, else 0
+  ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time; 0 if free
   Real largest() const { return largest_; }            ///< largest |value| at the last evaluated time
 
  private:
   std::vector<DirichletCondition> conditions_;
-  Held held_;  ///< owned
+  Held held_;  ///< owned unknowns only
   View<char*> mask_;
   View<Real*> values_;
   Real largest_ = 0;

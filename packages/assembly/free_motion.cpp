@@ -53,7 +53,7 @@ std::vector<RigidFrame> frames(const GlobalMesh& mesh, const mesh::Bodies& bodie
   return result;
 }
 
-/// Sums of products of the rows of all constraints, by pairs of bodies that a constraint joins.
+/// Sums of products of constraint rows, for each pair of bodies with a common constraint.
 class Gram {
  public:
   Gram(const GlobalMesh& mesh, const mesh::Bodies& bodies, const std::vector<DirichletCondition>& conditions)
@@ -93,7 +93,7 @@ class Gram {
     }
   }
 
-  /// Ties, and bodies that touch in an edge or corner: wherever unknowns belong to two places or bodies.
+  /// Adds constraints between bodies or places with common unknowns: ties, and bodies that touch at an edge or corner.
   void add_shared() {
     const int n = mesh::n_nodes(mesh_.shape);
     std::vector<std::pair<int, GlobalIndex>> first(mesh_.n_free_nodes(), {-1, -1});

@@ -1,4 +1,4 @@
-// What boundary conditions and ties leave free to move as a whole.
+// Rigid motions that boundary conditions and ties do not prevent.
 #pragma once
 
 #include "assembly/constraints.hpp"
@@ -12,13 +12,15 @@ namespace sprekk::assembly {
 
 using contact::FreeMotion;
 
-/// A basis of the rigid motions of the bodies that no condition on "displacement" and no tie prevents: those that
-/// vanish in every held component and move nodes that share their unknowns alike. Contact cannot prevent them either,
-/// since a body includes all that fractures join. In 3D six, in 2D three for each body without any support. A motion
-/// that takes several bodies along counts once for each of them. Empty: everything is held. Not collective.
+/// Returns a basis of the rigid motions that neither conditions on "displacement" nor ties prevent. A free motion is
+/// zero in
+/// every prescribed component and equal at nodes with common unknowns. A body includes all rock joined by fractures, so
+/// contact cannot prevent these motions. A body without any support has six motions in 3D and three in 2D. A motion of
+/// several bodies is listed once for each of them. The result is empty if all bodies are supported. Not collective.
 std::vector<FreeMotion> free_motions(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions);
 
-/// A body that can move, how, and what helps; empty if everything is held. Not collective.
+/// Returns an error message with a free body, its motions and a remedy; empty if all bodies are supported. Not
+/// collective.
 std::string unheld(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions);
 
 }  // namespace sprekk::assembly

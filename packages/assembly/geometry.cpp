@@ -5,14 +5,14 @@
 namespace sprekk::assembly {
 namespace {
 
-/// The vector's own values where kernels can read them, else a copy.
+/// Returns a view of the vector itself if kernels can access host memory, else a copy.
 template <class Data, class T, class... Extents>
 ConstView<Data> view_of(const std::vector<T>& values, Extents... extents) {
   const typename Kokkos::View<Data, Kokkos::LayoutRight, Kokkos::HostSpace>::const_type host(values.data(), extents...);
   return Kokkos::create_mirror_view_and_copy(Execution::memory_space(), host);
 }
 
-/// See for_each_face_point.
+/// Implements for_each_face_point for one shape.
 template <Shape shape>
 void visit_face(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const VisitFacePoint& visit) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
@@ -44,7 +44,7 @@ void visit_face(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const V
     constexpr Shape face = mesh::order(shape) == 1 ? corners : mesh::quadratic(corners);
     using Face = ReferenceCell<face>;
     Real xi[2], N[n], dN[n][2];
-    using Rule = Quadrature<face, 4>;  // as exact for a bubble of the cell behind as the rule in that cell
+    using Rule = Quadrature<face, 4>;  // as accurate for the cell's bubble as the rule of the cell
     for (int q = 0; q < Rule::n; ++q) {
       const Real weight = Rule::at(q, xi);
       Face::shape_functions(xi, N);

@@ -20,13 +20,14 @@ ConstView<T*> to_device(const std::vector<T>& from, const std::string& name) {
   return to;
 }
 
-/// Which of the different materials each local cell has: as told, or, if nothing is, the number of its region.
+/// Returns the material number of each local cell. If `of_cell` is empty, the number is that of the region.
 inline ConstView<int*> material_numbers(const Geometry& geometry, const std::vector<int>& of_cell) {
   return of_cell.empty() ? geometry.region : to_device(of_cell, "material of cells");
 }
 
-/// Coordinates of the first n nodes of a cell on the host, n being that of `shape`: of a mesh of order 2 and a shape of
-/// order 1 the corners.
+/// Copies the coordinates of the first n nodes of a cell on the host, n = n_nodes(shape). In a mesh of order 2, a
+/// `shape` of
+/// order 1 selects the corners.
 template <Shape shape>
 void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)]) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -35,8 +36,9 @@ void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_node
     for (int i = 0; i < dim; ++i) X[a][i] = mesh.coordinates[nodes[a] * dim + i];
 }
 
-/// Calls visit(xi, volume, x) at the points of a rule, by default one for bubbles: reference point, volume that it
-/// stands for, place.
+/// Calls visit(xi, volume, x) at the points of a quadrature rule, by default that of bubbles. xi is the reference
+/// point, x
+/// the position, and `volume` the weight of the point, m^3 (m^2 in 2D).
 template <Shape shape, class Straight = BubbleQuadrature<shape>, class Visit>
 void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& visit) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -56,40 +58,40 @@ void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& v
   });
 }
 
-/// The volume that a point stands for, m^3 (m^2 in 2D), and its place.
+/// Callback with the weight of a point, m^3 (m^2 in 2D), and its position, m.
 using VisitCellPoint = std::function<void(Real volume, const std::array<Real, 3>& x)>;
 
-/// Calls visit at the points of the rule for bubbles in a cell.
+/// Calls visit at the points of the bubble rule in a cell.
 void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const VisitCellPoint& visit);
 
-/// A cell's volume and the mean of value(x) over it.
+/// Returns the volume of a cell and the mean of value(x) over it.
 std::array<Real, 2> cell_mean(const mesh::Mesh& mesh, LocalIndex cell,
                               const std::function<Real(const std::array<Real, 3>& x)>& value);
 
 /// Values at the nodes of a face, in the order of face_nodes(shape).
 using FaceValues = std::array<Real, mesh::max_face_nodes>;
 
-/// Values of the face's node functions, the area that a point stands for, m^2 (m in 2D), and its place.
+/// Callback with the face's shape functions, the weight of the point, m^2 (m in 2D), and its position, m.
 using VisitFacePoint = std::function<void(const FaceValues& N, Real area, const std::array<Real, 3>& x)>;
 
-/// Calls visit at quadrature points of a face of a cell, exact for degree 5 on affine faces.
+/// Calls visit at the quadrature points of a cell face. The rule is exact for degree 5 on affine faces.
 void for_each_face_point(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const VisitFacePoint& visit);
 
-/// The mean over a face of value(N, x), see VisitFacePoint.
+/// Returns the mean of value(N, x) over a face; see VisitFacePoint for the arguments.
 Real face_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face,
                const std::function<Real(const FaceValues& N, const std::array<Real, 3>& x)>& value);
 
-/// The face function of ReferenceCell::bubble on its face, from the values of the face's node functions.
+/// Returns ReferenceCell::bubble on its own face, from the face's shape functions N.
 Real face_bubble(Shape shape, const FaceValues& N);
 
-/// Share of each node in the mean over a face: mean(v) = sum_k share_k v_k.
+/// Returns the weight of each node in the mean over a face: mean(v) = sum_k share_k v_k.
 FaceValues mean_shares(const mesh::Mesh& mesh, LocalIndex cell, int local_face);
 
-/// Mean of the face function over a face; 2/3 on edges, 9/20 on triangles, 4/9 on quadrilaterals where the face is an
-/// affine map of the reference cell's.
+/// Returns the mean of the bubble over its face. On affine faces it is 2/3 (edge), 9/20 (triangle) or 4/9
+/// (quadrilateral).
 Real bubble_mean(const mesh::Mesh& mesh, LocalIndex cell, int local_face);
 
-/// Of each local cell, m^3 (m^2 in 2D). Not collective.
+/// Returns the volume of each local cell, m^3 (m^2 in 2D). Not collective.
 std::vector<Real> cell_volumes(const mesh::Mesh& mesh);
 
 }  // namespace sprekk::assembly

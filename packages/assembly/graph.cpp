@@ -1,4 +1,4 @@
-// Graphs of matrices, and where stencils stand in them.
+// Matrix graphs, and positions of stencils in them.
 #include "assembly/loop.hpp"
 #include "base/check.hpp"
 
@@ -29,7 +29,7 @@ std::shared_ptr<const Writers> writers_of(const Stencil& rows, LocalIndex n_rows
 
 using Couplings = std::vector<std::pair<Stencil, Stencil>>;
 
-/// The columns of each group of rows, sorted, one group after the other; and how many each has, by its first row.
+/// Sorted columns of each group of rows, group after group, and their number by the first row of the group.
 struct Columns {
   std::vector<LocalIndex> columns, counts;
 
@@ -68,7 +68,8 @@ struct Columns {
 
   std::vector<std::shared_ptr<const Writers>> writers_;  // [coupling]
   std::vector<HostTable> first_;                         // [coupling](entity, group)
-  std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group that the row in work has, else 0; those
+  std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group in the current row, else 0; first columns
+                                             // of these groups
 };
 
 }  // namespace
@@ -94,7 +95,8 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
   View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
   auto host = Kokkos::create_mirror_view(positions);
   Kokkos::deep_copy(host, -1);
-  std::vector<LocalIndex> position_of(base::n_local_elements(*matrix.getColMap()), 0);  // in the row; else anything
+  std::vector<LocalIndex> position_of(base::n_local_elements(*matrix.getColMap()),
+                                      0);  // [column] position in the row; other columns: arbitrary
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
     if (!writers->any(row)) continue;
     const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;

@@ -11,7 +11,8 @@ using fields::BlockVector;
 
 namespace {
 
-/// A number in [-1, 1] that depends on the unknown's global number only, so that all partitions see one direction.
+/// Returns a number in [-1, 1] that depends on the global number of the unknown only. The direction is thus independent
+/// of the partition.
 Real pseudo_random(GlobalIndex unknown, int direction) {
   std::size_t h = static_cast<std::size_t>(unknown) * 1000003 + static_cast<std::size_t>(direction) * 7919 + 1;
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -25,7 +26,7 @@ void fill_direction(fields::Vector& d, int direction, Real scale) {
     view(i, 0) = scale * pseudo_random(d.getMap()->getGlobalElement(static_cast<LocalIndex>(i)), direction);
 }
 
-/// Largest of sum_j |J_ij| |d_j| over the rows; 0 for an absent block.
+/// Returns the largest sum_j |J_ij| |d_j| over the rows, with |d_j| = scale; 0 for an absent block. Collective.
 Real size_of_product(const RCP<fields::CrsMatrix>& J, Real scale) {
   if (J.is_null()) return 0;
   const auto local = J->getLocalMatrixHost();

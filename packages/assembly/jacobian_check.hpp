@@ -1,4 +1,4 @@
-// Every module's Jacobian against finite differences of its residual.
+// Comparison of the Jacobian of each module with finite differences of its residual.
 #pragma once
 
 #include "assembly/system.hpp"
@@ -8,16 +8,18 @@
 
 namespace sprekk::assembly {
 
-/// How far a module's derivative in the unknowns of one block is from differences of its residual.
+/// Error of the derivative of a module's row block with respect to one block of unknowns.
 struct JacobianError {
-  std::string module, row, column;  ///< names of the module and of the blocks
-  Real error;  ///< max |J d - difference| over the rows of the block / max |J| |d|; 0 where both vanish
+  std::string module, row, column;  ///< names of the module and the blocks
+  Real error;                       ///< max |J d - difference| over the rows of the block / max |J| |d|
 };
 
-/// Compares, for each module and each pair of blocks, J d with central differences (r(x + h d) - r(x - h d))/(2 h) in
-/// `n_directions` pseudo-random directions d, whose entries are of the size of the block's kinematic scale. A pair that
-/// the module does not declare must have zero differences; then the error is relative to the block's residual scale. x
-/// must lie further than h from any change of contact state. Collective; the same numbers on every rank.
+/// Compares J d with central differences (r(x + h d) - r(x - h d))/(2 h) for each module and pair of blocks. The
+/// `n_directions` directions d are pseudo-random, with entries up to the kinematic scale of the block. For a pair
+/// without
+/// declared coupling, J = 0, and the error is relative to the residual scale of the row block. The distance of x from
+/// any
+/// change of contact state must exceed h. Collective; the result is the same on all ranks.
 std::vector<JacobianError> check_jacobian(System& system, const fields::BlockVector& x, Real h = 1e-4,
                                           int n_directions = 3);
 

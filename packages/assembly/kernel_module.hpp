@@ -1,4 +1,4 @@
-// Modules that are one local operator over one loop.
+// Modules that consist of one local operator on one loop.
 #pragma once
 
 #include "assembly/assembler.hpp"
@@ -12,20 +12,22 @@
 
 namespace sprekk::assembly {
 
-/// What a KernelModule says of itself, see Module.
+/// Properties of a KernelModule; see Module.
 struct Description {
   std::string name, fingerprint;
   std::vector<Unknown> unknowns = {};
   Scales scales = {};
   bool linear = false, holds_bodies = false;
   std::optional<std::vector<contact::Support>> supports = {};
-  Real merit_weight = 0;  ///< of the rows of the own unknowns, if not linear: see Module::merit_weights
+  Real merit_weight = 0;  ///< weight of the module's own rows if not linear; see Module::merit_weights
 };
 
-/// Adds one local operator over one loop. Op is what Assembler takes, with Rows = Columns, and names
+/// Module with one local operator on one loop. Op must meet the requirements of Assembler, with Rows = Columns, and
+/// define
 ///   static constexpr Loop loop;
-///   static constexpr std::array fields = {"...", ...};   in the order of the slots
-/// Each of these fields has rows that depend on all of them. Outputs the module's own unknowns.
+///   static constexpr std::array fields = {"...", ...};     in the order of the slots
+/// The rows of each of these fields depend on all of them. The unknowns that the module declares are written to the
+/// output.
 template <class Op>
 class KernelModule final : public Module {
  public:
@@ -69,7 +71,7 @@ class KernelModule final : public Module {
   }
 
  private:
-  /// Of own unknown k.
+  /// Returns the values of the module's unknown k on owned entities, or on all local nodes.
   std::vector<Real> values(const State& state, int k) const {
     const auto& field = description_.unknowns[k].field;
     const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[own_[k]]);
@@ -85,7 +87,7 @@ class KernelModule final : public Module {
   Description description_;
   Op op_;
   RCP<const mesh::Mesh> mesh_;
-  std::vector<int> own_;  // blocks of the unknowns
+  std::vector<int> own_;  // block numbers of the module's unknowns
   std::unique_ptr<Assembler<Op>> assembler_;
 };
 

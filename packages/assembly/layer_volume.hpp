@@ -1,4 +1,4 @@
-// The volume between the sides of a fracture, which what fills it resists to change.
+// Volume of a layer between the sides of a fracture.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -7,10 +7,13 @@
 
 namespace sprekk::assembly {
 
-/// The volume of a layer of thickness h (at zero displacement) in one face is |f| (w_n + h), w_n the mean normal
-/// displacement jump. It is the sum over the face's two sides of V . (u [node of the side's cell, dim], beta [dim], h):
-/// V [side of Loop::fracture_sides, node dim + dim + 1], m^2 (m in 2D); each side has half of the thickness. Not
-/// collective.
+/// Returns the coefficients V of the layer volume, m^2 (m in 2D), [side of Loop::fracture_sides, node dim + dim + 1]. A
+/// layer
+/// of thickness h at zero displacement has the volume |f| (w_n + h) on a face f, with the mean normal jump w_n. The sum
+/// of
+/// V . (u [node of the side's cell, dim], beta [dim], h) over both sides of a face gives this volume. Each side
+/// contributes
+/// half of the thickness. Throws an Error if tips are enriched. Not collective.
 template <Shape shape>
 View<Real**> layer_volumes(const mesh::Mesh& mesh) {
   SPREKK_CHECK(

@@ -1,4 +1,4 @@
-// The part of a residual that is constant during a step.
+// Part of a residual that is constant during a step.
 #pragma once
 
 #include "base/types.hpp"
@@ -12,7 +12,7 @@ class Load {
  public:
   explicit Load(LocalIndex n_rows = 0) : values_("load", n_rows) {}
 
-  /// Sets it to zero and then to what fill(values) makes of it on the host.
+  /// Sets all values to zero and calls fill(values) on the host.
   template <class Fill>
   void set(const Fill& fill) {
     const auto host = Kokkos::create_mirror_view(values_);
@@ -21,7 +21,7 @@ class Load {
     Kokkos::deep_copy(values_, host);
   }
 
-  /// rows += factor * values
+  /// Adds factor * values to the rows.
   void add_to(const View<Real*>& rows, Real factor = 1) const {
     const auto values = values_;
     Kokkos::parallel_for(

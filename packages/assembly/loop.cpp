@@ -84,7 +84,7 @@ class TableBuilder {
   int column_ = 0;
 };
 
-/// First unknowns of a field on nodes or on enriched nodes, table by table.
+/// Builds stencils of fields on nodes or enriched nodes.
 class NodeStencils {
  public:
   NodeStencils(const mesh::Mesh& mesh, const fields::Field& field)
@@ -134,7 +134,7 @@ class NodeStencils {
   int width_;
 };
 
-/// The numbers in fracture_sides() of the entities of a loop over sides.
+/// Returns the indices in fracture_sides() of the entities of a loop over sides.
 std::vector<LocalIndex> sides_of(const mesh::Mesh& mesh, Loop loop) {
   if (loop == Loop::tip_sides) return tip_sides(mesh);
   std::vector<LocalIndex> all(fracture_sides(mesh).size());
@@ -164,7 +164,7 @@ Stencil node_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
   return stencils.of_cells(cells);
 }
 
-/// Of fields on cells and on facets.
+/// Returns the stencil of a field on cells or facets.
 Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& field) {
   const int n_faces = mesh::n_faces(mesh.shape), width = field.n_components;
   const bool on_cells = field.entity == Entity::cell;

@@ -1,4 +1,4 @@
-// The loops that kernels run, and what each entity of a loop touches: tables built once, read by kernels.
+// Loops of kernels, and tables of the unknowns of each entity. Tables are built once and read by kernels.
 #pragma once
 
 #include "base/types.hpp"
@@ -13,32 +13,35 @@
 
 namespace sprekk::assembly {
 
-/// What a kernel runs over. A contact law is evaluated on fracture_faces, each by its owner alone. The linear operators
-/// run over cells, fracture_cells and fracture_sides, ghosts included, and write the rows that this rank owns, so
-/// assembly sends nothing.
+/// Entities of a kernel loop. The owner of a fracture face evaluates its contact law (loop fracture_faces). Linear
+/// operators
+/// run over cells, fracture_cells and fracture_sides, including ghosts, and write owned rows only. Assembly therefore
+/// needs
+/// no communication.
 enum class Loop {
   cells,           ///< all local cells
-  fracture_sides,  ///< one side of a fracture face, wherever that side's cell is local
+  fracture_sides,  ///< sides of fracture faces with a local cell
   fracture_faces,  ///< owned fracture faces
   fracture_cells,  ///< all local fracture faces, as cells of the fracture
   boundary_faces,  ///< boundary faces of all local cells
-  neighbours,      ///< pairs of local cells with a face between them that is no fracture's
-  tip_cells,       ///< those of cells that have a crack tip, see mesh::Mesh::tip
-  tip_sides        ///< those of fracture_sides whose cell has one
+  neighbours,      ///< pairs of local cells with a common face that is not on a fracture
+  tip_cells,       ///< cells with a crack tip; see mesh::Mesh::tip
+  tip_sides        ///< fracture_sides whose cell has a crack tip
 };
 
-/// The entities of Loop::fracture_sides: {fracture face, side}.
+/// Returns the entities of Loop::fracture_sides: {fracture face, side}. Not collective.
 std::vector<std::array<LocalIndex, 2>> fracture_sides(const mesh::Mesh& mesh);
 
-/// The entities of Loop::neighbours, of a mesh with facets: the two cells, that with the lower number first.
+/// Returns the entities of Loop::neighbours: two cells each, the smaller global number first. Requires facets. Not
+/// collective.
 std::vector<std::array<LocalIndex, 2>> neighbours(const mesh::Mesh& mesh);
 
-/// Local cells that have a crack tip, and the number of an entity of Loop::fracture_sides for each of Loop::tip_sides.
+/// Return the local cells with a crack tip, and the index in fracture_sides() of each entity of Loop::tip_sides.
 std::vector<LocalIndex> tip_cells(const mesh::Mesh& mesh);
 std::vector<LocalIndex> tip_sides(const mesh::Mesh& mesh);
 bool has_tip(const mesh::Mesh& mesh, LocalIndex cell);
 
-/// Which entities of a stencil write an owned row, by the first row of a group.
+/// Table of the entities of a stencil that write each owned row, by the first row of a group.
 class Writers {
  public:
   Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows);
@@ -46,7 +49,7 @@ class Writers {
   LocalIndex n_rows() const { return static_cast<LocalIndex>(start_.size()) - 2; }
   bool any(LocalIndex first_row) const { return start_[first_row] < start_[first_row + 1]; }
 
-  /// Calls visit(entity, group of the entity) for all that write a group of rows.
+  /// Calls visit(entity, group of the entity) for each entity that writes this group of rows.
   template <class Visit>
   void for_each(LocalIndex first_row, const Visit& visit) const {
     for (LocalIndex k = start_[first_row]; k < start_[first_row + 1]; ++k) visit(entries_[k][0], entries_[k][1]);
@@ -57,37 +60,41 @@ class Writers {
   std::vector<std::array<LocalIndex, 2>> entries_;
 };
 
-/// The unknowns of one field that each entity of a loop touches, as groups of `width` adjacent unknowns:
-/// first(entity, group) is the local index (owned first, then ghosts) of the group's first unknown.
-///
+/// Unknowns of one field touched by each entity of a loop, in groups of `width` adjacent unknowns. first(entity, group)
+/// is
+/// the local index of a group's first unknown, owned unknowns first, then ghosts.
 /// | loop                      | node field                           | fracture-face field                         |
 /// | cells, tip_cells          | the cell's nodes                     | -                                           |
 /// | fracture_sides, tip_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
-/// | fracture_faces, fracture_cells | face nodes of side minus, then plus; - | all components                   |
+/// | fracture_faces            | face nodes of side minus, then plus  | all components                              |
+/// | fracture_cells            | -                                    | all components                              |
 /// | boundary_faces            | the face's nodes                     | -                                           |
-///
-/// A field on cells has one group in cells, tip_cells, boundary_faces and on sides, that of the cell, and one for each
-/// of two neighbours; one on facets all
-/// of the cell's, or the face's; on sides and in fracture_faces the fracture face itself, in fracture_cells the face,
-/// then its ridges.
-///
-/// A two-sided field has 2 dim components per face: those of side minus, then those of side plus. A field on enriched
-/// nodes is a node field, absent (first = -1) on nodes that are not enriched, and on faces without a tip: there
-/// operators read zero, and what they write is dropped.
+/// | loop                      | cell field     | facet field                                                       |
+/// | cells                     | the cell       | the cell's facets                                                 |
+/// | tip_cells                 | the cell       | -                                                                 |
+/// | boundary_faces            | the cell       | the face                                                          |
+/// | fracture_sides, tip_sides | side's cell    | the fracture face                                                 |
+/// | fracture_faces            | -              | the fracture face                                                 |
+/// | fracture_cells            | -              | the fracture face, then its ridges                                |
+/// | neighbours                | both cells     | -                                                                 |
+/// A two-sided field has 2 dim components per face: side minus, then side plus. A field on enriched nodes is absent
+/// (first = -1) on nodes without enrichment, and in fracture_faces on faces without a tip. Operators read zero for
+/// absent
+/// unknowns, and values written to absent rows are discarded.
 struct Stencil {
   ConstView<LocalIndex**> first;
   int width = 0;
-  std::weak_ptr<std::shared_ptr<const Writers>> writers = {};  ///< where they are kept, if they are
+  std::weak_ptr<std::shared_ptr<const Writers>> writers = {};  ///< shared cache of the writers, if there is one
 };
 
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
 
-/// The stencils of a mesh's fields. Each is made when first asked for; copies share their tables, and their writers.
+/// Stencils of the fields of a mesh, created on first use. Copies share their tables and writers.
 class Stencils {
  public:
   Stencils(RCP<const mesh::Mesh> mesh, const std::vector<fields::Layout>& layouts) : mesh_(mesh), layouts_(&layouts) {}
   const Stencil& of(Loop loop, int field);
-  /// From now on writers are looked for whenever they are needed, and not kept.
+  /// Discards all writers. From now on they are computed on each use and not stored.
   void forget_writers();
 
  private:
@@ -98,13 +105,14 @@ class Stencils {
   bool keeps_writers_ = true;
 };
 
-/// Where a pair of groups stands in the matrix: the entry of (row first_r + i, column first_c + j) is the value number
-/// row_begin(first_r + i) + positions(entity, r, c) + j; -1 where the row belongs to another rank or one of them is
-/// absent.
+/// Returns the positions of pairs of groups in a matrix. The entry (first_r + i, first_c + j) has the value number
+/// row_begin(first_r + i) + positions(entity, r, c) + j. A position is -1 if the row is not owned or a group is absent.
+/// Throws an Error if the matrix lacks an entry. Local.
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns);
 
-/// The matrix, all zero, whose pattern holds every pair of groups in the given stencils. All stencils of a row field
-/// have one width. Collective.
+/// Returns a zero matrix whose pattern contains each pair of groups in the stencils. All stencils of a row field must
+/// have
+/// the same width, else it throws an Error. Collective.
 RCP<fields::CrsMatrix> make_matrix(const fields::Layout& row_layout, const fields::Layout& column_layout,
                                    const std::vector<std::pair<Stencil, Stencil>>& couplings);
 

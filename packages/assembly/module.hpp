@@ -1,4 +1,4 @@
-// A physics module: names, declarations, and additions to residuals and Jacobian blocks.
+// Interface of a physics module: names, declarations, and contributions to residuals and Jacobian blocks.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -21,96 +21,99 @@
 
 namespace sprekk::assembly {
 
-/// Typical sizes that solvers and tests of convergence are relative to, by their names. They grow with the loads met so
-/// far and never shrink.
+/// Typical sizes by name. Solvers and convergence tests are relative to them. They grow with the loads and never
+/// shrink.
 using Scales = std::map<std::string, Real>;
 
-/// scale(larger) >= factor scale(than).
+/// Inequality scale(larger) >= factor scale(than).
 struct ScaleRelation {
   std::string larger;
   Real factor;
   std::string than;
 };
 
-/// factor times a scale; `per_step`: over the length of the time step.
+/// Term factor * scale, divided by the length of the time step if `per_step`.
 struct SizeTerm {
   std::string scale;
   Real factor = 1;
   bool per_step = false;
 };
 
-/// The typical size of a row, a sum.
+/// Typical size of a row, as a sum of terms.
 using Size = std::vector<SizeTerm>;
 
-/// Functions that a block's matrix takes to almost nothing, which multigrid is told of; none: it has no use for
-/// multigrid.
+/// Near-null space of the block's matrix, for multigrid. none: the block is unsuitable for multigrid.
 enum class NearNullSpace { none, rigid_motions, constants };
 
-/// How results.json calls the sums of a field's residuals over what a condition holds, by boundaries; empty: not there.
+/// Names in results.json for the sums of residuals over the unknowns that a condition prescribes. `name` is the entry
+/// of boundaries. Empty: no output.
 struct Reactions {
   std::string name = "";
-  std::string moments = "";  ///< of forces: sum x cross f
-  std::string regions = "";  ///< those of conditions in regions, by regions
-  std::string unit = "";     ///< of the sums
+  std::string moments = "";  ///< for forces: sum x cross f
+  std::string regions = "";  ///< entry for conditions in regions
+  std::string unit = "";     ///< unit of the sums
 };
 
-/// A field that a module adds to the problem. It becomes a block of the same name.
+/// Field that a module adds to the problem. It becomes a block of the same name.
 struct Unknown {
   fields::Field field;
-  std::string scale;  ///< the typical size of its values; prescribed values count as loads of it
-  Size row;           ///< that of its rows, to which other modules may add, see Declaration::sizes
+  std::string scale;  ///< typical size of its values; prescribed values count as loads of this scale
+  Size row;           ///< typical size of its rows; other modules may add terms, see Declaration::sizes
   NearNullSpace near_null_space = NearNullSpace::none;
-  std::string local_group = "";     ///< fields with one group name are eliminated together, entity by entity; "" stays
-  std::string enriches = "";        ///< the field that a field on enriched nodes adds to: zero where that is prescribed
-  std::string condensed_into = "";  ///< of a field whose unknowns hardly couple among themselves: the one that they
-                                    ///< couple to, from which preconditioners eliminate it
-  /// Its rows are balances of rates: of fluxes, and State::rate times what is stored. They may differ by orders of
-  /// magnitude, so each is measured by its diagonal, anew in each step.
+  std::string local_group = "";     ///< fields of one group are eliminated together, entity by entity; "": not
+                                    ///< eliminated
+  std::string enriches = "";        ///< field to which a field on enriched nodes adds; zero where that field is
+                                    ///< prescribed
+  std::string condensed_into = "";  ///< field from which preconditioners eliminate this one; requires weak coupling
+                                    ///< among its own unknowns
+  /// The rows are balances of rates: fluxes plus State::rate times the storage. Sizes may differ by orders of
+  /// magnitude. Therefore each row is measured by its diagonal, updated in each step.
   bool balance = false;
-  /// Its values may be orders of magnitude above their scale: their rounding counts in the rows of others.
+  /// Values may exceed their scale by orders of magnitude. Their round-off counts in the rows of other fields.
   bool unbounded = false;
-  /// Of tractions of contact: the scale of the jumps that their rows have in them, times contact::Grip::augmentation.
+  /// For contact tractions: scale of the jumps in their rows. The rows contain jumps times contact::Grip::augmentation.
   std::string augmented_by = "";
   Reactions reactions = {};
 };
 
-/// Rows that the module adds to in a loop, and the fields that those rows then depend on.
+/// Rows to which the module adds in a loop, and the fields on which these contributions depend.
 struct Coupling {
   Loop loop;
   std::string row;
   std::vector<std::string> columns;
 };
 
-/// A quantity that a module keeps from step to step, on owned entities; it changes at commit only.
+/// History variable of a module on owned entities. It changes at commit only.
 struct History {
   std::string name;
   fields::Entity entity;
   int n_components;
 };
 
-/// A number of a fracture that follows from the components of a mean or an integral over it; none: it has no meaning.
+/// Number derived from the components of a mean or integral over a fracture; no value: undefined.
 struct Derived {
   std::string name, unit;
   std::function<std::optional<Real>(const std::vector<Real>&)> of;
 };
 
-/// What results.json tells of an output on fracture faces, of each fracture: its mean over the area, "mean_NAME", of
-/// vectors in it by the name of the frame; the largest value, "max_NAME"; its integral over the area, "NAME", of an
-/// output that is no array of files; or of a state the area, and its shares, in which it is 0, 1, ..., "area_CLASS" and
-/// "fraction_CLASS". A bound of the relative error of NAME is told as its largest value, "error_of_NAME", and once more
-/// for all fractures at the end of the run.
+/// Entry of an output on fracture faces in results.json, for each fracture.
+/// - mean, mean_and_max: area mean "mean_NAME" (vectors: in the named frame), and the largest value "max_NAME"
+/// - fractions: area "area_CLASS" and area fraction "fraction_CLASS" of the faces in state 0, 1, ...
+/// - integral: integral over the area, "NAME"; the output is not written to result files
+/// - error_bound: largest bound of the relative error of NAME, "error_of_NAME"; once more for all fractures at the
+///   run's end
 struct Summary {
   enum Kind { none, mean, mean_and_max, fractions, integral, error_bound };
   Kind kind = none;
   std::string name = "";                  ///< spaces become underscores
-  std::string frame = "";                 ///< of vectors
-  std::vector<std::string> classes = {};  ///< of fractions
-  std::string unit = "";                  ///< of an integral
-  std::vector<Derived> derived = {};      ///< from the mean or the integral
+  std::string frame = "";                 ///< for vectors
+  std::vector<std::string> classes = {};  ///< for fractions
+  std::string unit = "";                  ///< for an integral
+  std::vector<Derived> derived = {};      ///< from the mean or integral
 };
 
-/// An output array on owned cells or faces, or on all local nodes: [entity * n_components + component], in global
-/// coordinates unless the name says "local".
+/// Output array on owned cells or faces, or on all local nodes: [entity * n_components + component]. Global
+/// coordinates, unless the name contains "local".
 struct OutputField {
   std::string name, unit;
   fields::Entity entity;
@@ -121,37 +124,37 @@ struct OutputField {
 
 struct State;
 
-/// An output, without values, and how these follow from a committed state. Local.
+/// Output without values, and the function that computes the values from a committed state. The function is local.
 struct Output {
   OutputField field;
   std::function<std::vector<Real>(const State&)> values;
 };
 
-/// A number that describes a state, the sum of what ranks say; its names lead to it in results.json, where totals of
-/// the same names are added up.
+/// Number that describes a state: sum over the ranks. Its names are the path in results.json. Totals with equal names
+/// are added.
 struct Total {
   std::vector<std::string> names;
   Real value;
   std::string unit = "";
 };
 
-/// All that the framework needs to know to derive sparsity, ghost exchange, storage and output.
+/// Declaration from which the framework derives sparsity, ghost exchange, storage and output.
 struct Declaration {
   std::vector<Unknown> unknowns;
   std::vector<Coupling> couplings;
   std::vector<History> history;
   std::vector<Output> outputs;
-  Scales scales;  ///< what they are without loads, above zero; several modules may declare the same ones
+  Scales scales;  ///< values without loads, > 0; several modules may declare the same scale
   std::vector<ScaleRelation> relations;
-  std::vector<std::pair<std::string, SizeTerm>> sizes;  ///< (field, what is added to the size of its rows)
-  std::vector<std::string> schur;                       ///< the fields that add_schur() adds to
-  std::vector<std::string> carries;  ///< balances of what it lets flow along with something else: such a flow may begin
-                                     ///< within a step, so their rows are measured by the present Jacobian's diagonal
-  bool stores = false;               ///< its balances of rates contain State::rate times what it stores
-  bool linear = false;  ///< its Jacobian is constant and symmetric: it is assembled once; the residual is K x + r(0, t)
+  std::vector<std::pair<std::string, SizeTerm>> sizes;  ///< (field, term added to the size of its rows)
+  std::vector<std::string> schur;                       ///< fields to which add_schur() adds
+  std::vector<std::string> carries;  ///< balances with advection by another flow; the flow may begin within a step, so
+                                     ///< the present Jacobian's diagonal measures their rows
+  bool stores = false;               ///< its balances contain State::rate times the storage
+  bool linear = false;               ///< constant, symmetric Jacobian: assembled once; the residual is K x + r(0, t)
 };
 
-/// What modules are bound to once: the mesh, and the stencil of every field they named. Unknown names throw.
+/// Mesh and stencils to which modules are bound once.
 class Context {
  public:
   Context(RCP<const mesh::Mesh> mesh, const Geometry& geometry, const std::vector<fields::Layout>& layouts,
@@ -159,7 +162,7 @@ class Context {
       : mesh_(mesh), geometry_(geometry), layouts_(&layouts), stencils_(std::move(stencils)) {}
   RCP<const mesh::Mesh> mesh() const { return mesh_; }
   const Geometry& geometry() const { return geometry_; }
-  int field(const std::string& name) const;  ///< number of the field's block
+  int field(const std::string& name) const;  ///< block number of the field; throws an Error for unknown names
   const fields::Layout& layout(int field) const { return (*layouts_)[field]; }
   const Stencil& stencil(Loop loop, int field) const { return stencils_->of(loop, field); }
 
@@ -170,19 +173,19 @@ class Context {
   std::shared_ptr<Stencils> stencils_;
 };
 
-/// Where a residual is evaluated: unknowns with ghosts [field](unknown), the module's histories [number](entity,
-/// component).
+/// State at which a residual is evaluated: unknowns with ghosts [field](unknown), histories of the module
+/// [number](entity, component).
 struct State {
   Real t = 0;
-  Real rate = 0;    ///< what rates are times what a module stores more than at the start of the step, 1/s: Rates::now
-  Real before = 0;  ///< Rates::before; what the step before stored is subtracted by the framework
+  Real rate = 0;    ///< factor of the storage increase in the step, 1/s: Rates::now
+  Real before = 0;  ///< Rates::before; the framework subtracts the storage increase of the previous step
   contact::Regularisation contact = {};
-  ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: those of x
+  ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: computed from x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
-  /// In totals(): [field](owned row) the residual at the end of the last step, zero in rows of prescribed unknowns.
-  /// Added to the product of a large conductance and a small drop it gives the flow without rounding. Empty: nothing is
-  /// stored.
+  /// Residual at the end of the last step, in totals() only: [field](owned row), zero in rows of prescribed unknowns. A
+  /// flow is the product of a large conductance and a small difference. Adding the residual removes its round-off.
+  /// Empty: no module stores anything.
   std::vector<ConstView<Real*>> unbalanced = {};
 };
 
@@ -193,74 +196,74 @@ class Module {
  public:
   virtual ~Module() = default;
   virtual std::string name() const = 0;
-  /// What of it, besides the scene, must be the same where a checkpoint is restored: its parameters, on every rank.
+  /// Returns the parameters, besides the scene, that must be equal when a checkpoint is restored. They are equal on all
+  /// ranks.
   virtual std::string fingerprint() const { return {}; }
-  /// What it does may depend on which fields other modules add: a first declare() tells the unknowns of each module,
-  /// which must not depend on that, then comes this, with all of them, then a second declare(), which counts.
+  /// Informs the module of the fields of all modules. declare() is called before and after. The first call provides the
+  /// unknowns, which must not depend on other modules. The second call is final.
   virtual void set_fields(const std::set<std::string>& fields) {}
-  /// Collective.
+  /// Returns the declaration. Collective.
   virtual Declaration declare(const mesh::Mesh& mesh) const = 0;
-  /// Builds the module's tables and constant operators. Called once. Collective; what can throw on one rank comes last.
+  /// Builds the module's tables and constant operators. Called once. Collective: errors of single ranks must be thrown
+  /// last.
   virtual void bind(const Context& context) = 0;
 
-  /// Adds this module's part to the residual (loads at state.t included). Local: sends nothing.
+  /// Adds the module's part of the residual, including loads at state.t. Local: no communication.
   virtual void residual(const State& state, const Rows& r) const = 0;
-  /// Adds the derivative of residual() to the blocks of owned rows. Local: sends nothing.
+  /// Adds the derivative of residual() to the blocks of owned rows. Local: no communication.
   virtual void jacobian(const State& state, fields::BlockMatrix& J) const = 0;
 
-  /// Its forces may hold bodies that boundary conditions leave free to move, which is an error without it.
+  /// Returns whether the forces of the module may support bodies that boundary conditions leave free. Without it, free
+  /// bodies are an error.
   virtual bool holds_bodies() const { return false; }
-  /// What of it they hold, of nodes that are local; nothing: that is not known, and nobody looks for loose pieces of
-  /// rock.
+  /// Returns the supported unknowns at local nodes. No value: unknown; floating blocks of rock are then not detected.
   virtual std::optional<std::vector<contact::Support>> supports() const { return std::nullopt; }
-  /// The sizes of what it prescribes at time t, or starts with, by the scales that they count for, on this rank.
+  /// Returns the sizes of prescribed or initial quantities at time t on this rank, by the name of their scale.
   virtual Scales loads(Real t) const { return {}; }
-  /// The residual at x = 0 is the same at all times.
+  /// Returns whether the residual at x = 0 is the same at all times.
   virtual bool constant_load() const { return true; }
-  /// Sets unknowns [field](owned unknown) of the initial state that are known to differ from zero.
+  /// Sets the non-zero initial unknowns [field](owned unknown).
   virtual void initial(const Rows& x) const {}
-  /// Sets histories [number](entity, component) of the initial state that differ from zero.
+  /// Sets the non-zero initial histories [number](entity, component).
   virtual void initial_history(const std::vector<View<Real**>>& history) const {}
-  /// Called at the start of a step, before any residual at its end t.
+  /// Prepares a step that ends at t. Called before any residual of the step.
   virtual void set_time(Real t, const Scales& scales) {}
-  /// Called after set_time(), with the histories at the start of the step. Collective; what can throw on one rank comes
-  /// last.
+  /// Prepares a step, with the histories at its start. Called after set_time(). Collective: errors of single ranks must
+  /// be thrown last.
   virtual void start_step(const State& state) {}
-  /// Moves the histories on to `state`.
+  /// Updates the histories to `state`, which has converged.
   virtual void commit(State& state) const {}
-  /// Appends histories, of owned entities, that the module of this name in another system goes on from where that takes
-  /// over `state`, in place of this one's own of the same names.
+  /// Appends histories on owned entities for the module of this name in a succeeding system. They replace the histories
+  /// of the same names.
   virtual void pass_on(const State& state, std::vector<std::pair<History, View<Real**>>>& histories) const {}
-  /// Called where a system has taken over the state and the histories of another one.
+  /// Adapts the module to a state and histories taken over from another system.
   virtual void take_over(State& state) const {}
-  /// Called after that, with what is out of balance there, [field](owned row),
-  /// zero in rows of prescribed unknowns.
+  /// Receives the unbalanced residual after take_over(), [field](owned row), zero in rows of prescribed unknowns.
   virtual void take_unbalanced(State& state, const Rows& residual) const {}
-  /// Adds to the diagonals of fields' own blocks [field](owned row) about what eliminating all other fields would: a
-  /// Schur complement, for preconditioners and for sizes of rows.
+  /// Adds approximate Schur complements, from the elimination of all other fields, to the diagonals of the fields'
+  /// blocks, [field](owned row). Preconditioners and row sizes use them.
   virtual void add_schur(const State& state, const Rows& diagonals) const {}
-  /// Adds to the rows that store what of that belongs to no equation but keeps a scheme from oscillating, and vanishes
-  /// as cells become smaller: State::rate times it is in the residual, less what it was. Local.
+  /// Adds the stabilising storage to the rows. This storage is not part of the equations, prevents oscillations, and
+  /// vanishes with the cell size. The residual contains State::rate times its increase in the step. Local.
   virtual void artificial(const State& state, const Rows& rows) const {}
-  /// Sets, of faces where a flux has a coefficient that depends on unknowns, what it is a power of, not below zero
-  /// [local fracture face]: those of the state, or `widest`, the largest that it may well have under the present loads.
-  /// Where State::coefficients is given, residual() and jacobian() take that. Local.
+  /// Sets the base of flux coefficients that are powers of a function of the unknowns, >= 0, [local fracture face]. The
+  /// base is that of the state or, if `widest`, the largest plausible one under the present loads. residual() and
+  /// jacobian() use State::coefficients instead, if given. Local.
   virtual void coefficients(const State& state, bool widest, std::vector<Real>& values) const {}
-  /// Appends measures that see what |residual| cannot, as maxima over this rank.
+  /// Appends measures of convergence for errors that |residual| does not show, as maxima over this rank.
   virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
-  /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows; without them 1/|diagonal| is taken.
+  /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows. Default: 1/|diagonal|.
   virtual void merit_weights(const Rows& weights) const {}
-  /// Sets the discrete states of owned fracture faces, [face].
+  /// Sets the contact states of owned fracture faces, [face].
   virtual void states(const State& state, std::vector<char>& states) const {}
-  /// Adds to the grips [owned fracture face] how the module makes the sides of faces hold each other at `state`.
+  /// Adds the contact constraints of the module at `state` to the grips, [owned fracture face].
   virtual void grip(const State& state, std::vector<contact::Grip>& grips) const {}
-  /// After elimination of the local groups, blocks on the diagonal of the Jacobian at `state` are symmetric as far as
-  /// this rank's part goes.
+  /// Returns whether the diagonal blocks of this rank's Jacobian at `state` are symmetric after local elimination.
   virtual bool symmetric(const State& state) const { return true; }
-  /// Appends what the step from `begin`, with owned unknowns alone and old histories, to `end` errs in; the same on all
-  /// ranks. Collective.
+  /// Appends the errors of the step from `begin` (owned unknowns only, old histories) to `end`. The errors are the same
+  /// on all ranks. Collective.
   virtual void step_errors(const State& begin, const State& end, fields::StepErrors& errors) const {}
-  /// Appends this rank's parts of totals, the same ones on all ranks in the same order. Local.
+  /// Appends this rank's parts of totals: the same totals in the same order on all ranks. Local.
   virtual void totals(const State& state, std::vector<Total>& totals) const {}
 };
 

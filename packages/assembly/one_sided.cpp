@@ -16,7 +16,7 @@ std::vector<char> nodes_with_copies(const mesh::Mesh& mesh) {
 }
 
 std::vector<char> nodes_with_copies(const mesh::GlobalMesh& mesh) {
-  std::vector<char> copies(mesh.n_nodes(), 0), result(mesh.n_nodes(), 0);  // of each point, 2 for several
+  std::vector<char> copies(mesh.n_nodes(), 0), result(mesh.n_nodes(), 0);  // copies of each point, at most 2
   for (GlobalIndex node = 0; node < mesh.n_free_nodes(); ++node) {
     char& count = copies[mesh.point_of(node)];
     count = std::min<char>(2, count + 1);

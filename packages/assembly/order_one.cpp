@@ -32,11 +32,11 @@ RCP<const Map> corner_map(const mesh::Mesh& mesh, LocalIndex n_owned, int width)
   return rcp(new const Map(unknown, static_cast<std::size_t>(n_owned) * width, 0, mesh.comm));
 }
 
-/// The global number among corners of each local free node that is one. Collective.
+/// Returns the global corner number of each local free node, -1 for other nodes. Collective.
 std::vector<GlobalIndex> number_corners(const mesh::Mesh& mesh, const std::vector<char>& is_corner) {
   const fields::Layout nodes({"corner", fields::Entity::node, 1, ""}, mesh);
   const auto map = corner_map(mesh, n_owned_corners(mesh, is_corner), 1);
-  fields::Vector owned(nodes.owned()), all(nodes.ghosted());  // whole numbers are exact in it
+  fields::Vector owned(nodes.owned()), all(nodes.ghosted());  // doubles represent these integers exactly
   {
     const auto view = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
     LocalIndex next = 0;
@@ -51,7 +51,7 @@ std::vector<GlobalIndex> number_corners(const mesh::Mesh& mesh, const std::vecto
   return numbers;
 }
 
-/// Shares of the corners of one cell in the place of each of its nodes.
+/// Weights of the cell's corners in the position of each node of the cell.
 class Shares {
  public:
   using Corners = std::array<Real, 8>;
@@ -75,9 +75,9 @@ class Shares {
  private:
   static bool has(unsigned set, int corner) { return (set >> corner) & 1u; }
   static int size(unsigned set) { return std::popcount(set); }
-  static bool is_inside(unsigned set) { return size(set) > 2; }  // of a face or cell: 4 or 8 corners
+  static bool is_inside(unsigned set) { return size(set) > 2; }  // nodes inside a face (4 corners) or cell (8 corners)
 
-  /// Nodes inside of faces and cells are where corners and the nodes on edges put them.
+  /// Returns the weights for a node inside a face or cell, from the corners and the nodes on edges (serendipity).
   Corners inside(unsigned set, const std::vector<Corners>& shares) const {
     Corners result{};
     const Real of_edge = size(set) == 4 ? 0.5 : 0.25;

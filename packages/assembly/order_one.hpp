@@ -1,16 +1,16 @@
-// The displacement of order 1 within that of order 2: the level that multigrid starts from.
+// Displacement of order 1 as a subspace of order 2, for multigrid.
 #pragma once
 
 #include "fields/layout.hpp"
 
 namespace sprekk::assembly {
 
-/// Values at all nodes from those at corners, for a field on nodes of a mesh of order 2: rows are the field's unknowns,
-/// columns those of corners, numbered on their own. Each node takes the values where it is between the corners, so that
-/// fields that are linear in space, rigid motions among them, are met; nodes at quarter points too. Collective.
+/// Returns the interpolation from corners to all nodes, for a node field on a mesh of order 2. Rows are the unknowns of
+/// the field, columns those of corners with their own numbers. The interpolation reproduces linear fields, including
+/// rigid motions, also with quarter-point nodes. Collective.
 RCP<const fields::CrsMatrix> interpolation_from_corners(const mesh::Mesh& mesh, const fields::Layout& layout);
 
-/// Rows of a multivector [owned node, dim] that belong to corners. Collective.
+/// Returns the rows of a multivector [owned node, dim] that belong to corners. Collective.
 RCP<const fields::MultiVector> at_corners(const mesh::Mesh& mesh, const fields::MultiVector& of_nodes);
 
 }  // namespace sprekk::assembly

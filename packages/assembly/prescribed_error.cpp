@@ -14,7 +14,8 @@ LocalIndex node_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face,
   return mesh.cells[face.cell * mesh.nodes_per_cell() + mesh::face_nodes(mesh.shape)[face.local_face][k]];
 }
 
-/// The integral of g - I g over a face, and the face's area; `has_copies` of nodes. Throws where g has no value.
+/// Returns the integral of g - I g over a face, and the area of the face. has_copies: [node], see nodes_with_copies().
+/// Throws an Error where g has no value.
 std::array<Real, 2> missed(const mesh::Mesh& mesh, const std::vector<char>& has_copies,
                            const mesh::Mesh::BoundaryFace& face, const base::Expression& g, Real t) {
   using mesh::operator-;
@@ -36,11 +37,11 @@ std::array<Real, 2> missed(const mesh::Mesh& mesh, const std::vector<char>& has_
   return {sum, total};
 }
 
-/// Adds to each node's integrals and areas those of the owned faces around it. [ghosted unknown, 2]
+/// Adds the integrals and areas of owned faces to the nodes around them. [ghosted unknown, 2]
 template <class Sums>
 void add_faces(const mesh::Mesh& mesh, int n_components, const DirichletCondition& condition, Real t,
                const Sums& sums) {
-  if (condition.within) return;  // single nodes
+  if (condition.within) return;  // conditions on single nodes
   const auto has_copies = nodes_with_copies(mesh);
   for (const auto& face : mesh.boundary_faces) {
     const bool everywhere = condition.region < 0 || condition.region == mesh.cell_region[face.cell];

@@ -1,4 +1,4 @@
-// By how much the values at nodes miss what is prescribed between them.
+// Interpolation error of prescribed values between nodes.
 #pragma once
 
 #include "assembly/constraints.hpp"
@@ -7,10 +7,10 @@
 
 namespace sprekk::assembly {
 
-/// Nodes take the values g of conditions on a field of nodes; their interpolant I g misses a curved g between them, to
-/// one side throughout. The mean of g - I g over the prescribed faces around a node at time t, in the field's unit
-/// [owned unknown], 0 where nothing is prescribed: added to the nodes it makes up for that. Collective; Error on every
-/// rank where g has no value between nodes.
+/// Returns the mean of g - I g over the prescribed faces around a node at time t, in the unit of the field [owned
+/// unknown]. g is the prescribed value and I g its nodal interpolant. A curved g differs from I g with one sign. Adding
+/// the mean to the nodal values corrects this. The result is 0 where nothing is prescribed. Collective; throws an Error
+/// on all ranks if g has no value between nodes.
 fields::Vector prescribed_error(const mesh::Mesh& mesh, const fields::Layout& layout,
                                 const std::vector<DirichletCondition>& conditions, Real t);
 

@@ -17,7 +17,7 @@ using mesh::operator-;
 using mesh::operator*;
 using mesh::Vector;
 
-/// On a whole mesh, or collectively on every rank's part of it.
+/// Algorithm for a whole mesh, or collectively for the parts of all ranks.
 template <Shape shape, class AnyMesh>
 class QuarterPoints {
  public:
@@ -50,7 +50,7 @@ class QuarterPoints {
     return x;
   }
 
-  /// Finds the edges that are to move, and the cells that have some.
+  /// Finds the edges to move, and the cells with such edges.
   void mark() {
     const auto is_tip = mesh::tip_nodes(mesh_);
     state_.assign(mesh_.n_nodes(), stays);
@@ -90,7 +90,7 @@ class QuarterPoints {
     }
   }
 
-  /// Nodes inside of faces with an edge that moved, and inside of the cell.
+  /// Moves the nodes inside the cell and inside faces with a moved edge.
   void move_inside(GlobalIndex cell) {
     if (!is_moved(cell)) return;
     std::vector<int> all(n_corners);
@@ -105,7 +105,7 @@ class QuarterPoints {
           put_inside(cell, {face.begin(), face.end() - 1}, face.back());
   }
 
-  /// Puts node `inside` at -1/4 of the sum of the corners plus 1/2 (1/4 in a cell of 3D) of that of the nodes on edges.
+  /// Sets node `inside` to -1/4 of the sum of the corners plus 1/2 of the sum of the edge nodes (1/4 for 3D cells).
   void put_inside(GlobalIndex cell, const std::vector<int>& around, int inside) {
     const std::size_t corners = around.size() == 8 ? 4 : 8;
     const Real share = corners == 4 ? 0.5 : 0.25;
@@ -117,7 +117,7 @@ class QuarterPoints {
 
   void put(GlobalIndex node, const Vector& x) { std::copy_n(x.begin(), dim, mesh_.coordinates.begin() + node * dim); }
 
-  /// Keeps the edges of cells that are not valid; whether there are any.
+  /// Restores the edges of invalid cells. Returns whether any cell was invalid.
   bool keep_where_invalid() {
     bool any = false;
     for (GlobalIndex cell : cells_) {
@@ -147,11 +147,12 @@ class QuarterPoints {
   }
 
   AnyMesh& mesh_;
-  const std::vector<Real> before_;  // coordinates
+  const std::vector<Real> before_;  // original coordinates
   const std::vector<Edge> edges_;
   mesh::AlikeNodes alike_;
-  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip towards which it moves
-  std::vector<GlobalIndex> cells_;  // that have edges to move
+  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip towards which the node
+                                    // moves
+  std::vector<GlobalIndex> cells_;  // cells with moved edges
 };
 
 template <class AnyMesh>

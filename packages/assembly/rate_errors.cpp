@@ -14,7 +14,7 @@ View<Real**> entries(const fields::Vector& v, int n_components) {
   return View<Real**>(local.data(), local.extent(0) / n_components, n_components);
 }
 
-/// rate := (x - old)/dt; the largest |x - start|. Local.
+/// Sets rate = (x - old)/dt and returns the largest |x - start|. Local.
 Real find_rate(const View<Real**>& x, const View<Real**>& old, const View<Real**>& start, Real dt,
                const View<Real**>& rate) {
   Real largest = 0;
@@ -32,7 +32,7 @@ Real find_rate(const View<Real**>& x, const View<Real**>& old, const View<Real**
   return largest;
 }
 
-/// Sum of (a u + b v + c w)^2. Local.
+/// Returns the sum of (a u + b v + c w)^2. Local.
 Real square_of_sum(Real a, const View<Real**>& u, Real b, const View<Real**>& v, Real c, const View<Real**>& w) {
   Real sum = 0;
   const int width = static_cast<int>(u.extent(1));
@@ -148,7 +148,7 @@ std::vector<Real> RateErrors::memory() const {
 }
 
 void RateErrors::resume(const std::vector<Real>& memory) {
-  if (memory.size() != 4 + 4 * blocks_.size()) {  // of steps that were not watched
+  if (memory.size() != 4 + 4 * blocks_.size()) {  // from steps without error estimates
     n_rates_ = 0;
     dt_ = dt_before_ = elapsed_ = 0;
     return;

@@ -1,4 +1,4 @@
-// Errors of time steps, from how much the rates at which unknowns change differ from step to step.
+// Errors of time steps, estimated from changes of the rates between steps.
 #pragma once
 
 #include "assembly/rates.hpp"
@@ -11,38 +11,39 @@
 
 namespace sprekk::assembly {
 
-/// Unknowns x of balances of rates, block by block. With the rates r = (x - x_old)/dt of the last steps, the latest
-/// first, and their lengths dt, dt_1, dt_2, a step by itself errs by
+/// Step errors of the unknowns x of balances, block by block. Rates r = (x - x_old)/dt of the last steps, latest first,
+/// have the step lengths dt, dt_1, dt_2. The error of a single step is
 ///   Euler: 1/2 dt^2 |x''|, with x'' = 2 f_2, f_2 = (r - r_1)/(dt + dt_1)
 ///   BDF2: (1 + w)^2/(6 w (1 + 2w)) dt^3 |x'''|, with x''' = 6 (f_2 - f_2 of the step before)/(dt + dt_1 + dt_2),
 ///   w = dt/dt_1
-/// What steps err in, e, adds up to E as long as a difference of two states lasts, tau:
+/// Step errors e accumulate to E while perturbations persist, for the time tau:
 ///   E = s E_1 + e,  tau = s tau_1 + dt,  s = min(1, |r|/|r_1|)
-/// Steps that all err at the rate of this one would come to e tau/dt. The error is the geometric mean of both: one that
-/// errs more than others does it once. |.| is the root mean square over the block, relative to the largest
-/// change of an unknown since the start. At time t that is c and grows like t^p; the one to come soon is taken, c
-/// min(10, T/t)^min(p, 1/2) with T the end: else what begins at zero would be resolved as finely as if it stayed small.
+/// Steps with the present accuracy would accumulate e tau/dt. The estimate is the geometric mean of E and e tau/dt.
+/// |.| is the root mean square over the block, divided by the largest change c of an unknown since the start. While c
+/// grows
+/// like t^p, its extrapolation c min(10, T/t)^min(p, 1/2) is used, with the end T. Otherwise, unknowns that start at
+/// zero would require too small steps.
 class RateErrors {
  public:
   RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& layouts, const std::vector<char>& balances,
              Rates::Scheme scheme, const fields::BlockVector& start, Real duration);
 
-  /// x is where the next step begins.
+  /// Sets the state x at which the next step begins.
   void begin(const fields::BlockVector& x);
-  /// The errors of a step to x, `second_order`: made by BDF2; unknown ones as long as rates before are missing. Changes
-  /// below `least` [block] are none. Collective.
+  /// Returns the errors of a step to x. `second_order`: the step was made by BDF2. The errors are unknown while earlier
+  /// rates are missing. Changes below `least` [block] are treated as zero. Collective.
   fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order, const std::vector<Real>& least);
-  /// Loads change their course here: what follows has another rate, and where `jump` one that is unknown in the first
-  /// step, at the start of which the state may jump. How long it lasts is found anew.
+  /// Restarts the estimate where loads change their course. The persistence time starts again at zero. If `jump`, the
+  /// state may jump at the start of the first step, and the rate of this step is unknown.
   void forget(bool jump);
 
-  /// Rates, [entity, component], by names.
+  /// Returns the rates, [entity, component], with their names.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
   std::vector<Real> memory() const;
   void resume(const std::vector<Real>& memory);
 
  private:
-  struct Kept {  // of a block
+  struct Kept {  // data of a block
     int block;
     fields::Field field;
     View<Real**> start, old, rate, rate_before;       // [owned entity, component]
@@ -52,9 +53,9 @@ class RateErrors {
   RCP<const Comm> comm_;
   std::vector<Kept> blocks_;
   bool second_order_;
-  Real duration_, elapsed_ = 0;  // of all steps, and of those so far
-  int n_rates_ = -1;             // that are known
-  Real dt_ = 0, dt_before_ = 0;  // of the last steps
+  Real duration_, elapsed_ = 0;  // length of the run, time of all steps so far
+  int n_rates_ = -1;             // number of known rates; -1: the first step gives none
+  Real dt_ = 0, dt_before_ = 0;  // lengths of the last steps
 };
 
 }  // namespace sprekk::assembly

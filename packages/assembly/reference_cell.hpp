@@ -1,7 +1,5 @@
-// Shape functions, face bubbles and quadrature of the cells; device-callable.
-//
-// Simplices live on {xi >= 0, sum xi <= 1}, quadrilaterals and hexahedra on [-1, 1]^dim; nodes and faces as in
-// shape.hpp.
+// Shape functions, face bubbles and quadrature of the reference cells; device code.
+// Simplices: {xi >= 0, sum xi <= 1}. Quadrilaterals and hexahedra: [-1, 1]^dim. Nodes and faces: see shape.hpp.
 #pragma once
 
 #include "base/view.hpp"
@@ -42,8 +40,8 @@ struct Gauss {
   }
 };
 
-/// points^dim quadrature points: the product of Gauss rules, exact for degree 2 points - 1 in each direction; on
-/// simplices the same points collapsed towards a vertex (conical product), exact for total degree 2 points - dim.
+/// Product of Gauss rules with points^dim points, exact for degree 2 points - 1 in each direction. On simplices, the
+/// points are collapsed towards a vertex (conical product); the rule is exact for total degree 2 points - dim.
 template <Shape shape, int points>
 struct Quadrature {
   static constexpr int dim = mesh::dimension(shape);
@@ -58,7 +56,7 @@ struct Quadrature {
       weight *= Gauss<points>::weight(index[i]);
     }
     if (!is_simplex(shape)) return weight;
-    Real rest = 1;  // 1 - the coordinates so far
+    Real rest = 1;  // 1 - sum of the coordinates so far
     for (int i = 0; i < dim; ++i) {
       const Real s = (1 + xi[i]) / 2;
       weight *= 0.5;
@@ -70,7 +68,7 @@ struct Quadrature {
   }
 };
 
-/// One point at the centroid of a simplex, exact for degree 1.
+/// Rule with one point at the centroid of a simplex, exact for degree 1.
 template <Shape shape>
 struct CentroidRule {
   static constexpr int dim = mesh::dimension(shape);
@@ -82,20 +80,20 @@ struct CentroidRule {
   }
 };
 
-/// Exact for the stiffness of affine cells: degree 2 (order - 1) on simplices, 2 order in each direction otherwise.
+/// Rule that is exact for the stiffness of affine cells: degree 2 (order - 1) on simplices, else 2 order per direction.
 template <Shape shape>
 using StiffnessQuadrature =
     std::conditional_t<is_simplex(shape) && mesh::order(shape) == 1, CentroidRule<shape>,
                        Quadrature<shape, is_simplex(shape) ? mesh::dimension(shape) : mesh::order(shape) + 1>>;
 
-/// Exact for products of bubble gradients, and for loads of degree 2 against bubbles, on affine cells.
+/// Rule that is exact on affine cells for products of bubble gradients, and for loads of degree 2 times bubbles.
 template <Shape shape>
 using BubbleQuadrature =
     Quadrature<shape, mesh::linear(shape) == Shape::tetrahedron || mesh::order(shape) == 2 ? 4 : 3>;
 
-/// Lagrange functions of order 1 or 2 and face bubbles. Simplices: in barycentric coordinates l, corners l (order 1) or
-/// l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with nodes -1[,
-/// 0], 1.
+/// Lagrange functions of order 1 or 2, and face bubbles. Simplices, in barycentric coordinates l: corners l (order 1)
+/// or l (2 l - 1), edges 4 l_a l_b. Quadrilaterals and hexahedra: products of the functions on [-1, 1] with the nodes
+/// -1, 1 (order 1) or -1, 0, 1.
 template <Shape shape>
 struct ReferenceCell {
   static constexpr int dim = mesh::dimension(shape);
@@ -139,12 +137,12 @@ struct ReferenceCell {
     }
   }
 
-  /// Face function b of a face and its reference gradient. It is 4 l1 l2 (2D) or 27 l1 l2 l3 (3D) on a simplex' face
-  /// and the product of 1 - xi^2 on a quadrilateral's or hexahedron's, vanishes on all other faces, and lies outside
-  /// the displacement space:
+  /// Returns the bubble b of a face and sets its reference gradient. On its face, b is 4 l1 l2 (edge), 27 l1 l2 l3
+  /// (triangle) or the product of 1 - xi^2 (edge, quadrilateral). b vanishes on all other faces and lies outside the
+  /// displacement space:
   ///   triangle 4 l1 l2, of order 2: 4 l1 l2 (1 - l3);  tetrahedron 27 l1 l2 l3;
-  ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), s falling from 1 on the face to
-  ///   0.
+  ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), with s = 1 on the face and 0
+  ///   opposite.
   KOKKOS_INLINE_FUNCTION static Real bubble(int face, const Real (&xi)[dim], Real (&db)[dim]) {
     if constexpr (is_simplex(shape))
       return simplex_bubble(face, xi, db);
@@ -152,12 +150,13 @@ struct ReferenceCell {
       return product_bubble(face, xi, db);
   }
 
-  /// The centre of the reference cell.
+  /// Sets xi to the centre of the reference cell.
   KOKKOS_INLINE_FUNCTION static void centre(Real (&xi)[dim]) {
     for (int i = 0; i < dim; ++i) xi[i] = is_simplex(shape) ? 1.0 / (dim + 1) : 0;
   }
 
-  /// Whether the nodes besides the corners are where they are in a cell with straight sides (to 1e-6 of an edge).
+  /// Returns whether all nodes except the corners have the positions of a cell with straight sides (to 1e-6 of an
+  /// edge).
   KOKKOS_INLINE_FUNCTION static bool is_straight(const Real (&X)[n_nodes][dim]) {
     Real size = 0;
     for (int i = 0; i < dim; ++i) size += (X[1][i] - X[0][i]) * (X[1][i] - X[0][i]);
@@ -173,7 +172,7 @@ struct ReferenceCell {
     return true;
   }
 
-  /// Whether the cell is an affine map of the reference cell (to 1e-10 of an edge).
+  /// Returns whether the cell is an affine map of the reference cell (to 1e-10 of an edge).
   KOKKOS_INLINE_FUNCTION static bool is_affine(const Real (&X)[n_nodes][dim]) {
     Real size = 0;
     for (int i = 0; i < dim; ++i) size += (X[1][i] - X[0][i]) * (X[1][i] - X[0][i]);
@@ -189,10 +188,10 @@ struct ReferenceCell {
     return true;
   }
 
-  /// Component i of a corner of the reference cell.
+  /// Returns component i of a corner of the reference cell.
   KOKKOS_INLINE_FUNCTION static int corner(int a, int i) { return is_simplex(shape) ? a == i + 1 : node_place(a, i); }
 
-  /// The function of order 1 of corner c at node a, which is no corner.
+  /// Returns the order-1 shape function of corner c at node a, which is not a corner.
   KOKKOS_INLINE_FUNCTION static Real corner_share(int a, int c) {
     if (is_simplex(shape)) return edge(a - n_corners, 0) == c || edge(a - n_corners, 1) == c ? 0.5 : 0;
     Real share = 1;
@@ -211,14 +210,14 @@ struct ReferenceCell {
   /// d l_a / d xi_i
   KOKKOS_INLINE_FUNCTION static Real dl(int a, int i) { return a == 0 ? -1 : a == i + 1 ? 1 : 0; }
 
-  /// Corner `end` (0, 1) of the edge of a simplex that node n_corners + e is on.
+  /// Returns corner `end` (0, 1) of the simplex edge with the node n_corners + e.
   KOKKOS_INLINE_FUNCTION static int edge(int e, int end) {
     static constexpr int triangle[][2] = {{0, 1}, {1, 2}, {2, 0}};
     static constexpr int tetrahedron[][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     return dim == 2 ? triangle[e][end] : tetrahedron[e][end];
   }
 
-  /// Component i of a node of the square or cube: -1, 0 or 1.
+  /// Returns component i of a node of the square or cube: -1, 0 or 1.
   KOKKOS_INLINE_FUNCTION static int node_place(int a, int i) {
     static constexpr int square[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
     static constexpr int cube[][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1},
@@ -229,14 +228,14 @@ struct ReferenceCell {
     return dim == 2 ? square[a][i] : cube[a][i];
   }
 
-  /// The corner that is next to corner 0 along axis k, and how far along that edge node a is: 0, 1/2 or 1.
+  /// axis: corner next to corner 0 along axis k. axis_share: position of node a along this edge, 0, 1/2 or 1.
   KOKKOS_INLINE_FUNCTION static int axis(int k) { return is_simplex(shape) || k == 0 ? k + 1 : k + 2; }
   KOKKOS_INLINE_FUNCTION static Real axis_share(int a, int k) {
     if (!is_simplex(shape)) return (1 + node_place(a, k)) / 2.0;
     return a < n_corners ? a == k + 1 : corner_share(a, k + 1);
   }
 
-  /// The function on [-1, 1] that is 1 at `place` and 0 at the other nodes.
+  /// Returns the Lagrange function on [-1, 1] that is 1 at `place` and 0 at the other nodes.
   KOKKOS_INLINE_FUNCTION static Real lagrange(int place, Real x) {
     if (order == 1) return (1 + place * x) / 2;
     return place == 0 ? 1 - x * x : x * (x + place) / 2;
@@ -250,7 +249,7 @@ struct ReferenceCell {
     Real l[dim + 1];
     barycentric(xi, l);
     const int opposite = dim == 2 ? (face + 2) % 3 : face;
-    Real b = dim == 2 ? 4 : 27;  // product of the face's l
+    Real b = dim == 2 ? 4 : 27;  // product of the l of the face
     for (int i = 0; i < dim; ++i) db[i] = 0;
     for (int a = 0; a <= dim; ++a) {
       if (a == opposite) continue;
@@ -287,12 +286,12 @@ struct ReferenceCell {
   }
 };
 
-/// A rule for cells that are not is_straight(), most of them at crack tips: n_1d points in each direction of a simplex,
-/// of the 2 triangles of a quadrilateral, of a hexahedron. In triangles and tetrahedra it collapses towards the corners
-/// that quarter points are next to: where all edges of one corner (of two, in 3D) have theirs, see
-/// move_to_quarter_points(), integrands of the stiffness are smooth in the rule's coordinates though not in the cell's,
-/// and polynomials in a triangle. A hexahedron keeps the product rule: its parts would need 8 points for the divergence
-/// theorem to hold, and linear displacements to be exact.
+/// Quadrature of cells that are not straight, see is_straight(); most of them are at crack tips. The rule has n_1d
+/// points in each direction of a simplex, of the 2 triangles of a quadrilateral, or of a hexahedron. On triangles and
+/// tetrahedra it collapses towards the tip corners (3D: at most two), which have quarter points on all their edges.
+/// There, stiffness integrands are smooth in the coordinates of the rule, in triangles polynomials; see
+/// move_to_quarter_points(). Hexahedra use the product rule. Rules on parts of a hexahedron would need 8 points for the
+/// divergence theorem, and thus for exact linear displacements.
 template <Shape shape, int n_1d = 6>
 class CurvedQuadrature {
  public:
@@ -310,8 +309,8 @@ class CurvedQuadrature {
       int ends[2], n_ends = 0;
       for (int c = 0; c < Cell::n_corners; ++c)
         if (Cell::corner_share(a, c) == 0.5) ends[n_ends++] = c;
-      if (n_ends < 2) continue;  // a node inside of a face or of the cell
-      Real square[2] = {};       // of the distances from the ends
+      if (n_ends < 2) continue;  // node inside a face or the cell
+      Real square[2] = {};       // squared distances from the ends
       for (int end = 0; end < 2; ++end)
         for (int i = 0; i < dim; ++i) square[end] += (X[a][i] - X[ends[end]][i]) * (X[a][i] - X[ends[end]][i]);
       for (int end = 0; end < 2; ++end)
@@ -337,23 +336,23 @@ class CurvedQuadrature {
   }
 
  private:
-  /// Corner k of a piece: of a quadrilateral 0, 1, 2 or 0, 3, 2.
+  /// Returns corner k of a piece. Pieces of a quadrilateral: 0, 1, 2 and 0, 3, 2.
   KOKKOS_INLINE_FUNCTION static int corner(int piece, int k) { return piece == 1 && k == 1 ? 3 : k; }
 
-  int corner_[n_pieces][dim + 1];  // of each piece, in the order of the rule: its apex first
+  int corner_[n_pieces][dim + 1];  // [piece] corners in the order of the rule, apex first
 };
 
-/// The geometry of one cell at one point: gradients in space and the volume that the point stands for.
+/// Geometry of a cell at one point: spatial gradients, and the volume factor of the point.
 template <Shape shape>
 struct CellPoint {
   using Cell = ReferenceCell<shape>;
   static constexpr int dim = Cell::dim;
   Real inverse[dim][dim];  ///< d xi / d x
   Real determinant;        ///< det(dx/dxi)
-  Real volume;             ///< its absolute value, to be multiplied by the quadrature weight
+  Real volume;             ///< |determinant|, to be multiplied by the quadrature weight
 
-  /// X: node coordinates [node][component], dN: reference gradients of the shape functions. They add up to zero, so
-  /// that X may be taken from the first node: no cancellation far from the origin.
+  /// X: node coordinates [node][component]. dN: reference gradients of the shape functions. The gradients sum to zero,
+  /// so X is taken relative to the first node. This avoids cancellation far from the origin.
   KOKKOS_INLINE_FUNCTION CellPoint(const Real (&X)[Cell::n_nodes][dim], const Real (&dN)[Cell::n_nodes][dim]) {
     Real J[dim][dim] = {};
     for (int a = 1; a < Cell::n_nodes; ++a)
@@ -363,7 +362,7 @@ struct CellPoint {
     volume = determinant < 0 ? -determinant : determinant;
   }
 
-  /// Gradient in space of a function with reference gradient g.
+  /// Computes the spatial gradient of a function from its reference gradient g.
   KOKKOS_INLINE_FUNCTION void gradient(const Real (&g)[dim], Real (&out)[dim]) const {
     for (int i = 0; i < dim; ++i) {
       out[i] = 0;

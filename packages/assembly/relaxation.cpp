@@ -6,7 +6,7 @@
 namespace sprekk::assembly {
 namespace {
 
-constexpr int n_unlimited = 4;  // steps before those upwards are limited, too
+constexpr int n_unlimited = 4;  // number of steps before step limits apply
 constexpr Real steepest = -100, most_down = 2;
 constexpr Real share = 0.25, largest_share = 0.8, share_of_sign_changes = 0.6;
 constexpr Real shorter = 0.7, longer = 1.2, shortest = 0.02;

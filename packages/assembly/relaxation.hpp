@@ -1,4 +1,4 @@
-// A fixed-point iteration on many numbers that act on each other, each relaxed by itself.
+// Fixed-point iteration for many coupled numbers with individual relaxation.
 #pragma once
 
 #include "base/types.hpp"
@@ -7,29 +7,30 @@
 
 namespace sprekk::assembly {
 
-/// The fixed-point iteration y -> g(y) for numbers whose g falls with y, steeply in places: a diagonal secant method
-/// with limits on its steps. Each number moves by (g - y)/(1 - s), s being its secant's slope or a share of the
-/// steepest one so far; where the residual g - y changed its sign, s is made steeper, for numbers act on each other.
-/// If that does not converge within a few steps, groups of numbers oscillate together: then that share grows with each
-/// change of sign, from 0.25 to 0.8, and all steps are limited to 1, those of numbers that oscillate to less.
+/// Fixed-point iteration y -> g(y) for numbers whose g decreases with y, steeply in places. The method is a diagonal
+/// secant method with limited steps. Each number moves by (g - y)/(1 - s). s is the secant slope, or a fraction of the
+/// steepest slope so far if that is steeper. Where the residual g - y changes its sign, s becomes steeper, because
+/// numbers interact. After a few steps without convergence, groups of numbers oscillate together. Then the fraction
+/// grows with each change of sign, from 0.25 to 0.8. All steps are limited to 1, and steps of oscillating numbers to
+/// less.
 class Relaxation {
  public:
   bool started() const { return !y_.empty(); }
   const std::vector<Real>& y() const { return y_; }
-  /// Starts anew, at y.
+  /// Restarts the iteration at y.
   void start(std::vector<Real> y);
-  /// From y to the next, with g(y). Nothing falls by more than 2.
+  /// Moves y to the next iterate, given g(y). No number decreases by more than 2.
   void follow(const std::vector<Real>& g);
 
  private:
   struct Number {
     Real slope = 0, step_limit = 1;
     int n_sign_changes = 0;  // of the residual
-    /// The next step, with the residual; after the last one, `moved`, g changed by `change`.
+    /// Returns the next step for this residual. `change` is the change of g over the last step `moved`.
     Real step(Real residual, Real moved, Real change, bool limited);
   };
 
-  std::vector<Real> y_, last_y_, last_g_;  // the latter two empty before the first step
+  std::vector<Real> y_, last_y_, last_g_;  // last_y_, last_g_: empty before the first step
   std::vector<Number> numbers_;
   int n_steps_ = 0;
 };

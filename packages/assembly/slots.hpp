@@ -1,17 +1,17 @@
-// What local operators say of their unknowns and rows.
+// Descriptions of the unknowns and rows of local operators.
 #pragma once
 
 #include "base/view.hpp"
 
 namespace sprekk::assembly {
 
-/// `Count` groups of `Width` adjacent unknowns of one field.
+/// Slot of `Count` groups of `Width` adjacent unknowns of one field.
 template <int Count, int Width>
 struct Slot {
   static constexpr int count = Count, width = Width, size = Count * Width;
 };
 
-/// The fields that a local operator reads or writes, one slot each, one after the other in its local arrays.
+/// Fields that a local operator reads or writes: one slot each, consecutive in the local arrays of the operator.
 template <class... S>
 struct Slots {
   static constexpr int n = sizeof...(S);

@@ -22,8 +22,8 @@ using fields::MultiVector;
 
 namespace {
 
-/// Blocks that only linear modules write are never written again: numbers of theirs that are zero need no places. Those
-/// on the diagonal keep theirs, for the unknowns of a node are to stay together.
+/// Removes zero entries from off-diagonal blocks of linear modules alone, which never change. Diagonal blocks keep
+/// their zeros, so that the unknowns of a node stay together.
 void drop_zeros(BlockMatrix& linear, BlockMatrix& all) {
   for (int i = 0; i < all.n_blocks(); ++i)
     for (int j = 0; j < all.n_blocks(); ++j)
@@ -83,7 +83,7 @@ std::vector<DirichletCondition> System::conditions_on(std::size_t block,
 
 namespace {
 
-/// Names must differ, and be fit for groups of files.
+/// Throws an Error unless the names are distinct and valid as names of file groups.
 void check_names(std::vector<std::string> names, const char* what) {
   for (const auto& name : names)
     SPREKK_CHECK(!name.empty() && name.find('/') == name.npos,
@@ -93,7 +93,7 @@ void check_names(std::vector<std::string> names, const char* what) {
   SPREKK_CHECK(twice == names.end(), "modules declare the {} \"{}\" twice", what, *twice);
 }
 
-/// Places of this rank's owned nodes or facets (the mean of the corners), [entity, component].
+/// Returns the positions of this rank's owned nodes or facets (mean of the corners), [entity, component]. Collective.
 RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout& layout) {
   const bool on_facets = layout.field().entity == Entity::facet;
   const auto& all = on_facets ? mesh.facets->id : mesh.node_id;
@@ -117,8 +117,8 @@ RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout&
   return coordinates;
 }
 
-/// Translations and rotations about a point that is no node (a node at the centre would give an aggregate of that node
-/// a zero column), [unknown, mode], of the unknowns of a map at the places [entity, dim].
+/// Returns translations and rotations [unknown, mode] for positions [entity, dim]. The rotations are about a point that
+/// is not a node. A node at the centre would give an aggregate of this node a zero column. Collective.
 RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const MultiVector& coordinates) {
   const int dim = static_cast<int>(coordinates.getNumVectors()), n_rotations = dim == 2 ? 1 : 3;
   Teuchos::Array<Real> centre(dim);
@@ -220,7 +220,7 @@ bool System::couples_balances() const {
 
 void System::set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const {
   block.coordinates = owned_coordinates(*mesh_, layout);
-  if (unknown.near_null_space == NearNullSpace::constants) return;  // what multigrid assumes if it is told of none
+  if (unknown.near_null_space == NearNullSpace::constants) return;  // default of multigrid
   if (mesh::order(mesh_->shape) == 2) {
     block.interpolation = interpolation_from_corners(*mesh_, layout);
     block.coordinates = at_corners(*mesh_, *block.coordinates);
@@ -293,7 +293,7 @@ void System::bind_modules() {
   }
 }
 
-/// Of balances of rates, in whose rows something is stored.
+/// Allocates the storage increases of balances.
 void System::declare_gains() {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& field = layouts_[b].field();
@@ -325,7 +325,7 @@ void System::assemble_linear() {
     if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
 }
 
-/// The linear part, to which jacobian() of the other modules is to be added.
+/// Sets the matrix to the linear part. The Jacobians of the other modules are added to it.
 void System::start_matrix() {
   for (int i = 0; i < matrix_.n_blocks(); ++i)
     for (int j = 0; j < matrix_.n_blocks(); ++j) {
@@ -338,7 +338,8 @@ void System::start_matrix() {
     }
 }
 
-/// Blocks of balances are written over by what depends on the step, or measured anew in each.
+/// Shares storage between J and a constant diagonal block. Blocks of balances are excluded: they depend on the step and
+/// are measured again in each step.
 std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const fields::Matrix>& J) {
   if (auto kept = linear_.kept(block)) {
     kept->restore(*J);
@@ -353,8 +354,8 @@ std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const field
   return kept;
 }
 
-/// Balances of rates at x = 0 without what a step's length matters for: their diagonals say what rows let through, also
-/// where no module of them is linear.
+/// Assembles balances at x = 0 without storage. Their diagonals are the conductances of the rows, also for balances
+/// without linear modules.
 void System::assemble_balances() {
   const auto context = this->context();
   start_matrix();
@@ -389,7 +390,7 @@ void System::set_merit_weights() {
   }
 }
 
-/// What conditions and modules hold of the displacement, owned.
+/// Returns the owned displacement unknowns that conditions and modules support.
 std::vector<contact::Support> System::supports_of(int displacement) const {
   auto all = constraints_[displacement].supports();
   const auto n_owned = static_cast<LocalIndex>(base::n_local_elements(*layouts_[displacement].owned()));
@@ -421,7 +422,7 @@ void System::watch_contact() {
 
 fields::Globalisation& System::globalisation() { return contact_ ? *contact_ : BlockProblem::globalisation(); }
 
-/// No row of the linear part sees rigid motions of pieces.
+/// Returns whether the linear part is zero for rigid motions of pieces. Collective.
 bool System::linear_part_is_invariant() const {
   fields::Vector motion(layouts_[contact_blocks_.displacement].ghosted());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -513,8 +514,8 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   committed_t_ = memory.t;
   committed_dt_ = memory.dt;
   set_time(memory.t, memory.dt);
-  take_scales();    // without loads of a step that is taken back
-  at_end_.clear();  // of a step that is taken back, or of another run
+  take_scales();    // excludes loads of a rejected step
+  at_end_.clear();  // values of a rejected step or another run
   unbalanced_.clear();
   if (contact_) contact_->resume(x, memory.calibration);
   if (rate_errors_) resume_errors(x, memory.errors);

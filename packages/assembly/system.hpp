@@ -1,4 +1,4 @@
-// The list of modules is the equation system: blocks, sparsity, ghosts and storage follow from what they declare.
+// Equation system of a list of modules. Blocks, sparsity, ghosts and storage follow from their declarations.
 #pragma once
 
 #include "assembly/constraints.hpp"
@@ -16,12 +16,13 @@
 
 namespace sprekk::assembly {
 
-/// The sum of a field's residuals over what a condition holds: of a displacement, what the supports do to the body.
+/// Sum of the residuals of a field over the unknowns that a condition prescribes. For displacements: force of the
+/// supports on the body.
 struct Reaction {
   std::string condition, field;
-  std::vector<Real> force;       ///< [component], in the unit of the rows: N; N/m in 2D
-  std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D the last alone, N
-  int region = -1;               ///< that a condition holds in; -1: on a boundary
+  std::vector<Real> force;       ///< [component], in the unit of the rows, e.g. N (2D: N/m)
+  std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D only the last component, N
+  int region = -1;               ///< region of the condition; -1: on a boundary
   Reactions called = {};
 };
 
@@ -29,12 +30,13 @@ class RateErrors;
 
 class System : public fields::BlockProblem, private contact::Equations {
  public:
-  /// Declares and binds the modules and assembles the linear ones, once. Collective.
+  /// Declares and binds the modules and assembles the linear ones, once. Throws an Error on all ranks for inconsistent
+  /// declarations. Collective.
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
          const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
   ~System() override;
-  System(const System&) = delete;  // modules and stencils know where its parts are
+  System(const System&) = delete;  // modules and stencils refer to members
   System& operator=(const System&) = delete;
 
   RCP<const Comm> comm() const override { return mesh_->comm; }
@@ -57,77 +59,79 @@ class System : public fields::BlockProblem, private contact::Equations {
   Real lag(Lag how, const fields::BlockVector& x) override;
   fields::Globalisation& globalisation() override;
 
-  /// Zero but for what modules know of the initial state. [block]
+  /// Returns the initial state [block]: zero, except for values set by modules.
   fields::BlockVector initial() const;
-  /// Everything the modules can show of the last committed state x.
+  /// Returns all outputs of the modules for the last committed state x. Collective.
   std::vector<OutputField> outputs(const fields::BlockVector& x);
-  /// The reactions of the unknowns that each condition holds, [condition], summed up; an unknown held by two conditions
-  /// counts for the first. Collective.
+  /// Returns the reactions of each condition, [condition], summed over ranks. An unknown with two conditions counts for
+  /// the first. Storage terms are omitted. Collective.
   std::vector<Reaction> reactions(const fields::BlockVector& x);
-  /// The reactions at the end of the last step, with the rates of storage. Without storage, or before the first step,
-  /// those at x. Collective.
+  /// Returns the reactions at the end of the last step, with the rates of storage. Without storage, or before the first
+  /// step, returns reactions(x). Collective.
   std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
-  /// The same sums of any rows r. Collective.
+  /// Returns the sums of any rows r over the unknowns of each condition. Collective.
   std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const;
-  /// Those of all modules, summed over the ranks. Collective.
+  /// Returns the totals of all modules, summed over the ranks. Collective.
   std::vector<Total> totals(const fields::BlockVector& x);
 
-  /// What the modules keep, as "MODULE: HISTORY", and what was stored in the last step, as "gain of FIELD"; the values,
-  /// [owned entity, component], may be written. And the rates that errors of steps are found by.
+  /// Returns the histories "MODULE: HISTORY", and the storage increases of the last step, "gain of FIELD". The values
+  /// [owned entity, component] may be overwritten. With `rates`, the rates for step errors are included.
   std::vector<std::pair<fields::Field, View<Real**>>> histories(bool rates = true) const;
-  /// What a system has learnt on its way to the last committed state, besides histories.
+  /// Data besides histories that describe the way to the last committed state.
   struct Memory {
-    Real t = 0, dt = 0;             ///< the time of that state, and of the step to it
-    Scales scales;                  ///< of the loads so far
+    Real t = 0, dt = 0;             ///< time of the committed state, length of the step to it
+    Scales scales;                  ///< scales of the loads so far
     std::vector<Real> calibration;  ///< see contact::Contact
-    std::vector<Real> errors;       ///< what watch_errors() needs
+    std::vector<Real> errors;       ///< data of watch_errors()
   };
-  Memory memory() const;  ///< stored data
-  /// Goes on from x and the histories that go with it. Throws like set_time. Collective.
+  Memory memory() const;  ///< Returns this data for a checkpoint. Local.
+  /// Continues from x and the histories, which belong to x. Throws an Error for missing scales, and like set_time.
+  /// Collective.
   void resume(const fields::BlockVector& x, const Memory& memory);
 
-  /// Sets unknowns that are prescribed to what they are at t. Collective.
+  /// Sets prescribed unknowns to their values at t. Throws an Error on all ranks, see Constraints::evaluate.
+  /// Collective.
   void prescribe(Real t, fields::BlockVector& x);
-  /// What modules pass on to those of a system that goes on from x in this one's place, by the names of histories().
+  /// Returns the histories for a system that continues from x, with the names of histories(). See Module::pass_on.
   /// Collective.
   std::vector<std::pair<fields::Field, View<Real**>>> passed_on(const fields::BlockVector& x);
-  /// Lets modules take over x and the histories, which come from another system; before resume(). Collective.
+  /// Lets modules take over x and the histories of another system. Call before resume(). Collective.
   void take_over(const fields::BlockVector& x);
-  /// Lets modules know what is out of balance at x after that. Collective.
+  /// Passes the unbalanced residual at x to the modules, after resume(). Collective.
   void tell_unbalanced(const fields::BlockVector& x);
 
-  /// From now on each commit finds what its step errs in; to be called at the initial state. Collective.
+  /// Enables step error estimates in each commit. Call at the initial state. Collective.
   void watch_errors(Real duration);
-  /// Rates count: some modules store something from step to step.
+  /// Returns whether a module stores a quantity, so that the step length matters.
   bool has_rates() const;
-  /// Of the steps committed since the last call of this or of resume(), the largest by each name.
+  /// Returns and clears the step errors since the last call or resume(): the largest error of each name.
   fields::StepErrors take_errors() { return std::exchange(errors_, {}); }
-  /// How far loads at x leave, within a step to t of length dt, the straight line between its ends, relative to the
-  /// most that they have changed in a step so far; it changes the present time. Collective.
+  /// Returns the deviation of the loads at x from a linear path in the step of length dt to t. The deviation is
+  /// relative to the largest change of the loads in a step so far. Changes the present time. Collective.
   Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
-  /// See RateErrors::forget.
+  /// Restarts the rate errors, see RateErrors::forget.
   void forget_rates(bool jump);
 
-  /// [owned fracture face]. Collective.
+  /// Returns the contact constraints, [owned fracture face]. Collective.
   std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
 
   const mesh::Mesh& mesh() const { return *mesh_; }
   const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
   const std::vector<fields::Layout>& layouts() const { return layouts_; }
   const Scales& scales() const { return scales_; }
-  /// True for a block whose ghosts some module reads, and which is therefore exchanged, once, for every residual.
+  /// Returns whether a module reads ghosts of the block. Such blocks are exchanged once per residual.
   bool exchanged(int block) const { return needs_ghosts_[block]; }
-  /// A matrix with all declared blocks, zero; what jacobian() fills. Collective.
+  /// Returns a zero matrix with all declared blocks, as filled by jacobian(). Collective.
   fields::BlockMatrix create_matrix() const;
-  /// The residual and the Jacobian of one module alone, for checks against finite differences. Collective.
+  /// Computes the residual or Jacobian of one module, for comparison with finite differences. Collective.
   void module_residual(int module, const fields::BlockVector& x, fields::BlockVector& r);
   void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
 
   const Rates& rates() const { return rates_; }
-  /// By how much more is stored at x + dx than at x, for small dx, without the factor of the rates, less what modules
-  /// store at x that belongs to no equation (Module::artificial). Collective.
+  /// Returns the increase of the storage from x to x + dx for small dx, without the factor of the rates, minus
+  /// artificially_stored(x). Collective.
   fields::BlockVector stored(const fields::BlockVector& x, const fields::BlockVector& dx);
-  /// The latter alone. Collective.
+  /// Returns the stabilising storage at x, see Module::artificial. Collective.
   fields::BlockVector artificially_stored(const fields::BlockVector& x);
 
  private:
@@ -182,38 +186,38 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::vector<fields::LocalGroup> groups_;
   std::vector<Constraints> constraints_;            // [block]
   std::vector<std::vector<View<Real**>>> history_;  // [module][number](owned entity, component)
-  std::vector<View<Real**>> gains_;  // [block](owned entity, component) what was stored more in the last step, or empty
+  std::vector<View<Real**>> gains_;  // [block](owned entity, component) storage increase of the last step, or empty
   std::vector<char> needs_ghosts_;   // [block]
   fields::BlockVector ghosted_;      // [block] unknowns with ghosts
-  fields::BlockVector weights_;      // [block] of merit(); null: 1/|diagonal|
-  fields::BlockVector diagonals_;    // [block] of linear_; of balances that couple to other rows: of matrix_
-  fields::BlockVector present_;      // [block] the same of the last jacobian()
-  fields::BlockVector schur_;        // [block] of the last jacobian(); null: none
-  fields::BlockVector at_end_;       // [block] residual at the end of the last step; empty: nothing stored, or none
-  fields::BlockVector unbalanced_;   // [block] the same, zero in rows of prescribed unknowns
-  fields::BlockVector load_;         // [block] residual of the linear modules at x = 0, time t_
-  contact::Blocks contact_blocks_;   // without a displacement where modules hold bodies
-  std::unique_ptr<contact::Contact> contact_;  // null where nothing touches and all is held
-  fields::BlockMatrix linear_;                 // what the linear modules write
-  fields::BlockMatrix matrix_;                 // df/dx; shares the blocks that only linear modules write
+  fields::BlockVector weights_;      // [block] weights of merit(); null: 1/|diagonal|
+  fields::BlockVector diagonals_;    // [block] of linear_; coupled balances: of matrix_
+  fields::BlockVector present_;      // [block] diagonals of the last jacobian()
+  fields::BlockVector schur_;        // [block] Schur complements of the last jacobian(); null: none
+  fields::BlockVector at_end_;       // [block] residual at the end of the last step; empty: no storage or no step
+  fields::BlockVector unbalanced_;   // [block] at_end_, zero in rows of prescribed unknowns
+  fields::BlockVector load_;         // [block] residual of the linear modules at x = 0 and time t_
+  contact::Blocks contact_blocks_;   // without displacement if modules support bodies
+  std::unique_ptr<contact::Contact> contact_;  // null without contact and floating blocks
+  fields::BlockMatrix linear_;                 // part of the linear modules
+  fields::BlockMatrix matrix_;                 // df/dx; shares the blocks of linear modules alone
   std::vector<ScaleRelation> relations_;
   Scales scales_;
-  ConstView<Real*> coefficients_;  // [local fracture face] of lag(), empty: those of x
-  Relaxation lagged_;              // [local fracture face] of the logarithms of coefficients_
+  ConstView<Real*> coefficients_;  // [local fracture face] of lag(); empty: computed from x
+  Relaxation lagged_;              // [local fracture face] logarithms of coefficients_
   RCP<base::Timers> timers_;
-  std::unique_ptr<RateErrors> rate_errors_;  // if errors of steps are watched
+  std::unique_ptr<RateErrors> rate_errors_;  // null: errors of steps are not estimated
   fields::BlockVector committed_x_;          // likewise
-  std::vector<Real> load_change_;  // likewise, of [block] loads and [block] prescribed values, the most of a step
-  fields::StepErrors errors_;      // of the last steps
+  std::vector<Real> load_change_;  // likewise; [block] loads, then [block] prescribed values: largest change in a step
+  fields::StepErrors errors_;      // of the steps since take_errors()
   Rates::Scheme scheme_;
-  Real extent_;  // largest of the domain, m
+  Real extent_;  // largest extent of the domain, m
   Rates rates_;
-  Real committed_t_ = 0, committed_dt_ = 0;  // of the last committed step; 0 before the first
+  Real committed_t_ = 0, committed_dt_ = 0;  // last committed step; 0 before the first
   Real t_ = 0, dt_ = 0;
   bool symmetric_ = true, loaded_ = false;
-  bool coupled_ = false;       // balances of rates and other rows depend on each other's fields
+  bool coupled_ = false;       // balances and other rows depend on each other's fields
   std::vector<char> carried_;  // [block] see Declaration::carries
-  bool changing_ = false;      // the diagonals of balances are found anew in each step
+  bool changing_ = false;      // diagonals of balances are updated in each step
   bool sized_ = false;         // diagonals_ of balances are those of this step's first Jacobian, with schur_
 };
 

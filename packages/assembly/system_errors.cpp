@@ -34,9 +34,9 @@ void System::resume_errors(const BlockVector& x, const std::vector<Real>& memory
 
 void System::forget_rates(bool jump) { rate_errors_->forget(jump); }
 
-/// Of the step to x, whose ghosts are there, before histories move on.
+/// Updates the largest errors by those of the step to x. Requires ghosts of x and the histories before commit.
 void System::find_errors(const BlockVector& x) {
-  constexpr Real noise = 1e-8;  // of what linear solves and Newton's method leave, or more
+  constexpr Real noise = 1e-8;  // relative limit for changes, above the errors of linear solves and Newton's method
   std::vector<Real> least;
   for (const auto& block : blocks_) least.push_back(noise * block.kinematic_scale);
   auto errors = rate_errors_->of_step(x, dt_, rates_.before > 0, least);
@@ -72,7 +72,7 @@ void take_prescribed(const ConstView<char*>& mask, const ConstView<Real*>& value
 
 }  // namespace
 
-/// What modules ask for at time t at x, [block], and after all of these the values that conditions prescribe.
+/// Returns the loads of modules at time t and state x, [block], followed by the prescribed values, [block].
 BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
   set_time(t, dt);
   refresh_ghosts(x, false);
@@ -93,9 +93,9 @@ BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
 
 Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
   const Real begin = t - dt;
-  const auto scales = scales_;  // the step to t may not be taken
+  const auto scales = scales_;  // the step to t may be rejected
   const auto first = loads(x, begin, dt), last = loads(x, t, dt);
-  std::vector<Real> noise;  // rounding of loads that do not change
+  std::vector<Real> noise;  // round-off of constant loads
   for (std::size_t b = 0; b < last.size(); ++b) {
     const auto& block = blocks_[b % blocks_.size()];
     const Real size = b < blocks_.size() ? block.residual_scale : block.kinematic_scale;
@@ -103,7 +103,7 @@ Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
   }
   for (std::size_t b = 0; b < last.size(); ++b) last[b]->update(-1, *first[b], 1);
   std::vector<Real> bend(last.size(), 0);
-  const Real off = std::sqrt(0.15);  // of points of Gauss, which periods of loads meet by chance alone
+  const Real off = std::sqrt(0.15);  // Gauss points: unlikely to coincide with a period of the loads
   for (const Real s : {0.5 - off, 0.5, 0.5 + off}) {
     const auto between = loads(x, begin + s * dt, dt);
     for (std::size_t b = 0; b < last.size(); ++b) {

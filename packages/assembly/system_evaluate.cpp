@@ -1,4 +1,4 @@
-// Evaluation: residuals, Jacobians, measures and outputs at a given x.
+// Evaluation of residuals, Jacobians, measures and outputs at a given x.
 #include "assembly/rate_errors.hpp"
 #include "assembly/system.hpp"
 #include "base/check.hpp"
@@ -27,7 +27,7 @@ ConstView<Real*> const_view(const fields::Vector& v) {
   return ConstView<Real*>(local.data(), local.extent(0));
 }
 
-/// gain = (with - without)/rate; [entity, component] of [unknown].
+/// Sets gain = (with - without)/rate; [entity, component] from [unknown].
 void set_gains(const View<Real**>& gain, const View<Real*>& with, const View<Real*>& without, Real rate) {
   const int width = static_cast<int>(gain.extent(1));
   Kokkos::parallel_for(
@@ -57,7 +57,7 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
   }
 }
 
-/// Views of what refresh_ghosts has fetched last.
+/// Returns views of the values of the last refresh_ghosts().
 State System::state(int module) const {
   State s{.t = t_,
           .rate = rates_.now,
@@ -70,9 +70,8 @@ State System::state(int module) const {
   return s;
 }
 
-/// Evaluates the loads at time t and lets the scales grow with them, then with each other: a chain of relations is no
-/// longer than there are scales. Relations that lead back to a scale give it the same size but for rounding, with which
-/// it is not to grow.
+/// Evaluates the loads at time t and increases the scales accordingly, then by their relations. A chain of relations is
+/// no longer than the number of scales. Cyclic relations reproduce a scale up to round-off, which must not increase it.
 void System::update_scales(Real t) {
   constexpr Real rounding = 1e-14;
   Scales loads = scales_;
@@ -108,7 +107,7 @@ void System::set_time(Real t, Real dt) {
   if (contact_) contact_->begin_step();
   rates_ = dt > 0 ? Rates::of(scheme_, dt, committed_dt_) : Rates{};  // 0: before the first step
   sized_ = false;
-  present_.clear();  // its rounding is not that of where the next attempt starts
+  present_.clear();  // its round-off does not apply to the start of the next attempt
   update_scales(t);
   bool changes = !loaded_;
   base::collectively(*comm(), [&] {
@@ -158,7 +157,7 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
   }
 }
 
-/// Of the state whose ghosts are there, before the histories move on.
+/// Computes the storage increases for the state with ghosts. Call before the histories change.
 void System::find_gains() {
   BlockVector gained, rest;
   for (const auto& block : blocks_) {
@@ -218,7 +217,7 @@ void System::find_schur() {
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
   if (present_.empty()) present_ = diagonals_;
-  for (std::size_t b = 0; b < blocks_.size() && changing_; ++b)  // rates are no part of the linear one
+  for (std::size_t b = 0; b < blocks_.size() && changing_; ++b)  // excludes the linear part without rates
     if (unknowns_[b].balance) {
       if (present_[b] == diagonals_[b]) present_[b] = rcp(new fields::Vector(blocks_[b].map));
       matrix_(b, b)->getLocalDiagCopy(*present_[b]);
@@ -231,7 +230,7 @@ void System::find_schur() {
 void System::commit(const BlockVector& x) {
   refresh_ghosts(x, false);
   if (contact_ &&
-      contact_->pieces()) {  // before histories move on: afterwards faces that slid lie on the limit of sticking
+      contact_->pieces()) {  // before the histories change: afterwards, sliding faces are at the limit of sticking
     contact_->find_loose(present_grips());
     contact_->remember(x);
   }
@@ -246,7 +245,7 @@ void System::commit(const BlockVector& x) {
   }
 }
 
-/// Before histories and gains move on.
+/// Computes the residual at the end of the step. Call before histories and storage increases change.
 void System::find_unbalanced(const BlockVector& x) {
   if (at_end_.empty()) {
     at_end_ = fields::create_like(x);
@@ -264,7 +263,8 @@ void System::find_unbalanced(const BlockVector& x) {
   }
 }
 
-/// Of unknowns with that scale: what rounding leaves of a row is this times its diagonal.
+/// Returns the round-off factor of unknowns with this scale. Factor times diagonal is the round-off of a row.
+/// Collective.
 Real System::rounding(const BlockVector& x, const std::string& scale) const {
   Real farthest = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
@@ -272,15 +272,15 @@ Real System::rounding(const BlockVector& x, const std::string& scale) const {
   return 64 * std::numeric_limits<Real>::epsilon() * farthest;
 }
 
-/// A row of the linear part cannot be computed better than its diagonal times the rounding of the displacements: that
-/// much of a residual is no residual. It matters for slivers, whose stiffness is large, and for nearly incompressible
-/// rock. A traction row has jumps times the constant of the face law in it: where soft rock carries stiff rock far,
-/// their rounding is more than the deformation of the stiff one. But what flies off to displacements whose rounding
-/// hides the loads has not converged.
+/// The residual of a row of the linear part has a round-off of its diagonal times the round-off of the displacements.
+/// measures() subtracts it. It is relevant for slivers, which are stiff, and for nearly incompressible rock. Traction
+/// rows contain jumps times the augmentation constant. Where soft rock carries stiff rock over a long distance, the
+/// round-off of the jumps exceeds the deformation of the stiff rock. The subtraction is limited: a solution that
+/// diverges until round-off hides the loads has not converged.
 namespace {
 
-/// What rounding of other blocks' unknowns leaves of the rows of block b: sum over c of |J_bc| times their
-/// `rounding(c)`, where that is not zero; empty where it is for all. Collective.
+/// Returns the round-off of other blocks' unknowns in the rows of block b: sum over c of |J_bc| times rounding(c). The
+/// result is empty if all rounding(c) are zero. Collective.
 View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n,
                                const std::function<Real(int)>& rounding) {
   View<Real*> sum;
@@ -301,8 +301,9 @@ View<Real*> rounding_by_others(const fields::BlockMatrix& J, int b, LocalIndex n
 
 }  // namespace
 
-/// Of unknowns whose values are far above their changes, as those of balances, or may be far above their scale. Before
-/// the first Jacobian of an attempt the matrix may be that of a state far away: then only of balances that are carried.
+/// Returns this round-off for unknowns with values far above their changes (balances) or possibly far above their
+/// scale. Before the first Jacobian of an attempt, the matrix may belong to a distant state. Then balances count only
+/// in the rows of advected balances.
 View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
   return rounding_by_others(matrix_, b, base::n_local_elements(*blocks_[b].map), [&](int c) {
     const bool counts = unknowns_[c].balance && (carried_[b] || !present_.empty());
@@ -327,8 +328,8 @@ Real range_of(const fields::Vector& x) {
 }  // namespace
 
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
-  constexpr Real most_noise = 1e-5;   // of the loads
-  constexpr Real least_range = 1e-4;  // of the level of a balanced quantity
+  constexpr Real most_noise = 1e-5;   // relative to the loads
+  constexpr Real least_range = 1e-4;  // relative to the level of a balanced quantity
   refresh_ghosts(x, false);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -345,11 +346,11 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const Real free_scale = blocks_[b].residual_scale, held_scale = blocks_[b].kinematic_scale;
     const auto diagonal = const_view(*diagonals_[b]), now = const_view(*(present_.empty() ? diagonals_ : present_)[b]);
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
-    const bool balance = unknown.balance;  // some rows let much less through than others
+    const bool balance = unknown.balance;  // conductances of rows differ
     const bool bounded = !balance && !traction, carried = carried_[b];
     // Differences of pressure or temperature drive fluxes: an error is relative to these and not to the level.
     const Real driving = balance ? std::min(held_scale, std::max(range_of(*x[b]), least_range * held_scale)) : 0;
-    Real stored = 0;  // rounding of what the step stores
+    Real stored = 0;  // round-off of the storage terms
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;
     const auto others = rounding_of_others(static_cast<int>(b), x);
@@ -367,7 +368,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
                              : bounded && of_row > most_noise * scale ? most_noise * scale
                                                                       : of_row;
           const Real size = size_of_row <= noise ? 0 : (size_of_row - noise) / scale;
-          if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is no number
+          if (!(size <= maximum)) maximum = size == size ? size : infinite;  // also if size is NaN
         },
         Kokkos::Max<Real>(largest));
     measures.push_back({blocks_[b].name, largest});
@@ -377,7 +378,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
   }
   std::vector<Real> here;
-  for (const auto& measure : measures)  // a number that is none must not vanish in the maximum
+  for (const auto& measure : measures)  // the maximum must not hide NaN
     here.push_back(std::isnan(measure.value) ? std::numeric_limits<Real>::infinity() : measure.value);
   const auto all = base::max_over_ranks(*comm(), here);
   for (std::size_t k = 0; k < measures.size(); ++k) measures[k].value = all[k];
@@ -385,9 +386,9 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
 }
 
 Real System::merit(const BlockVector& x, const BlockVector& r) {
-  // Weight of the rows of transported quantities. These rows grow by orders of magnitude with the flow and are linear
-  // for a given flow: the search must not reject a step that corrects the flow because they grow. With mechanics: the
-  // largest share of the transported energy that becomes mechanical work.
+  // Weight of rows of transported quantities. These rows grow by orders of magnitude with the flow and are linear for a
+  // given flow. Their growth must not reject a step that corrects the flow. With mechanics, the weight is the largest
+  // share of the transported energy that becomes mechanical work.
   const Real share_at_work = coupled_ ? 1e-6 : 1e-9;
   Real sum = 0;
   for (std::size_t b = 0; b < r.size(); ++b) {
@@ -412,13 +413,13 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
         },
         part);
     const Real share = carried_[b] ? share_at_work : 1,
-               unit = carried_[b] ? blocks_[b].kinematic_scale : 1;  // so that these are powers, too
-    sum += share * (powers ? dt_ * part / unit : part);              // the energy of a power
+               unit = carried_[b] ? blocks_[b].kinematic_scale : 1;  // makes these rows powers
+    sum += share * (powers ? dt_ * part / unit : part);              // energy: power times time
   }
   return base::sum_over_ranks(*comm(), sum);
 }
 
-/// At the x of the last refresh_ghosts.
+/// Returns the contact constraints at the x of the last refresh_ghosts().
 std::vector<contact::Grip> System::present_grips() {
   std::vector<contact::Grip> grips(mesh_->n_owned_fracture_faces);
   for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
@@ -494,7 +495,7 @@ std::vector<Total> System::totals(const BlockVector& x) {
 std::vector<Reaction> System::reactions(const BlockVector& x) {
   auto r = fields::create_like(x);
   const Rates rates = rates_;
-  rates_ = {};  // histories have moved on: nothing is stored
+  rates_ = {};  // the histories have been updated: no storage
   raw_residual(x, r);
   rates_ = rates;
   return sums_of_held(r);
@@ -507,9 +508,9 @@ std::vector<Reaction> System::reactions_of_step(const BlockVector& x) {
 std::vector<Reaction> System::sums_of_held(const BlockVector& r) const {
   std::vector<Reaction> result;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (!unknowns_[b].enriches.empty()) continue;  // the functions of the other field add up to 1: it has all the force
+    if (!unknowns_[b].enriches.empty()) continue;  // the enriched field has the whole force: its functions sum to 1
     const auto view = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
-    const int n_components = blocks_[b].n_components, width = n_components + 3;  // the force, then the moment
+    const int n_components = blocks_[b].n_components, width = n_components + 3;  // force, then moment
     const auto& conditions = constraints_[b].conditions();
     std::vector<Real> here(conditions.size() * width, 0);
     for (const auto& entry : constraints_[b].entries()) {
@@ -554,7 +555,7 @@ BlockVector System::artificially_stored(const BlockVector& x) {
   return sum;
 }
 
-/// The derivative of what rates are the factor of.
+/// Computes the derivative of the quantity that the rates multiply.
 BlockVector System::stored(const BlockVector& x, const BlockVector& dx) {
   auto sum = artificially_stored(x), product = fields::create_like(x);
   for (const auto& block : sum) block->scale(-1);

@@ -1,4 +1,4 @@
-// Coefficients of fluxes that lag behind the unknowns they depend on.
+// Lagged coefficients of fluxes.
 #include "assembly/system.hpp"
 
 #include "base/over_ranks.hpp"
@@ -8,8 +8,8 @@
 
 namespace sprekk::assembly {
 
-/// In logarithms, for coefficients go over many orders of magnitude. Where conductances follow a cubic law, the slope
-/// of the iteration is -3 if pressures decide on the aperture, 0 if volumes do.
+/// Updates the lagged coefficients in logarithms, since they vary over many orders of magnitude. For cubic laws, the
+/// slope of the iteration is -3 if pressures determine the aperture, and 0 if volumes determine it.
 Real System::lag(Lag how, const fields::BlockVector& x) {
   constexpr Real least = 1e-12;
   if (how == Lag::none) {
@@ -18,7 +18,7 @@ Real System::lag(Lag how, const fields::BlockVector& x) {
     return 0;
   }
   refresh_ghosts(x, false);
-  std::vector<Real> found(mesh_->n_fracture_faces(), -1);  // below zero: none
+  std::vector<Real> found(mesh_->n_fracture_faces(), -1);  // negative: no coefficient
   for (std::size_t m = 0; m < modules_.size(); ++m)
     modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
   Real here = -1;

@@ -1,4 +1,4 @@
-// A local operator with its assembler, whatever its type.
+// Type-erased local operator with its assembler.
 #pragma once
 
 #include "assembly/assembler.hpp"
@@ -10,11 +10,11 @@
 
 namespace sprekk::assembly {
 
-/// For modules whose operator is chosen when they are bound.
+/// Term of a module whose operator type is selected at bind().
 class Term {
  public:
   Term() = default;
-  /// `at(state)` makes the operator; blocks as of Assembler.
+  /// `at(state)` returns the operator. Rows and columns: block numbers, see Assembler. `keep`: save scatter positions.
   template <class At>
   Term(const Context& context, Loop loop, const std::vector<int>& rows, const std::vector<int>& columns, bool keep,
        At at) {

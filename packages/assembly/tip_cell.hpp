@@ -1,4 +1,4 @@
-// The functions that enrich the displacement in the cells around a crack tip.
+// Functions that enrich the displacement in cells at crack tips.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -16,15 +16,13 @@
 
 namespace sprekk::assembly {
 
-/// The enriching functions of a cell of order 1 that has a crack tip, on the host. With rho the sum of the node
-/// functions N_c of all nodes but tips, node c that is no tip has
-///   psi_c = N_c (rho^(-1/2) - 1),
-/// which is continuous, zero at all nodes and where rho = 1, and lets displacements grow with the root of the distance
-/// from the tip; on a triangle N and psi span what a quarter-point triangle has along its edges at the tip.
-///
-/// Integrals over a cell of grad psi, and of grad (x psi), are those of psi n and x psi n over its faces to round-off:
-/// on simplices the rules are exact, elsewhere a function linear in x is added to each gradient for what they miss. So
-/// stress that is uniform, or linear and balanced by body forces, is in equilibrium.
+/// Enriching functions of a cell of order 1 at a crack tip, on the host. For a node c that is not a tip:
+///   psi_c = N_c (rho^(-1/2) - 1),    rho = sum of N_c over all nodes that are not tips
+/// psi_c is continuous and vanishes at all nodes and where rho = 1. Displacements thus grow with the square root of the
+/// distance from the tip. On a triangle, N and psi span the functions of a quarter-point triangle on its edges at the
+/// tip. The integrals of grad psi and grad (x psi) over a cell equal those of psi n and x psi n over its faces, to
+/// round-off. On simplices, the rules are exact. On other cells, a function linear in x corrects each gradient. Uniform
+/// stress, and linear stress balanced by body forces, are therefore in equilibrium.
 template <Shape shape>
 class TipCell {
  public:
@@ -34,10 +32,10 @@ class TipCell {
 
   struct Values {
     Real N[n], psi[n];
-    Real grad_N[n][dim], grad_psi[n][dim];  ///< in space
+    Real grad_N[n][dim], grad_psi[n][dim];  ///< spatial gradients
   };
 
-  /// `rules` may serve several cells.
+  /// Computes the correction of the cell. `rules` may be shared by cells. Throws an Error for a cell without volume.
   TipCell(const mesh::Mesh& mesh, LocalIndex cell, std::shared_ptr<TipRules> rules = std::make_shared<TipRules>())
       : rules_(std::move(rules)), tips_(n) {
     gather_host<shape>(mesh, cell, X_);
@@ -53,7 +51,7 @@ class TipCell {
       balance();
   }
 
-  /// At a reference point that is no tip; returns |det(dx/dxi)|.
+  /// Sets the values at a reference point that is not a tip, and returns |det(dx/dxi)|.
   Real at(const Real (&xi)[dim], Values& v) const {
     Real dN[n][dim];
     Cell::shape_functions(xi, v.N);
@@ -76,10 +74,10 @@ class TipCell {
     return point.volume;
   }
 
-  /// Gradient in space of a function with reference gradient g at a reference point.
+  /// Computes the spatial gradient, at xi, of a function with the reference gradient g.
   void gradient(const Real (&xi)[dim], const Real (&g)[dim], Real (&out)[dim]) const { point(xi).gradient(g, out); }
 
-  /// Mean of psi over a face, [node of face_nodes(shape)].
+  /// Returns the mean of psi over a face, [node of face_nodes(shape)].
   FaceValues face_means(int local_face) const {
     FaceValues means{};
     Real total = 0;
@@ -102,7 +100,7 @@ class TipCell {
     });
   }
 
-  /// Calls visit(xi, weight) at the reference points of the same rule.
+  /// Calls visit(xi, weight) at the reference points of this rule.
   template <class Visit>
   void for_each_reference_point(const Visit& visit) const {
     Real xi[dim];
@@ -112,8 +110,8 @@ class TipCell {
     }
   }
 
-  /// Calls visit(N, psi, area, x) at points of a face, with the values of its nodes in the order of face_nodes(shape)
-  /// and the area (vector, pointing out of the cell) that the point stands for. Nothing on a face without a tip.
+  /// Calls visit(N, psi, area, x) at the points of a face. N and psi are in the order of face_nodes(shape). `area` is
+  /// the outward area vector of the point, m^2 (m in 2D). Faces without a tip are skipped.
   template <class Visit>
   void for_each_face_point(int local_face, const Visit& visit) const {
     const auto& nodes = mesh::face_nodes(shape)[local_face];
@@ -154,7 +152,8 @@ class TipCell {
   }
 
   static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
-  static constexpr int n_face_points = 10;  // fewer than those of a cell, and they decide about equilibrium
+  static constexpr int n_face_points = 10;  // fewer points in total than in a cell; their accuracy determines
+                                            // equilibrium
 
   const TipRules::Rule& face_rule(const std::vector<char>& tips) const {
     if constexpr (dim == 2) return rules_->of_edge(tips, n_face_points);
@@ -183,7 +182,7 @@ class TipCell {
     return x;
   }
 
-  /// 1, and the distance from the centre over the size of the cell.
+  /// Sets offset to 1, followed by the distance from the centre relative to the cell size.
   void offsets(const std::array<Real, 3>& x, Real (&offset)[dim + 1]) const {
     offset[0] = 1;
     for (int i = 0; i < dim; ++i) offset[1 + i] = (x[i] - centre_[i]) / size_;
@@ -227,7 +226,7 @@ class TipCell {
   std::shared_ptr<TipRules> rules_;
   std::vector<char> tips_;  // [node]
   Real X_[n][dim], centre_[dim] = {}, correction_[n][dim][dim + 1] = {}, size_ = 0;
-  std::optional<CellPoint<shape>> affine_;  // of a simplex: the same everywhere
+  std::optional<CellPoint<shape>> affine_;  // of a simplex: constant in the cell
 };
 
 }  // namespace sprekk::assembly

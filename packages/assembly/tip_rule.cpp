@@ -13,7 +13,7 @@ struct Node1D {
   Real x, weight;
 };
 
-/// Gauss points on [0, 1]: roots of Legendre's polynomial by Newton's method.
+/// Returns Gauss points on [0, 1]: the roots of Legendre's polynomial, by Newton's method.
 std::vector<Node1D> gauss(int n) {
   std::vector<Node1D> rule;
   for (int i = 0; i < n; ++i) {
@@ -38,7 +38,8 @@ struct Barycentric {
   Real weight;
 };
 
-/// A rule on the simplex of n_corners corners, in barycentric coordinates; weights add up to 1 / (n_corners - 1)!.
+/// Returns a rule on the simplex with n_corners corners, in barycentric coordinates. Weights sum to 1 / (n_corners -
+/// 1)!.
 std::vector<Barycentric> simplex_rule(std::size_t n_corners, const std::vector<Node1D>& gauss) {
   if (n_corners == 1) return {{{1, 0, 0}, 1}};
   std::vector<Barycentric> rule;
@@ -50,7 +51,8 @@ std::vector<Barycentric> simplex_rule(std::size_t n_corners, const std::vector<N
   return rule;
 }
 
-/// Appends the rule of one simplex with the given corners; volume is that of the reference simplex times its factorial.
+/// Appends the rule of one simplex with the given corners. volume: reference volume times the factorial of the
+/// dimension.
 void append(const std::vector<Point>& tips, const std::vector<Point>& others, Real volume, int n,
             std::vector<RulePoint>& rule) {
   const auto line = gauss(n);
@@ -86,14 +88,14 @@ std::vector<Point> corners_of(Shape shape) {
   }
 }
 
-/// The corner that differs from corner a of a square or cube along one axis.
+/// Returns the corner that differs from corner a of a square or cube along one axis.
 int neighbour(const std::vector<Point>& corners, int a, int axis) {
   Point x = corners[a];
   x[axis] = -x[axis];
   return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
 }
 
-/// The tips with the most tips next to them: all simplices of a cut have one as a corner.
+/// Returns the tips with most neighbouring tips. Each is the common corner of all simplices of a cut.
 std::vector<int> centres_of(const std::vector<Point>& corners, const std::vector<char>& tips, int dim) {
   std::vector<int> best;
   int most = -1;
@@ -108,7 +110,7 @@ std::vector<int> centres_of(const std::vector<Point>& corners, const std::vector
   return best;
 }
 
-/// The simplices around a corner of a square or cube: one for each order of the axes along which edges lead from it to
+/// Returns the simplices around a corner of a square or cube. There is one for each order of the axes of the edges to
 /// the opposite corner.
 std::vector<std::vector<int>> cut(const std::vector<Point>& corners, int centre, int dim) {
   std::vector<std::vector<int>> simplices;
@@ -149,10 +151,11 @@ std::vector<RulePoint> tip_rule(Shape shape, const std::vector<char>& tips, int 
     for (std::size_t a = 0; a < all.size(); ++a) all[a] = static_cast<int>(a);
     append(corners, tips, all, 1, n, rule);
   } else {
-    const Real volume = dim == 2 ? 4 : 8;  // the factorial times the share of one simplex
+    const Real volume = dim == 2 ? 4 : 8;  // factorial of the dimension times the volume of one simplex
     auto centres = centres_of(corners, tips, dim);
-    if (dim == 2 && tips[(centres.front() + 2) % 4]) centres = {(centres.front() + 1) % 4};  // along the other diagonal
-    for (int centre : centres)  // the mean of all cuts, so that mirrored cells have mirrored rules
+    if (dim == 2 && tips[(centres.front() + 2) % 4])
+      centres = {(centres.front() + 1) % 4};  // cut along the other diagonal
+    for (int centre : centres)                // mean of all cuts: mirrored cells have mirrored rules
       for (const auto& simplex : cut(corners, centre, dim))
         append(corners, tips, simplex, volume / static_cast<Real>(centres.size()), n, rule);
   }

@@ -1,4 +1,4 @@
-// Quadrature of functions that behave like the root of the distance to some corners of a cell or face.
+// Quadrature for functions of the square root of the distance from some corners of a cell or face.
 #pragma once
 
 #include "base/types.hpp"
@@ -17,16 +17,16 @@ struct RulePoint {
   Real weight;             ///< on the reference cell
 };
 
-/// A rule for a reference cell of order 1, or for a reference edge [0, 1] where `shape` is absent, whose functions are
-/// smooth in s = sqrt(rho), rho the sum of the node functions of all corners but the tips. The cell is cut into
-/// simplices around a tip (the mean is taken where several tips will do); in each, rho = s^2 is the coordinate from its
-/// tips to its other corners, and Gauss points with n in each direction do the rest. Exact for polynomials of degree <
-/// 2 n in s and in directions across.
-///   tips: [corner] 1 for a tip; at least one is and one is not.
+/// Quadrature rules for functions that are smooth in s = sqrt(rho). rho is the sum of the shape functions of all
+/// corners that are not tips. The reference cell has order 1; tip_rule_of_edge is for the reference edge [0, 1]. The
+/// cell is cut into simplices around a tip; the mean over several possible tips is taken. In each simplex, rho = s^2 is
+/// the coordinate from its tips to its other corners. The rule is a product of n Gauss points in s and in each
+/// transverse direction. It is exact for polynomials of degree < 2 n in s and in the transverse directions.
+///   tips: [corner] 1 for a tip; at least one corner is a tip and one is not.
 std::vector<RulePoint> tip_rule(mesh::Shape shape, const std::vector<char>& tips, int n);
 std::vector<RulePoint> tip_rule_of_edge(const std::vector<char>& tips, int n);
 
-/// Rules that were asked for before: those of the few ways in which cells and faces have tips.
+/// Cache of rules, by cell shape and tip corners.
 class TipRules {
  public:
   using Rule = std::vector<RulePoint>;
