@@ -1,4 +1,4 @@
-// Rock that nothing holds: what it is, and how far a step may move it.
+// Line search along rigid motions of floating blocks.
 #include "contact/contact.hpp"
 #include "contact/zero_search.hpp"
 
@@ -31,22 +31,24 @@ void Contact::find_loose(std::vector<Grip> grips) {
 namespace {
 
 constexpr int n_sweeps = 2;
-/// Unbalanced forces along a mode below this share of the force scale count as round-off. The share is below the
-/// tolerance of Newton's method: forces between the two would otherwise prevent convergence.
+/// Smallest unbalanced force along a mode, relative to the force scale. Smaller forces count as round-off. The limit is
+/// below the tolerance of Newton's method: forces between the two would otherwise prevent convergence.
 constexpr Real least_force = 1e-12;
 
 }  // namespace
 
-/// [group] Of a motion, on what is out of balance at x; below zero where the motion is along the force.
+/// Returns the work of unbalanced forces at x on a motion, [group]. It is negative if the motion follows the force.
+/// Collective.
 std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const BlockVector& x) {
   auto r = fields::create_like(x);
   const auto grips = equations_.evaluate(x, r);
   return pieces_->work(motion, *r[blocks_.displacement], grips);
 }
 
-/// A piece that nothing holds goes as far as the full step says, 1e4 times too far. So its motion is taken out of the
-/// step, and as much of it put back as brings the forces along it into balance: until the piece touches, or sticks.
-/// After that the forces that are left along the free motions are balanced, one motion after the other.
+/// Replaces the share of free motions in a step. Without resistance, the proximal term alone limits the motion: the
+/// step is about 1e4 times too long. The free motion is removed from dx. The multiple of it that balances the forces
+/// along it is added: until the piece touches or sticks. Remaining forces along the free motions are balanced one
+/// motion after another.
 std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
   if (!pieces_ || !pieces_->any() || damped_everywhere_ > 0) return "";
   const auto motion = pieces_->part_of(*dx[blocks_.displacement]);
@@ -57,7 +59,7 @@ std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
   return unresisted;
 }
 
-/// Evaluations of residuals are cheap next to the Newton steps that they save; all groups share them.
+/// Evaluates residuals, which are inexpensive compared with the Newton steps saved. All groups share the evaluations.
 std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx,
                                    bool mode) {
   auto& du = *dx[blocks_.displacement];

@@ -1,4 +1,4 @@
-// The constant of the face law, held against the stiffness of the rock.
+// Calibration of the augmentation constant by the stiffness of the rock.
 #include "contact/contact.hpp"
 
 #include "base/check.hpp"
@@ -15,28 +15,29 @@ using fields::BlockVector;
 
 namespace {
 
-constexpr Real usual = 3;          ///< stiffness of the rock, measured as below, over the constant
-constexpr Real near = 10;          ///< factor within which the constant is left alone
-constexpr Real noticeable = 1e-4;  ///< share of the scales by which jumps and tractions must have changed
-constexpr int n_classes = 25;      ///< decades of stiffness that are told apart
+constexpr Real usual = 3;          ///< typical stiffness of the rock, measured as below, relative to the constant
+constexpr Real near = 10;          ///< the constant remains if the ratio is within this factor
+constexpr Real noticeable = 1e-4;  ///< smallest change of jumps and tractions, relative to the scales
+constexpr int n_classes = 25;      ///< number of stiffness classes, decades
 enum Sum { worked, of_constant, moved, loaded, noticed, area, n_sums };
 
 bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>{}; }
 
 }  // namespace
 
-/// Faces whose rock is of like stiffness, by decades around what its scales say of the stiffest: u = sigma L / E.
+/// Returns the stiffness class of a face: decades relative to the stiffest rock, E = sigma L / u from the scales.
 int Contact::calibration_class(const Grip& grip) const {
   const auto sizes = equations_.sizes();
   const Real decade = std::round(std::log10(grip.modulus * sizes.jump / (sizes.traction * sizes.extent)));
   return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
 }
 
-/// The rock answers a change of traction by a change of jump. From one balanced iterate to the next its stiffness is
+/// Compares the stiffness of the rock with the augmentation constant. Between two balanced iterates it is
 ///   - sum |f| dlambda . dw / sum |f| |dw|^2
-/// over faces of one class that stay closed, weighted by how far each deformation has moved. Measured once: stiffness
-/// does not change, but between later iterates pieces that part move far, which says nothing of it. Where sides come
-/// nearer to each other under a given load no traction changes, and what rounding leaves of it is no stiffness.
+/// over the faces of one class that remain closed. Larger deformations have a larger weight. Each class is measured
+/// once: the stiffness is constant, but between later iterates, separating blocks move far without elastic resistance.
+/// If sides approach each other under a constant load, the traction does not change. Round-off of the traction is not a
+/// stiffness.
 bool Contact::calibrate(const BlockVector& x, bool first) {
   if (blocks_.traction < 0) return false;
   calibration_.resize(n_classes, 0);
@@ -70,7 +71,7 @@ bool Contact::calibrate(const BlockVector& x, bool first) {
     if (calibration_[k] != 0 || !(sums[moved] > std::pow(noticeable * length, 2) * sums[area]) ||
         !(sums[loaded] > sums[noticed]))
       continue;
-    if (!(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded]))) continue;  // no work without friction
+    if (!(sums[worked] > 1e-2 * std::sqrt(sums[moved] * sums[loaded]))) continue;  // zero without friction
     const Real ratio = sums[worked] / sums[of_constant] / usual;
     const bool stays = ratio > 1 / near && ratio < near;
     calibration_[k] = stays ? 1 : ratio;
@@ -80,7 +81,7 @@ bool Contact::calibrate(const BlockVector& x, bool first) {
   return corrected;
 }
 
-/// Factors of all faces from those of their classes.
+/// Sets the factors of all faces from their classes.
 void Contact::correct_augmentation(const std::vector<Grip>& grips) {
   SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
                calibration_.size(), n_classes);

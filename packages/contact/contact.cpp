@@ -82,13 +82,13 @@ std::size_t Contact::state_hash(const std::vector<char>& states) {
   std::size_t here = 0;
   for (std::size_t f = 0; f < states.size(); ++f) {
     std::size_t h = static_cast<std::size_t>(mesh_->fracture_faces[f].id) * 4 + static_cast<std::size_t>(states[f]) + 1;
-    for (int round = 0; round < 2; ++round) {  // mixing of splitmix64 (Steele, Lea and Flood 2014)
+    for (int round = 0; round < 2; ++round) {  // mixing function of splitmix64 (Steele, Lea and Flood 2014)
       h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
       h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
     }
     here += h;
   }
-  // in halves: a sum modulo 2^64 does not depend on the partition, and one of signed numbers may not overflow
+  // sums of halves: signed sums must not overflow; the sum modulo 2^64 does not depend on the partition
   const auto sums = base::sum_over_ranks(
       *mesh_->comm, std::array{static_cast<long long>(here & 0xffffffff), static_cast<long long>(here >> 32)});
   return static_cast<std::size_t>(sums[0]) + (static_cast<std::size_t>(sums[1]) << 32);
@@ -99,7 +99,7 @@ std::string Contact::where(const std::vector<char>& flagged) {
   std::vector<long long> here(names.size(), 0);
   std::array<Real, 3> nowhere, lowest, highest;
   nowhere.fill(std::numeric_limits<Real>::max());
-  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere};  // smallest x and -x
+  std::array<std::array<Real, 3>, 2> ends{nowhere, nowhere};  // minima of x and -x
   for (std::size_t f = 0; f < flagged.size(); ++f) {
     if (!flagged[f]) continue;
     const auto& face = mesh_->fracture_faces[f];

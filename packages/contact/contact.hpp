@@ -1,4 +1,4 @@
-// Bodies in contact, as the unknowns of a block system: what Newton's method needs where faces open, stick and slip.
+// Contact of bodies as part of a block system: globalisation of Newton's method where faces open, stick and slip.
 #pragma once
 
 #include "contact/grip.hpp"
@@ -12,32 +12,32 @@
 
 namespace sprekk::contact {
 
-/// Typical sizes under the present loads. Those of what there is not are zero.
+/// Typical sizes under the present loads; zero for absent quantities.
 struct Sizes {
   Real displacement = 0;  ///< m
-  Real force = 0;         ///< of a row of the displacement, N (N/m in 2D)
+  Real force = 0;         ///< row of the displacement, N (N/m in 2D)
   Real traction = 0;      ///< Pa
-  Real jump = 0;          ///< in rows of tractions, m
-  Real extent = 0;        ///< of the domain, m
+  Real jump = 0;          ///< in traction rows, m
+  Real extent = 0;        ///< largest extent of the domain, m
 };
 
-/// The equations that contact is part of. All members are collective but for sizes().
+/// Interface to the equations that include contact. All members except sizes() are collective.
 class Equations {
  public:
   virtual ~Equations() = default;
-  /// r = f(x), and how the faces hold each other there, [owned fracture face].
+  /// Computes r = f(x) and returns the contact constraints at x, [owned fracture face].
   virtual std::vector<Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) = 0;
   virtual std::vector<Grip> grips(const fields::BlockVector& x) = 0;
-  /// [owned fracture face]
+  /// Returns the contact states, [owned fracture face].
   virtual std::vector<char> states(const fields::BlockVector& x) = 0;
   virtual Sizes sizes() const = 0;
-  /// A solve begins anew: the last Jacobian says nothing of its rounding.
+  /// Starts a new solve: the round-off of the last Jacobian no longer applies.
   virtual void begin_anew() = 0;
 };
 
-/// Where contact is among the blocks; -1: there is none.
+/// Block numbers of contact; -1: absent.
 struct Blocks {
-  int displacement = -1;  ///< of bodies that faces alone may hold
+  int displacement = -1;  ///< displacement of bodies that may be supported by contact alone
   int traction = -1;
 };
 
@@ -45,27 +45,30 @@ struct Blocks {
 /// stored data.
 class Contact : public fields::Globalisation {
  public:
-  /// `equations` outlives it. `pieces`: of the displacement, null without one.
+  /// `equations` must outlive this object. `pieces`: pieces of the displacement; null without a displacement.
   Contact(Equations& equations, RCP<const mesh::Mesh> mesh, Blocks blocks, std::unique_ptr<LoosePieces> pieces);
 
-  /// What faces are told from now on. Stored data.
+  /// Returns the present modifications of the face laws. Stored data.
   const Regularisation& regularisation() const { return regularisation_; }
-  /// Null where no piece can be loose. Stored data.
+  /// Returns the pieces; null if no piece can float. Stored data.
   const LoosePieces* pieces() const { return pieces_.get(); }
-  /// From now on without_rigid_motions() takes those away.
+  /// Enables without_rigid_motions().
   void remove_rigid_motions(const fields::Layout& displacement);
-  /// Of ghosted unknowns, [block], the same but for rigid motions of pieces: where some are much stiffer than others,
-  /// stresses of these, zero but for rounding, would be as large as those of the soft ones.
+  /// Returns the ghosted unknowns, [block], without the rigid motions of pieces. Otherwise, round-off in stiff pieces
+  /// may be as large as the stresses in soft ones. Returns the unknowns unchanged unless remove_rigid_motions() was
+  /// called.
   fields::BlockVector without_rigid_motions(const fields::BlockVector& ghosted);
 
+  /// Starts a step: loose() again assumes that the last settle() succeeded. Local.
   void begin_step() { nearest_known_ = true; }
-  /// Of the Jacobian that was made last, or of the state that is accepted.
+  /// Finds the floating pieces for the grips of the last Jacobian or of the accepted state.
   void find_loose(std::vector<Grip> grips);
-  /// Accepts x.
+  /// Saves x as the last accepted state.
   void remember(const fields::BlockVector& x);
 
-  /// [class of faces] factor of the face law's constant; 0: not yet compared with the rock. Stored data.
+  /// Returns the factor of the augmentation constant, [class of faces]; 0: not yet compared with the rock. Stored data.
   const std::vector<Real>& calibration() const { return calibration_; }
+  /// Continues from the accepted state x with these factors. Throws an Error for a wrong number of factors.
   void resume(const fields::BlockVector& x, const std::vector<Real>& calibration);
 
   std::vector<char> states(const fields::BlockVector& x) override { return equations_.states(x); }
@@ -83,8 +86,9 @@ class Contact : public fields::Globalisation {
  private:
   int calibration_class(const Grip& grip) const;
   void correct_augmentation(const std::vector<Grip>& grips);
-  /// Adds to dx what of a motion brings the forces along it into balance; with `mode`, of its opposite too. Empty, or
-  /// the part that finds no resistance: it goes a little way then, as a mode none.
+  /// Adds to dx the multiple of a motion that balances the forces along it. With `mode`, the multiple may be negative.
+  /// Returns an empty string, or a description of the part without resistance. That part moves by the displacement
+  /// scale; a mode does not move.
   std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
                             bool mode);
   std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
@@ -95,11 +99,11 @@ class Contact : public fields::Globalisation {
   Equations& equations_;
   RCP<const mesh::Mesh> mesh_;
   Blocks blocks_;
-  std::unique_ptr<LoosePieces> pieces_;  // null: none can be loose
+  std::unique_ptr<LoosePieces> pieces_;  // null: no piece can float
   RCP<fields::Vector> committed_;        // displacement; null without pieces_
   RCP<fields::Vector> deformation_;      // ghosted displacement without rigid motions; null: not needed
-  LoosePieces::Motion driven_;           // where forces out of balance move what is loose, if they do
-  bool nearest_known_ = true;            // the last settle() knew where what is loose comes to lie
+  LoosePieces::Motion driven_;           // motion of floating pieces by unbalanced forces; empty: none
+  bool nearest_known_ = true;            // the last settle() found the minimum-norm position
   Regularisation regularisation_;
   Real damped_everywhere_ = 0;
   std::vector<Grip> grips_;  // of the last calibrate()

@@ -16,7 +16,7 @@ using Row = std::vector<Real>;
 
 Real dot(const Row& a, const Row& b) { return std::inner_product(a.begin(), a.end(), b.begin(), Real(0)); }
 
-/// min |sum_k s_k columns[k] - f| over all s.
+/// Returns the s that minimises |sum_k s_k columns[k] - f|. Throws an Error if LAPACK fails.
 Row least_squares(const std::vector<const Row*>& columns, const Row& f) {
   const int m = static_cast<int>(f.size()), n = static_cast<int>(columns.size()), size = std::max(m, n);
   Row matrix, s(f);
@@ -32,8 +32,8 @@ Row least_squares(const std::vector<const Row*>& columns, const Row& f) {
   return s;
 }
 
-/// s >= 0 with |sum_k s_k columns[k] - f| least; returns sum_k s_k columns[k] - f. Nothing, if rounding keeps it from
-/// an end.
+/// Minimises |sum_k s_k columns[k] - f| for s >= 0 and returns sum_k s_k columns[k] - f. No value: round-off prevents
+/// convergence.
 std::optional<Row> nonnegative_least_squares(const std::vector<Row>& columns, const Row& f) {
   const std::size_t n = columns.size();
   Row s(n, 0), residual(f);
@@ -54,7 +54,7 @@ std::optional<Row> nonnegative_least_squares(const std::vector<Row>& columns, co
       }
     if (best == n) break;
     passive[best] = 1;
-    for (bool first = true;; first = false) {  // each pass but the last makes one passive less
+    for (bool first = true;; first = false) {  // each pass except the last reduces the passive set
       std::vector<const Row*> chosen;
       std::vector<std::size_t> index;
       for (std::size_t k = 0; k < n; ++k)
@@ -64,7 +64,7 @@ std::optional<Row> nonnegative_least_squares(const std::vector<Row>& columns, co
         }
       const Row z = least_squares(chosen, f);
       const auto at = std::find(index.begin(), index.end(), best) - index.begin();
-      if (first && !(z[at] > 0)) {  // by rounding: it depends on those chosen
+      if (first && !(z[at] > 0)) {  // due to round-off
         passive[best] = 0;
         refused[best] = 1;
         break;

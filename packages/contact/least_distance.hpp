@@ -1,4 +1,4 @@
-// The point of a polyhedron that is nearest to the origin.
+// Nearest point of a polyhedron to the origin.
 #pragma once
 
 #include "base/types.hpp"
@@ -8,9 +8,9 @@
 
 namespace sprekk::contact {
 
-/// min |y| with G y >= h, G [row][n], rows not zero; nothing, if no y satisfies it, or none was found in 10 times as
-/// many iterations as there are rows and columns. To about 1e-12 where h / |row| is about 1.
-/// C. L. Lawson, R. J. Hanson (1974), Solving Least Squares Problems, chapter 23, algorithms LDP and NNLS.
+/// Returns y with the smallest |y| that satisfies G y >= h. G: [row][n], rows must not be zero. No value: no solution,
+/// or none found in 10 times as many iterations as rows and columns. The accuracy is about 1e-12 if h / |row| is about
+/// 1. Source: C. L. Lawson, R. J. Hanson (1974), Solving Least Squares Problems, chapter 23, algorithms LDP and NNLS.
 std::optional<std::vector<Real>> least_distance(std::vector<std::vector<Real>> G, std::vector<Real> h, int n);
 
 }  // namespace sprekk::contact

@@ -1,4 +1,4 @@
-// What loose pieces do: their share of a displacement, the work on them, their names.
+// Motions of floating pieces: share of a displacement, work, descriptions.
 #include "contact/loose_pieces.hpp"
 
 #include "base/check.hpp"
@@ -21,7 +21,7 @@ Real size(const RigidRow& q) { return std::sqrt(std::inner_product(q.begin(), q.
 
 }  // namespace
 
-/// Least squares over nodes, group by group: products of the free motions with each other and with the displacement.
+/// Fits the free motions to the displacement by least squares over nodes, group by group.
 LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size()), n = static_cast<int>(loose_.size());
@@ -184,7 +184,7 @@ LoosePieces::Motion LoosePieces::first() const {
   Motion motion;
   motion.q.assign(loose_.size(), {});
   motion.largest.assign(groups_.size(), 0);
-  const auto& mode = groups_.front().modes.back();  // reduce() puts rotations first
+  const auto& mode = groups_.front().modes.back();  // reduce() orders rotations first
   for (std::size_t c = 0; c < mode.size(); ++c)
     motion.q[groups_.front().first + c / modes.size()][modes[c % modes.size()]] = mode[c];
   return motion;

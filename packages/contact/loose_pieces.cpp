@@ -19,7 +19,7 @@ using mesh::operator*;
 
 namespace {
 
-/// Of the stiffness against deformation; small enough not to be felt, large enough for the arithmetic.
+/// Proximal term relative to the stiffness against deformation: without effect on results, large enough for round-off.
 constexpr Real proximal_share = 1e-4;
 
 void add_block(RigidBlock& sum, const RigidBlock& block) {
@@ -27,7 +27,7 @@ void add_block(RigidBlock& sum, const RigidBlock& block) {
     for (int l = 0; l < 6; ++l) sum[k][l] += block[k][l];
 }
 
-/// The rows and columns of `modes`.
+/// Returns the rows and columns of `modes`.
 std::vector<Real> dense(const RigidBlock& block, const std::vector<int>& modes) {
   std::vector<Real> matrix;
   for (int k : modes)
@@ -60,7 +60,7 @@ Vector LoosePieces::node(LocalIndex n) const {
   return x;
 }
 
-/// Frames and sizes of pieces; which piece a node is in, and the volume around it.
+/// Computes the frame, size and cell count of pieces, and the piece and volume of nodes. Collective.
 void LoosePieces::measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes) {
   const int n = mesh_->nodes_per_cell(), n_pieces = mesh_->n_pieces;
   std::vector<Real> corner(6 * n_pieces, -std::numeric_limits<Real>::max());
@@ -102,7 +102,7 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement, const std::
 }
 
 void LoosePieces::find_ties(const fields::Layout& displacement) {
-  fields::Vector owned(displacement.owned()), ghosted(displacement.ghosted());  // pieces of nodes
+  fields::Vector owned(displacement.owned()), ghosted(displacement.ghosted());  // piece numbers of nodes
   for (LocalIndex i = 0; i < displacement.n_owned(); ++i) owned.replaceLocalValue(i, piece_of_[i / dim()]);
   ghosted.doImport(owned, *displacement.import(), Tpetra::REPLACE);
   const auto piece_of = ghosted.getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -136,7 +136,7 @@ void LoosePieces::hold(const std::vector<Support>& supports) {
   support_ = base::sum_over_ranks(*mesh_->comm, support_);
 }
 
-/// The pairs of pieces on the two sides of any rank's faces and ties, in the same order everywhere.
+/// Finds the pairs of pieces at faces and ties of all ranks, in the same order on all ranks. Collective.
 void LoosePieces::pair_up() {
   std::set<std::pair<int, int>> here;
   std::vector<std::pair<int, int>> of_face;
@@ -165,8 +165,8 @@ void LoosePieces::pair_up() {
     if (tie.a != tie.b) tie.pair = number.at({tie.a, tie.b});
 }
 
-/// What resists a stiff piece may be soft ones: the term is in proportion to the softest rock, measured by the
-/// diagonal.
+/// Scales the term to the softest piece, since soft pieces may support a stiff one. The diagonal measures the
+/// stiffness.
 void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
   stiffness_ = rcp(new fields::Vector(diagonal, Teuchos::Copy));
   proximal_ = rcp(new fields::Vector(diagonal.getMap()));
@@ -204,7 +204,7 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
     const auto [a, b] = pairs_[pair_of_[f]];
     const Vector& x = mesh_->fracture_faces[f].centre;
     for (int i = 0; i < dim(); ++i) {
-      RigidRow row_a{}, row_b{};  // of component i of what is held
+      RigidRow row_a{}, row_b{};  // constraint row of component i
       for (int j = 0; j < dim(); ++j) {
         const auto at_a = rigid_row(frames_[a], x, j), at_b = rigid_row(frames_[b], x, j);
         for (int k = 0; k < 6; ++k) {
@@ -218,8 +218,8 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
   pairs_sum_ = base::sum_over_ranks(*mesh_->comm, pairs_sum_);
 }
 
-/// Candidates that are not held by pieces that are: a piece counts as held once its support and its neighbours that
-/// are held leave it no motion.
+/// Returns the candidates without support by supported pieces. A piece is supported once its supports and its supported
+/// neighbours leave no free motion.
 std::vector<int> LoosePieces::unheld() const {
   const auto modes = rigid_modes(dim());
   std::vector<char> held(mesh_->n_pieces, 1);
@@ -262,7 +262,7 @@ void LoosePieces::find(const std::vector<Grip>& grips) {
       for (int i = 0; i < dim(); ++i) to(k * dim() + i, 0) = from(k * dim() + i, 0);
 }
 
-/// Sets of pieces that hold each other in some direction.
+/// Returns the sets of pieces that constrain each other in some direction.
 std::vector<std::vector<int>> LoosePieces::coupled(const std::vector<int>& pieces) const {
   mesh::UnionFind sets(mesh_->n_pieces);
   std::vector<char> is_left(mesh_->n_pieces, 0);
@@ -277,7 +277,7 @@ std::vector<std::vector<int>> LoosePieces::coupled(const std::vector<int>& piece
   return result;
 }
 
-/// What S_a and the sums of pairs resist of the motions of these pieces, [piece * m + mode] twice.
+/// Returns the matrix of supports and pair sums for the motions of these pieces, [piece * m + mode] in both dimensions.
 std::vector<Real> LoosePieces::resistance(const std::vector<int>& pieces) const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size()), n = m * static_cast<int>(pieces.size());
@@ -301,7 +301,7 @@ std::vector<Real> LoosePieces::resistance(const std::vector<int>& pieces) const 
   return matrix;
 }
 
-/// Motions that nothing resists, as a new group of the pieces that move in them.
+/// Finds the free motions of these pieces, and adds the moving pieces as a new group.
 void LoosePieces::find_motions(const std::vector<int>& pieces) {
   const auto modes = rigid_modes(dim());
   const std::size_t m = modes.size();

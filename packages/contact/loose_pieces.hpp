@@ -1,4 +1,4 @@
-// Pieces of rock that neither boundary conditions nor the present contact hold.
+// Floating pieces of rock, supported neither by boundary conditions nor by the present contact.
 #pragma once
 
 #include "contact/grip.hpp"
@@ -15,117 +15,121 @@
 
 namespace sprekk::contact {
 
-/// Where all faces of a piece are open, or slide one way, the piece can move as a rigid body and nothing resists: the
-/// Jacobian is singular. Here such motions are found, from sums over faces of how pairs of pieces hold each other; a
-/// face acts at its centre. All members are collective unless they return stored data.
+/// Floating pieces and their free motions. If all faces of a piece are open or slide in one direction, the piece can
+/// move as a rigid body. Nothing resists this motion, and the Jacobian is singular. The free motions follow from the
+/// contact constraints between pairs of pieces, summed over their faces; a face acts at its centre. All members are
+/// collective unless they return stored data.
 class LoosePieces {
  public:
-  /// `displacement` is the layout of the field that `supports` are of; `volumes` are those of cells, [local cell].
+  /// displacement: layout of the field of `supports`. volumes: [local cell], m^3 (m^2 in 2D).
   LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const std::vector<Support>& supports,
               const std::vector<Real>& volumes);
 
-  /// Some piece is not held by boundary conditions alone; if none, nothing else here needs to be called. Stored data.
+  /// Returns whether boundary conditions alone leave a piece free. If not, no other member is needed. Stored data.
   bool possible() const { return !candidates_.empty(); }
 
-  /// How much stiffer the stiffest piece is than the softest, as the diagonal tells. Stored data.
+  /// Returns the stiffness of the stiffest piece relative to the softest, from the diagonal. Stored data.
   Real contrast() const { return contrast_; }
-  /// Takes from u [local node, component] the rigid motion of each piece that comes nearest to its owned part: what is
-  /// left deforms the rock in the same way. Pieces that share nodes keep theirs.
+  /// Subtracts the rigid motion of each piece from u [local node, component]. The motion is the least-squares fit to
+  /// the owned nodes of all ranks. The deformation of the rock remains unchanged. Pieces with shared nodes keep their
+  /// motion.
   void remove_rigid(fields::Vector& ghosted) const;
-  /// Sets u [local node, component] to mode k (of those of a body) in pieces that remove_rigid() takes it from, else 0.
+  /// Sets u [local node, component] to rigid mode k in pieces treated by remove_rigid(), and to 0 in others. Local.
   void set_rigid(int k, fields::Vector& ghosted) const;
 
-  /// Finds the free motions for grips [owned fracture face].
+  /// Finds the free motions for the grips [owned fracture face].
   void find(const std::vector<Grip>& grips);
-  /// Whether find() found one. Stored data.
+  /// Returns whether find() found a free motion. Stored data.
   bool any() const { return !loose_.empty(); }
 
-  /// To be added to the diagonal of the Jacobian so that it is regular, [owned unknown]: 1e-4 of the stiffness that a
-  /// piece has against deformation, in proportion to volume, for the pieces that are loose; zero for others. Stored
-  /// data.
+  /// Returns the diagonal that makes the Jacobian regular, [owned unknown]: 1e-4 of the stiffness of the softest piece
+  /// against deformation, in proportion to the volume. It is zero except in floating pieces. Stored data.
   const fields::Vector& proximal() const { return *proximal_; }
-  /// Before the first find(): the diagonal of the bulk, [owned unknown].
+  /// Sets the diagonal of the rock, [owned unknown]. Call before the first find().
   void set_stiffness(const fields::Vector& diagonal);
 
-  /// Pieces of one group hold each other; groups move independently. Stored data.
+  /// Returns the number of groups of floating pieces. Groups move independently of each other. Stored data.
   int n_groups() const { return static_cast<int>(groups_.size()); }
 
-  /// A free motion of all loose pieces.
+  /// Free motion of all floating pieces.
   struct Motion {
-    std::vector<RigidRow> q;    ///< [loose piece]
-    std::vector<Real> largest;  ///< [group] size of the displacement, m
+    std::vector<RigidRow> q;    ///< [floating piece] rigid coordinates
+    std::vector<Real> largest;  ///< [group] largest displacement, m
   };
-  /// The part of a displacement [owned unknown] that is a free motion.
+  /// Returns the free motion contained in a displacement [owned unknown], by least squares.
   Motion part_of(const fields::Vector& displacement) const;
   /// Adds s [group] times a motion to the displacement. Local.
   void add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const;
-  /// [group] Work of a residual [owned unknown], force on the rock with the opposite sign, and of the excess tractions
-  /// on the motion: zero in equilibrium under the tractions that the law answers with. N m (N in 2D).
+  /// Returns the work on the motion, [group], N m (N in 2D), of a residual [owned unknown] and the excess tractions.
+  /// The residual is the negative force on the rock. The work is zero in equilibrium under the tractions of the laws.
   std::vector<Real> work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
-  /// A face that slides without changing any force, and may go on: `along` . [[v]] is what v adds to its slip `done`.
+  /// Face that slides under constant forces and may continue to slide. A motion v adds `along` . [[v]] to its slip
+  /// `done`.
   struct Slide {
     LocalIndex face;  ///< owned
     mesh::Vector along;
     Real done;     ///< m
-    bool one_way;  ///< never below zero
+    bool one_way;  ///< the slip must not become negative
   };
-  /// normal . [[v]] >= least on a fracture face, of a displacement v.
+  /// Inequality normal . [[v]] >= least on a fracture face, for a displacement v.
   struct Obstacle {
     LocalIndex face;  ///< owned
     mesh::Vector normal;
     Real least;
   };
-  /// All free motions v = nearest + sum_k x_k axes[k], [loose piece], in coordinates in which the distance is |x|.
+  /// Coordinates x of all free motions: v = nearest + sum_k x_k axes[k], [floating piece]. The distance is |x|.
   struct Places {
     std::vector<RigidRow> nearest;
     std::vector<std::vector<RigidRow>> axes;
-    Real unit;  ///< of x, for v of about 1 m
+    Real unit;  ///< size of x for v of about 1 m
   };
-  /// First, sum_f |f| (along . [[v]] + done)^2 over the slides of all ranks is to be small; where that is left open,
-  /// `displacement` + v [owned unknown] in the norm of proximal().
+  /// Returns these coordinates. First, the sum over the slides of all ranks |f| (along . [[v]] + done)^2 is minimised.
+  /// Motions without influence on this sum minimise `displacement` + v [owned unknown] in the norm of proximal().
   Places places(const fields::Vector& displacement, const std::vector<Slide>& slides) const;
-  /// The free motion, [loose piece], nearest to x = 0 among those that satisfy the obstacles of all ranks; nothing, if
-  /// none does. Faces that no free motion moves that way are no obstacle. `unit`: a typical length, m. Unique.
+  /// Returns the free motion, [floating piece], nearest to x = 0 that satisfies the obstacles of all ranks. No value:
+  /// none does, or none was found. Obstacles that no free motion affects are ignored. unit: typical length, m. The
+  /// result is unique.
   std::optional<std::vector<RigidRow>> nearest(const Places& places, const std::vector<Obstacle>& obstacles,
                                                Real unit) const;
-  /// Jump of a free motion at the centre of an owned fracture face. Stored data.
+  /// Returns the jump of a free motion at the centre of an owned fracture face, m, global frame. Stored data.
   mesh::Vector jump(LocalIndex face, const std::vector<RigidRow>& motion) const;
-  /// Whether a side of an owned fracture face is loose. Stored data.
+  /// Returns whether a side of an owned fracture face belongs to a floating piece. Stored data.
   bool is_beside(LocalIndex face) const;
 
-  /// The motion of some groups alone; empty if there is none. Stored data.
+  /// Returns the motion of the selected groups only; empty if none is selected. Stored data.
   Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
-  /// The largest number of independent motions of a group, and the k-th of each group that has as many. Stored data.
+  /// most_modes: largest number of independent motions of a group. mode: k-th motion of each group with more than k.
+  /// Stored data.
   int most_modes() const;
   Motion mode(int k) const;
-  /// One of the free motions, a translation if there is one. Stored data.
+  /// Returns one of the free motions, a translation if there is one. Stored data.
   Motion first() const;
-  /// "a piece of rock around (0, 1) (12 cells) and 2 more can move along (1, 0)" for the piece that moves most. Stored
-  /// data.
+  /// Returns the description of the piece with the largest motion, e.g. "a piece of rock around (0, 1) (12 cells) and 2
+  /// more can move along (1, 0)". Stored data.
   std::string describe(const Motion& motion) const;
 
  private:
   struct Pair {
     int a, b;  ///< pieces, a < b
   };
-  /// One node in two places by periodicity, or in two pieces that touch in a corner or an edge.
+  /// Node at two positions (periodic sides), or in two pieces that touch at a corner or an edge.
   struct Tie {
-    int a, b, pair;  ///< pieces, a <= b; -1: one piece
+    int a, b, pair;  ///< pieces, a <= b; number of the pair, -1: one piece
     mesh::Vector at_a, at_b;
   };
   struct Group {
-    int first;                             ///< of its loose pieces, which follow one another
-    std::vector<std::vector<Real>> modes;  ///< [mode][loose piece * modes of a body + mode of the body]
+    int first;                             ///< first floating piece; those of a group are consecutive
+    std::vector<std::vector<Real>> modes;  ///< [mode][floating piece * modes of a body + mode of the body]
   };
-  using Motions = std::vector<std::vector<RigidRow>>;  ///< [mode][loose piece]
-  /// z . matrix z + 2 z . vector, of z [mode].
+  using Motions = std::vector<std::vector<RigidRow>>;  ///< [mode][floating piece]
+  /// Quadratic form z . matrix z + 2 z . vector, with z [mode].
   struct Form {
     std::vector<Real> matrix, vector;
     explicit Form(std::size_t n) : matrix(n * n, 0), vector(n, 0) {}
   };
   struct Neighbour {
     int pair, piece;
-    bool first;  ///< this piece is the pair's a
+    bool first;  ///< this piece is `a` of the pair
   };
 
   void measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes);
@@ -149,19 +153,20 @@ class LoosePieces {
   std::vector<RigidFrame> frames_;                  // [piece]
   std::vector<GlobalIndex> n_cells_;                // [piece]
   std::vector<int> piece_of_, piece_of_ghosts_;     // [owned node], [local node]
-  std::vector<int> tied_;                           // [piece] shares nodes with another piece, or has periodic ones
-  std::vector<Real> volume_;                        // [owned node] share of the cells around, m^dim
-  std::vector<Tie> ties_;                           // of nodes of owned cells
-  std::vector<Pair> pairs_;                         // that share a fracture face or tied nodes, on any rank
+  std::vector<int> tied_;                           // [piece] shares nodes with another piece, or has periodic nodes
+  std::vector<Real> volume_;                        // [owned node] share of the volume of the cells around, m^dim
+  std::vector<Tie> ties_;                           // of the nodes of owned cells
+  std::vector<Pair> pairs_;                         // pairs with a common fracture face or tied nodes, on any rank
   std::vector<int> pair_of_;                        // [owned fracture face], -1: one piece on both sides
   std::vector<std::vector<Neighbour>> neighbours_;  // [piece]
-  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns, and ties with itself
+  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns, and ties of the piece with
+                                                    // itself
   std::vector<RigidBlock> inertia_;                 // [piece] sum over nodes
-  std::vector<int> candidates_;                     // pieces that conditions alone do not hold
+  std::vector<int> candidates_;                     // pieces that boundary conditions alone do not support
   std::vector<RigidBlock> pairs_sum_;               // [3 pair + (aa, ab, bb)]
-  std::vector<int> loose_;                          // pieces
-  std::vector<int> loose_number_;                   // [piece] in loose_, -1
-  std::vector<Group> groups_;                       // by their first pieces
+  std::vector<int> loose_;                          // floating pieces
+  std::vector<int> loose_number_;                   // [piece] index in loose_, or -1
+  std::vector<Group> groups_;                       // in the order of their first pieces
   RCP<fields::Vector> stiffness_, proximal_;
   Real contrast_ = 1;
 };

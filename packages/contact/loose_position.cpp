@@ -1,4 +1,4 @@
-// Where loose pieces come to lie nearest to a given place, next to others that they must not enter.
+// Position of floating pieces nearest to a given state, without overlap with other pieces.
 #include "contact/least_distance.hpp"
 #include "contact/loose_pieces.hpp"
 
@@ -18,7 +18,7 @@ using mesh::operator-;
 
 namespace {
 
-/// All ranks' rows of a length, those of the first rank first.
+/// Returns the rows of all ranks, each of the given length, in the order of ranks. Collective.
 std::vector<std::vector<Real>> gather_rows(const Comm& comm, const std::vector<std::vector<Real>>& here, int length) {
   std::vector<Real> mine;
   for (const auto& row : here) mine.insert(mine.end(), row.begin(), row.end());
@@ -45,7 +45,7 @@ bool LoosePieces::is_beside(LocalIndex f) const {
          (loose_number_[mesh_->cell_piece[cell[0]]] >= 0 || loose_number_[mesh_->cell_piece[cell[1]]] >= 0);
 }
 
-/// [group][mode][loose piece]
+/// Returns the free motions as [group][mode][floating piece].
 std::vector<LoosePieces::Motions> LoosePieces::motions_of_groups() const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size());
@@ -60,7 +60,7 @@ std::vector<LoosePieces::Motions> LoosePieces::motions_of_groups() const {
   return all;
 }
 
-/// |u + v|^2 in the norm of the proximal term, [group]: from N^T P N and N^T P u of each piece.
+/// Returns |u + v|^2 in the norm of the proximal term, [group], from N^T P N and N^T P u of each piece. Collective.
 std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Motions>& motions,
                                                           const fields::Vector& displacement) const {
   const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -96,7 +96,7 @@ std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Moti
   return forms;
 }
 
-/// sum_f |f| (along . [[v]] + done)^2, [group].
+/// Returns sum_f |f| (along . [[v]] + done)^2, [group]. Collective.
 std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>& motions,
                                                       const std::vector<Slide>& slides) const {
   std::vector<Form> forms;
@@ -121,14 +121,14 @@ std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>
   return forms;
 }
 
-/// Group by group, the generalised eigenvectors of the slips by the distances: in their coordinates both are diagonal.
-/// Vectors that change a slip have their share of it as weight; the others next to nothing, so that they give way where
-/// an obstacle concerns both.
+/// Computes generalised eigenvectors of slip form and distance form, group by group. In their coordinates both forms
+/// are diagonal. The weight of vectors with slip is their share of the slip form. The weight of others is very small,
+/// so that they yield if an obstacle involves both kinds.
 LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, const std::vector<Slide>& slides) const {
   constexpr Real little = 1e-8;
   const auto motions = motions_of_groups();
   auto distance = distance_form(motions, displacement), slip = slip_form(motions, slides);
-  std::vector<std::vector<Real>> share;  // [group][eigenvector] of the slips
+  std::vector<std::vector<Real>> share;  // [group][eigenvector] share of the slip form
   Real largest = 0, size = 0;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const int n = static_cast<int>(motions[g].size()), n_work = 64 * n;

@@ -1,4 +1,4 @@
-// Rigid motions of bodies, in coordinates of the size of one.
+// Rigid motions of bodies, in coordinates scaled by the body's size.
 #pragma once
 
 #include "mesh/facets.hpp"
@@ -10,52 +10,54 @@
 
 namespace sprekk::contact {
 
-/// The part of a motion that is below this, relative to its largest, is round-off. Eigenvalues are squares of it.
+/// Relative limit of round-off in motions. Eigenvalues below its square are round-off.
 inline constexpr Real negligible = 1e-6;
 
-/// Of the six modes of a body: translations, then rotations times the body's size.
+/// Values for the six rigid modes of a body: translations, then rotations times the body's size.
 using RigidRow = std::array<Real, 6>;
 using RigidBlock = std::array<RigidRow, 6>;
 
-/// Where the motions of a body are measured.
+/// Reference point and length of the motions of a body.
 struct RigidFrame {
   mesh::Vector centre{};
   Real size = 1;  ///< largest extent of the body, m
 };
 
-/// Component i of the displacement at x under each mode.
+/// Returns component i of the displacement at x for each mode.
 RigidRow rigid_row(const RigidFrame& frame, const mesh::Vector& x, int i);
 
-/// The displacement at x under the motion q.
+/// Returns the displacement at x for the motion q.
 mesh::Vector rigid_displacement(const RigidFrame& frame, const RigidRow& q, const mesh::Vector& x);
 
-/// Adds sign a b^T.
+/// Adds sign * a b^T to the block.
 void add_product(RigidBlock& block, const RigidRow& a, const RigidRow& b, Real sign = 1);
 
-/// The modes that there are in 2D, 3D.
+/// Returns the modes that exist in 2D or 3D.
 std::vector<int> rigid_modes(int dim);
 
-/// Orthonormal vectors that span the null space of a symmetric, positive semi-definite n x n matrix: eigenvalues up to
-/// 1e-12 of the largest; all, if the matrix is zero.
+/// Returns an orthonormal basis of the null space of a symmetric, positive semi-definite n x n matrix: eigenvectors
+/// with eigenvalues up to 1e-12 of the largest. A zero matrix yields n vectors. Throws an Error if LAPACK fails.
 std::vector<std::vector<Real>> null_space(std::vector<Real> matrix, int n);
 
-/// Gauss-Jordan elimination with the largest pivots, first in columns for which `first` holds: so that motions come out
-/// along coordinates where that is possible, and translations apart from rotations.
+/// Applies Gauss-Jordan elimination with the largest pivots, starting with the columns selected by `first`. Motions
+/// then follow coordinate axes where possible, and translations are separated from rotations.
 void reduce(std::vector<std::vector<Real>>& rows, const std::function<bool(std::size_t)>& first);
 
-/// A rigid motion of one body at small rotation, v(x) = translation + rotation x (x - centre).
+/// Rigid motion of one body with small rotation, v(x) = translation + rotation x (x - centre).
 struct FreeMotion {
   int body;  ///< see mesh::find_bodies()
   mesh::Vector translation, rotation, centre;
 };
 
-/// The motion of these rigid coordinates; parts that are round-off next to the largest are zero.
+/// Returns the motion with the rigid coordinates q. Components below round-off, relative to the largest, are set to
+/// zero.
 FreeMotion free_motion(int body, const RigidFrame& frame, const RigidRow& q);
 
-/// "can move along (1, 0)", "can rotate about the axis (0, 0, 1) through (0, 1, 0)"; in 2D about a point.
+/// Returns e.g. "can move along (1, 0)", or "can rotate about the axis (0, 0, 1) through (0, 1, 0)"; in 2D about a
+/// point.
 std::string to_text(const FreeMotion& motion, int dim);
 
-/// "(0, 1.5)": a point or vector; components that are round-off next to `scale` are zero.
+/// Returns a point or vector, e.g. "(0, 1.5)". Components below round-off, relative to `scale`, are set to zero.
 std::string to_text(const mesh::Vector& x, int dim, Real scale);
 
 }  // namespace sprekk::contact

@@ -1,4 +1,4 @@
-// Where a body is that nothing holds: of all places that the equations allow, the nearest one.
+// Minimum-norm position of floating bodies among all admissible states.
 #include "contact/contact.hpp"
 
 #include "base/over_ranks.hpp"
@@ -17,18 +17,18 @@ using mesh::operator*;
 
 namespace {
 
-constexpr Real least_load = 1e-10;  ///< share of the scale that a traction has at least
-constexpr Real margin = 1e-10;      ///< of the displacement scale, by which faces without load stay apart
-constexpr Real at_limit = 1e-8;     ///< of friction, relative to it
-constexpr Real settled = 1e-10;     ///< of the displacement scale; what moves less stays
+constexpr Real least_load = 1e-10;  ///< smallest traction of a loaded face, relative to the traction scale
+constexpr Real margin = 1e-10;      ///< gap of faces without load, relative to the displacement scale
+constexpr Real at_limit = 1e-8;     ///< tolerance of the friction limit, relative
+constexpr Real settled = 1e-10;     ///< smallest motion, relative to the displacement scale
 
-/// Rows a b^T.
+/// Returns the rows of a b^T.
 std::array<Vector, 3> product(const Vector& a, const Vector& b) { return {a[0] * b, a[1] * b, a[2] * b}; }
 
 std::array<Vector, 3> identity() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; }
 
-/// What holds in a state of equilibrium as long as no traction changes. A face under load keeps its gap, and sticks;
-/// but at the limit of friction it may slide, along its shear traction if there is any. Appends those to `slides`.
+/// Sets the constraints of equilibrium states with unchanged tractions. A loaded face keeps its gap and sticks. At the
+/// friction limit it may slide, along its shear traction if there is one. Appends these faces to `slides`.
 void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::vector<LoosePieces::Slide>& slides) {
   for (std::size_t f = 0; f < grips.size(); ++f) {
     auto& grip = grips[f];
@@ -59,8 +59,9 @@ void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::
 
 }  // namespace
 
-/// The free motion to the nearest state; each pass adds the faces whose gap would fall below `least` [face], as they
-/// are seen from the last one, and those that would slide against their traction.
+/// Returns the free motion to the nearest admissible state. Each pass adds two kinds of obstacles: faces with a gap
+/// below `least` [face], linearised at the last motion, and faces that would slide against their traction. No value:
+/// not found. Collective.
 std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
                                                        const std::vector<LoosePieces::Slide>& slides,
                                                        const std::vector<Real>& least) {
@@ -111,7 +112,7 @@ bool Contact::settle(BlockVector& x) {
   pieces_->find(released);
   if (!pieces_->any()) return false;
   auto motion = way_back(x, slides, apart);
-  if (!motion) motion = way_back(x, slides, touching);  // it fits in between without room to spare
+  if (!motion) motion = way_back(x, slides, touching);  // the piece fits without clearance
   nearest_known_ = motion.has_value();
   if (!motion) return false;
   auto moved = fields::Vector(*x[blocks_.displacement], Teuchos::Copy);

@@ -1,4 +1,4 @@
-// The zero of a function of one variable that is told value by value.
+// Zero of a function of one variable, for values supplied one by one.
 #pragma once
 
 #include "base/types.hpp"
@@ -7,25 +7,23 @@
 
 namespace sprekk::contact {
 
-/// The zero s > 0 of a function that does not fall and is below zero at s = 0: bracketed by steps that grow fourfold,
-/// then by false position (Illinois: Dowell and Jarratt 1971), to a tenth of the value at 0.
-/// Of another function, also of one that changes between calls, it takes some s >= 0: it ends after at most
-/// most_values in any case.
+/// Search for the zero s > 0 of a non-decreasing function that is negative at s = 0. Steps that grow fourfold bracket
+/// the zero. False position (Illinois: Dowell and Jarratt 1971) then reduces the value to a tenth of that at 0. For
+/// other functions, even if they change between calls, the search ends at some s >= 0 after at most most_values values.
 class ZeroSearch {
  public:
   static constexpr int most_values = 100;
 
-  /// `start`: the value at 0; no search unless it is below zero. `first` > 0: where to look first. `reach`: no zero is
-  /// looked for beyond it.
+  /// start: value at 0; no search unless negative. first > 0: first point to evaluate. reach: largest s.
   ZeroSearch(Real start, Real first, Real reach)
       : s(start < 0 ? first : 0), start_(start), reach_(reach), done_(!(start < 0) || lost()) {}
 
-  Real s;  ///< where the function is to be evaluated next; at the end, the result
+  Real s;  ///< next point to evaluate; after the end, the result
   bool done() const { return done_; }
-  /// No zero within reach, or a function that is not finite.
+  /// Returns whether there is no zero within reach, or the function is not finite.
   bool lost() const { return !(s <= reach_) || !std::isfinite(s); }
 
-  /// `value`: of the function at s.
+  /// Continues the search with the value of the function at s.
   void next(Real value) {
     if (done_) return;
     if (value < 0) {
