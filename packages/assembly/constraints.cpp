@@ -117,8 +117,7 @@ template <class Visit>
 void for_each_facet_in(const mesh::Mesh& mesh, int region, const Visit& visit) {
   const int n_faces = mesh::n_faces(mesh.shape);
   const auto& of_cell = mesh.facets->of_cell;
-  std::vector<int> outside(mesh.facets->id.size(), 1);  // number of cells still missing for the facet to be in the
-                                                        // region
+  std::vector<int> outside(mesh.facets->id.size(), 1);  // cells missing for the facet to be in the region
   for (const LocalIndex facet : mesh.facets->fracture_face) outside[facet] = 2;
   std::vector<int> cells(outside.size(), 0);
   for (std::size_t face = 0; face < of_cell.size(); ++face) {

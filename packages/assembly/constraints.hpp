@@ -34,8 +34,7 @@ struct DirichletCondition {
 /// Unknowns of one field that conditions prescribe.
 struct Held {
   struct Entry {
-    GlobalIndex unknown;  ///< entity * components + component; entity: free node, cell, facet or enriched node of this
-                          ///< mesh
+    GlobalIndex unknown;  ///< entity * components + component; entity: free node, cell, facet or enriched node
     int condition, component;
     std::array<Real, 3> x;
     std::array<Real, 3> side = {};  ///< from x into a face on the node's side, at ends of fractures; see one_sided()
@@ -72,8 +71,7 @@ class Constraints {
 
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }
   const std::vector<Held::Entry>& entries() const { return held_.entries; }  ///< one per constrained owned unknown
-  std::vector<contact::Support> supports() const;                            ///< constrained unknowns and
-                                                                             ///< components, for contact
+  std::vector<contact::Support> supports() const;                            ///< constrained unknowns, for contact
   ConstView<char*> mask() const { return mask_; }                            ///< [owned unknown] 1 if constrained
   ConstView<Real*> values() const { return values_; }  ///< [owned unknown] at the last evaluated time; 0 if free
   Real largest() const { return largest_; }            ///< largest |value| at the last evaluated time

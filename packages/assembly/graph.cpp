@@ -68,8 +68,7 @@ struct Columns {
 
   std::vector<std::shared_ptr<const Writers>> writers_;  // [coupling]
   std::vector<HostTable> first_;                         // [coupling](entity, group)
-  std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group in the current row, else 0; first columns
-                                             // of these groups
+  std::vector<LocalIndex> end_of_, groups_;  // [first column] end of a group in the current row, else 0; these columns
 };
 
 }  // namespace

@@ -60,12 +60,9 @@ struct Unknown {
   std::string scale;  ///< typical size of its values; prescribed values count as loads of this scale
   Size row;           ///< typical size of its rows; other modules may add terms, see Declaration::sizes
   NearNullSpace near_null_space = NearNullSpace::none;
-  std::string local_group = "";     ///< fields of one group are eliminated together, entity by entity; "": not
-                                    ///< eliminated
-  std::string enriches = "";        ///< field to which a field on enriched nodes adds; zero where that field is
-                                    ///< prescribed
-  std::string condensed_into = "";  ///< field from which preconditioners eliminate this one; requires weak coupling
-                                    ///< among its own unknowns
+  std::string local_group = "";     ///< group of fields eliminated together, entity by entity; "": not eliminated
+  std::string enriches = "";        ///< field that this one enriches; zero where that field is prescribed
+  std::string condensed_into = "";  ///< field from which preconditioners eliminate this weakly self-coupled one
   /// The rows are balances of rates: fluxes plus State::rate times the storage. Sizes may differ by orders of
   /// magnitude. Therefore each row is measured by its diagonal, updated in each step.
   bool balance = false;

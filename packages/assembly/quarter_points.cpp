@@ -150,8 +150,7 @@ class QuarterPoints {
   const std::vector<Real> before_;  // original coordinates
   const std::vector<Edge> edges_;
   mesh::AlikeNodes alike_;
-  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip towards which the node
-                                    // moves
+  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip to which it moves
   std::vector<GlobalIndex> cells_;  // cells with moved edges
 };
 

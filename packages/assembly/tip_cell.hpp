@@ -152,8 +152,7 @@ class TipCell {
   }
 
   static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
-  static constexpr int n_face_points = 10;  // fewer points in total than in a cell; their accuracy determines
-                                            // equilibrium
+  static constexpr int n_face_points = 10;  // fewer points than in a cell; their accuracy determines equilibrium
 
   const TipRules::Rule& face_rule(const std::vector<char>& tips) const {
     if constexpr (dim == 2) return rules_->of_edge(tips, n_face_points);

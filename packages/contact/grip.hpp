@@ -33,8 +33,7 @@ struct Regularisation {
   ConstView<Real*> damping = {};       ///< [owned fracture face], see Globalisation::damp(); empty: zero
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see Globalisation::calibrate(); empty: 1
   Real tether = 0;                     ///< see Globalisation::tether()
-  ConstView<Real**> anchor = {};       ///< [owned fracture face, 2 dim] jump at rest of the tether, traction there;
-                                       ///< global frame
+  ConstView<Real**> anchor = {};       ///< [owned fracture face, 2 dim] jump at rest, traction there; global frame
 };
 
 }  // namespace sprekk::contact

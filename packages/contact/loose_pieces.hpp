@@ -159,8 +159,7 @@ class LoosePieces {
   std::vector<Pair> pairs_;                         // pairs with a common fracture face or tied nodes, on any rank
   std::vector<int> pair_of_;                        // [owned fracture face], -1: one piece on both sides
   std::vector<std::vector<Neighbour>> neighbours_;  // [piece]
-  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns, and ties of the piece with
-                                                    // itself
+  std::vector<RigidBlock> support_;                 // [piece] sum over prescribed unknowns and own ties
   std::vector<RigidBlock> inertia_;                 // [piece] sum over nodes
   std::vector<int> candidates_;                     // pieces that boundary conditions alone do not support
   std::vector<RigidBlock> pairs_sum_;               // [3 pair + (aa, ab, bb)]

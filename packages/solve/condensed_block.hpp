@@ -1,4 +1,4 @@
-// What is done to the numbers of J_ab one block at a time.
+// Operations on the values of J_ab, one block at a time.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline auto read_values(const Vector& v) {
   return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0);
 }
 
-/// [row] the local column of the same unknown.
+/// Map from a row to the local column of the same unknown.
 struct OwnColumn {
   explicit OwnColumn(const Matrix& matrix)
       : rows(matrix.row_map()->getLocalMap()), columns(matrix.column_map()->getLocalMap()) {}
@@ -27,15 +27,15 @@ struct OwnColumn {
   Map::local_map_type rows, columns;
 };
 
-/// Finds columns in a row, which has all that are looked for, and none twice. Those that it has not are counted, and
-/// said to stand where it begins.
+/// Cursor that finds columns in a row. The row must contain each column that is searched, once. Missing columns are
+/// counted; find() then returns the begin of the row.
 struct RowCursor {
   const fields::NodeRows::Row row;
   const int width;
   fields::Cursor nodes;
   LocalIndex next = -1;
-  std::size_t place_of_next = 0;  // if it is an unknown of the same node
-  int n_left = 0;                 // of these
+  std::size_t place_of_next = 0;  // if `next` is an unknown of the same node
+  int n_left = 0;                 // remaining unknowns of the node
   int n_missing = 0;
 
   KOKKOS_FORCEINLINE_FUNCTION RowCursor(const fields::NodeRows& of, LocalIndex i)
@@ -60,37 +60,37 @@ struct RowCursor {
   }
 };
 
-/// Throws an Error that says how many columns were not found.
+/// Throws an Error with the number of missing columns, if not zero.
 inline void check_found(int n_missing) {
   SPREKK_CHECK(n_missing == 0, "elimination: {} numbers have no place in the rows of the matrix that must have them",
                n_missing);
 }
 
-/// J_ab <- A_ab. Local.
+/// Sets J_ab to A_ab. Local.
 void start_from_bulk(const CondensedBlock& condensed);
 
-/// Rows of unknowns that are prescribed, row_flags [owned row] not 0, and those with a column of one. Local.
+/// Returns the rows of prescribed unknowns, row_flags [owned row] != 0, and the rows with a column of one. Local.
 View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags);
 
-/// If A_aa, of the r-th of the remaining blocks, stands in J_aa: keeps the numbers that the local groups will change.
-/// Local.
+/// If J_aa stores A_aa of the r-th remaining block, saves the values that the local groups will change. Local.
 void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& groups, int r, int n_remaining);
 
-/// The same of numbers that constraints or a diagonal [owned row], which may be null, will change. Local.
+/// Saves the values that constraints or a diagonal [owned row] will change, likewise. The diagonal may be null. Local.
 void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal);
 
-/// Zeroes rows and columns of the flagged unknowns; keeps |diagonal|, or 1 where it is zero, if the block is diagonal.
-/// Local.
+/// Zeroes rows and columns of the flagged unknowns. If `diagonal`, the diagonal keeps its absolute value, or 1 if it is
+/// zero. Local.
 void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool diagonal);
 
-/// J_aa += a diagonal [owned row]. Local.
+/// Adds a diagonal [owned row] to J_aa. Local.
 void add_diagonal(const Vector& diagonal, const CondensedBlock& condensed);
 
-/// Changes, but for a chance of about 2^-32, when any bit of any value does: halves of values, plus keys that scatter
-/// the places, multiplied and summed (as NH of Black, Halevi, Krawczyk, Krovetz and Rogaway 1999). Local.
+/// Returns a checksum of all values. If a bit changes, the checksum changes, except with a probability of about 2^-32.
+/// Halves of the values, plus keys for their positions, are multiplied and summed (as in NH of Black, Halevi, Krawczyk,
+/// Krovetz and Rogaway 1999). Local.
 std::uint64_t checksum(const CondensedBlock& condensed);
 
-/// Values of some rows of a matrix, put aside.
+/// Copy of the values of some rows of a matrix.
 class RowValues {
  public:
   RowValues(const Matrix& matrix, const View<LocalIndex*>& rows)
@@ -109,6 +109,7 @@ class RowValues {
     each(KOKKOS_LAMBDA(const Real& in_matrix, Real& aside) { aside = in_matrix; });
   }
 
+  /// Restores the values in the matrix. Local.
   void put_back() const {
     each(KOKKOS_LAMBDA(Real & in_matrix, const Real& aside) { in_matrix = aside; });
   }

@@ -9,7 +9,7 @@ using fields::Map;
 using fields::MultiVector;
 using fields::Operator;
 
-/// The inverse of a pair of blocks, F then K, see CondensedPair; two cycles for S^-1.
+/// Inverse of a pair of blocks, F then K, see CondensedPair; two cycles for S^-1.
 class PairInverse : public Operator {
  public:
   PairInverse(const LinearSystem& pair, RCP<const Vector> D_inverse, RCP<const Operator> S, RCP<const Operator> cycle)
@@ -44,7 +44,7 @@ class PairInverse : public Operator {
   RCP<const Operator> S_, cycle_;
 };
 
-/// D^-1 A_KF with the rows that the columns of A_FK are.
+/// Returns D^-1 A_KF with a row for each column of A_FK. Collective.
 RCP<const CrsMatrix> with_ghost_rows(const CrsMatrix& FK, const CrsMatrix& KF, const Vector& D_inverse) {
   const auto scaled = rcp(new CrsMatrix(KF, Teuchos::Copy));
   scaled->leftScale(D_inverse);
@@ -72,12 +72,12 @@ void CondensedPair::prepare(const LinearSystem& pair, SolverCost&) {
   if (const auto& schur = pair.diagonal[1].schur; !schur.is_null()) D_inverse->update(1, *schur, 1);
   D_inverse->reciprocal(*D_inverse);
   fill_S(pair, *D_inverse);
-  // what was eliminated locally need not leave it symmetric
+  // local elimination may make it nonsymmetric
   multigrid_->setup(alone({.block = first_, .matrix = rows_of_S_, .bulk = {}, .symmetric = false}));
   inverse_ = rcp(new PairInverse(pair, D_inverse, S_, multigrid_->inverse()));
 }
 
-/// On the graph of A_FF; the little of the product that it has no place for is left out.
+/// Fills S on the graph of A_FF. Small entries of the product outside this graph are omitted.
 void CondensedPair::fill_S(const LinearSystem& pair, const Vector& D_inverse) {
   const auto& FF = *pair.diagonal[0].matrix->crs();
   if (S_.is_null()) {
@@ -95,10 +95,10 @@ void CondensedPair::fill_S(const LinearSystem& pair, const Vector& D_inverse) {
 
 void CondensedPair::subtract_product(const CrsMatrix& FK, const CrsMatrix& KF) {
   const auto S = S_->getLocalMatrixHost(), left = FK.getLocalMatrixHost(), right = KF.getLocalMatrixHost();
-  std::vector<LocalIndex> column;  // [column of KF] that of S, or -1
+  std::vector<LocalIndex> column;  // [column of KF] column of S, or -1
   for (LocalIndex c = 0, n = base::n_local_elements(*KF.getColMap()); c < n; ++c)
     column.push_back(S_->getColMap()->getLocalElement(KF.getColMap()->getGlobalElement(c)));
-  std::vector<std::size_t> place(base::n_local_elements(*S_->getColMap()), 0);  // [column] one past that in the row
+  std::vector<std::size_t> place(base::n_local_elements(*S_->getColMap()), 0);  // [column] position in the row plus 1
   for (LocalIndex row = 0; row < S.numRows(); ++row) {
     const auto begin = S.graph.row_map(row), end = S.graph.row_map(row + 1);
     for (auto k = begin; k < end; ++k) place[S.graph.entries(k)] = k + 1;

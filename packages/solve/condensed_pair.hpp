@@ -1,15 +1,16 @@
-// The inverse of a block and of another that is condensed into it.
+// Approximate inverse of a block together with another block condensed into it.
 #pragma once
 
 #include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
 
-/// Of blocks F and K, K condensed into F and its own matrix about diagonal, K is eliminated:
-///   y_F = S^-1 (x_F - A_FK D^-1 x_K),   y_K = D^-1 (x_K - A_KF y_F),   S about A_FF - A_FK D^-1 A_KF by multigrid,
-/// D the diagonal of A_KK. To D and A_FF comes what BlockProblem::schur() says of other blocks. Multigrid of S makes
-/// two cycles: where fractures let through so much more than rock one is not exact enough, and iterations of the whole
-/// system cost more than a second cycle.
+/// Preconditioner of blocks F and K, where K is condensed into F and its own matrix is almost diagonal. K is
+/// eliminated:
+///   y_F = S^-1 (x_F - A_FK D^-1 x_K),   y_K = D^-1 (x_K - A_KF y_F),   S approximates A_FF - A_FK D^-1 A_KF
+/// D is the diagonal of A_KK. D and A_FF include BlockProblem::schur(), the contributions of other blocks. S^-1 is two
+/// cycles of multigrid. If fractures are much more conductive than rock, one cycle is too inaccurate. Additional
+/// iterations of the whole system would cost more than a second cycle.
 class CondensedPair : public Preconditioner {
  public:
   CondensedPair(const BlockOptions& options, const std::vector<Block>& pair);

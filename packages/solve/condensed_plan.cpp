@@ -1,4 +1,4 @@
-// The blocks that remain after elimination: their graphs, and the columns in them of what is added.
+// Remaining blocks after elimination: their graphs, and the columns of the added products.
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -19,7 +19,8 @@ class CondensedPlanner {
  public:
   CondensedPlanner(const BlockProblem& problem, EliminationPlan& plan) : problem_(problem), plan_(plan) {}
 
-  /// Graph of J_ab = graph of A_ab and of all products; then the columns in it of A_ab and of the responses.
+  /// Plans J_ab: its graph is that of A_ab and all products. Then finds the columns of A_ab and the responses in it.
+  /// Collective.
   void plan(int a, int b) {
     const auto bulk = this->bulk(a, b);
     bool present = a == b || !bulk.is_null();
@@ -51,13 +52,13 @@ class CondensedPlanner {
   const std::vector<Block>& blocks() const { return problem_.blocks(); }
   RCP<const CrsMatrix> matrix(int i, int j) const { return problem_.matrix()(i, j); }
 
-  /// A_ab with all its columns, or another matrix that it stands in.
+  /// Returns A_ab with all its columns, or the matrix that stores it.
   RCP<const Matrix> bulk(int a, int b) const {
     if (a == b && problem_.matrix().kept(a)) return problem_.matrix().kept(a)->J();
     return matrix(a, b).is_null() ? Teuchos::null : fields::wrapped(matrix(a, b));
   }
 
-  /// visit(global column) for those that a matrix, if there is one, has here.
+  /// Calls visit(global column) for the local columns of a matrix; none if it is null.
   template <class Visit>
   static void for_columns(const RCP<const Matrix>& matrix, const Visit& visit) {
     if (matrix.is_null()) return;
@@ -69,13 +70,13 @@ class CondensedPlanner {
     return std::find(plan_.remaining.begin(), plan_.remaining.end(), block) - plan_.remaining.begin();
   }
 
-  /// What couples rows of block a with columns of block b: A_ab, and the products of each group, on the host.
+  /// Products of each group that couple rows of block a with columns of block b, on the host.
   struct Products {
     using Indices = decltype(to_host(View<LocalIndex*>()));
-    decltype(to_host(View<std::size_t*>())) start;   // as in Response
-    decltype(to_host(View<GlobalIndex*>())) global;  // its columns
-    Indices row_start, slot;                         // as in Coupling
-    LocalIndices column;                             // [as global] column of J_ab, -1 where no row here needs it
+    decltype(to_host(View<std::size_t*>())) start;   // see Response
+    decltype(to_host(View<GlobalIndex*>())) global;  // columns of the response
+    Indices row_start, slot;                         // see Coupling
+    LocalIndices column;                             // [as global] column of J_ab, or -1 if no owned row needs it
 
     template <class Visit>
     void for_columns(LocalIndex row, const Visit& visit) const {
@@ -95,11 +96,11 @@ class CondensedPlanner {
     return all;
   }
 
-  /// The columns that rows of J_ab have here: those owned in their order, the others of A_ab in theirs, and the rest by
-  /// the ranks that own them.
+  /// Returns the local columns of J_ab. The order is: owned columns, other columns of A_ab, others by owning rank.
+  /// Collective.
   RCP<const Map> find_columns(int a, int b, const RCP<const Matrix>& bulk, std::vector<Products>& products) const {
     const auto& domain = *blocks()[b].map;
-    std::vector<char> wanted(base::n_local_elements(domain), a == b);  // of those owned
+    std::vector<char> wanted(base::n_local_elements(domain), a == b);  // [owned unknown]
     GlobalIndices of_bulk, others;
     const auto add = [&](GlobalIndex column, GlobalIndices& not_owned) {
       if (const LocalIndex owned = domain.getLocalElement(column); owned >= 0)
@@ -123,7 +124,7 @@ class CondensedPlanner {
     return fields::make_map(all, problem_.comm());
   }
 
-  /// Without those that are known, each once. Collective.
+  /// Returns the columns that are not in `known`, each once, sorted by owning rank. Collective.
   static GlobalIndices by_rank(GlobalIndices columns, GlobalIndices known, const Map& domain) {
     std::sort(columns.begin(), columns.end());
     std::sort(known.begin(), known.end());
@@ -144,7 +145,7 @@ class CondensedPlanner {
                    const LocalIndices& of_bulk, const std::vector<Products>& products) {
     const auto& rows = blocks()[a].map;
     const LocalIndex n_rows = base::n_local_elements(*rows);
-    LocalIndices met(base::n_local_elements(*columns), -1);  // [column] the row that met it last
+    LocalIndices met(base::n_local_elements(*columns), -1);  // [column] last row with this column
     const auto for_new = [&](LocalIndex row, const auto& visit) {
       const auto meet = [&](LocalIndex column) {
         if (met[column] != row) visit(column);

@@ -26,7 +26,7 @@ std::vector<Block> CondensedSolve::remaining() const {
   return blocks;
 }
 
-/// Powers of two that bring the entries of all blocks to about the same size and keep symmetry.
+/// Returns powers of two that scale the entries of all blocks to similar magnitude and preserve symmetry.
 std::vector<Real> CondensedSolve::scales() const {
   std::vector<Real> scales;
   for (const auto& block : remaining())
@@ -52,7 +52,7 @@ LinearSystem CondensedSolve::system() {
                                {},
                                problem_.symmetric_blocks(),
                                problem_.schur(elimination_.remaining()[r])});
-    // of displacements, whose aggregates must not cross fractures; other fields couple by what was eliminated
+    // only displacements: their aggregates must not cross fractures; other fields couple through eliminated unknowns
     if (with_bulk && blocks[r].near_null_space.n() > 0)
       system.diagonal.back().bulk = [this, r](const auto& work) { elimination_.with_bulk(r, work); };
   }

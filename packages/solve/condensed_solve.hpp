@@ -1,4 +1,4 @@
-// Solves with the whole Jacobian: local elimination, a linear solver for what remains, and back-substitution.
+// Solution with the whole Jacobian: local elimination, linear solver for the remaining blocks, back-substitution.
 #pragma once
 
 #include "base/timer.hpp"
@@ -7,23 +7,23 @@
 
 namespace sprekk::solve {
 
-/// What is kept between solves: positions, factors or the hierarchy; renewed only when values have changed. All members
-/// are collective unless they return stored data. Blocks that remain after elimination are solved for together.
+/// Linear solver with data saved between solves: positions, factors or the hierarchy. These are renewed only if values
+/// have changed. Remaining blocks are solved together. All members are collective unless they return stored data.
 class CondensedSolve {
  public:
   CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options,
                  RCP<base::Timers> timers = rcp(new base::Timers));
 
-  /// Makes ready to solve with the present problem.matrix(). What fails is reported by the next solve.
+  /// Prepares solves with the present problem.matrix(). The next solve reports failures.
   void update();
 
-  /// dx <- A^-1 b, rows of constrained unknowns being dx_i = b_i. [block]
+  /// Computes dx = A^-1 b, [block], to the relative residual `tolerance`. Rows of constrained unknowns are dx_i = b_i.
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
 
   Real tolerance() const { return tolerance_; }
   bool forcing() const { return forcing_; }
   const ChosenSolver& solver() const { return chosen_; }
-  int n_setups() const { return n_setups_; }  ///< factorisations or hierarchies made so far
+  int n_setups() const { return n_setups_; }  ///< number of factorisations or hierarchies so far
 
  private:
   std::vector<Block> remaining() const;
@@ -35,9 +35,9 @@ class CondensedSolve {
   RCP<base::Timers> timers_;
   LocalElimination elimination_;
   std::shared_ptr<Joined> joined_;
-  Blocks blocks_;  // [r * n + s] of those that remain
+  Blocks blocks_;  // [r * n + s] remaining blocks
   ChosenSolver chosen_;
-  std::unique_ptr<JoinedMatrix> matrix_;  // of solvers that read it
+  std::unique_ptr<JoinedMatrix> matrix_;  // for solvers that read a matrix
   Real tolerance_;
   bool forcing_;
   bool symmetric_ = false;

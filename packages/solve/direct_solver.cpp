@@ -1,4 +1,4 @@
-// Factors of MUMPS, and refinement of what they give.
+// Direct solver with MUMPS factors and iterative refinement.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -81,8 +81,9 @@ class DirectSolver : public LinearSolver {
   const Teuchos::ParameterList& parameters() const override { return mumps_.parameters(); }
 
  private:
-  /// Relative residual that rounding leaves: each row is known to the rounding of its diagonal times the unknown, which
-  /// may be large next to b, where bodies are all but free or balances of rates differ by many orders of magnitude.
+  /// Returns the relative residual caused by round-off: in each row, round-off of the diagonal times the unknown. It
+  /// may be large relative to b for nearly floating bodies, or if balances differ by many orders of magnitude.
+  /// Collective.
   Real noise(const Vector& b, const Vector& x) const {
     Vector Dx(x.getMap());
     matrix_->getLocalDiagCopy(Dx);
@@ -91,8 +92,8 @@ class DirectSolver : public LinearSolver {
                     balances_ ? most_noise_of_rates : most_noise);
   }
 
-  /// By GMRES, which the factors precondition: it gets by with factors that are off by as much as what is left after
-  /// one substitution, where refinement needs that to be small (Carson and Higham 2017). It adds to the iterations.
+  /// Corrects x by GMRES preconditioned by the factors. It permits less accurate factors than refinement, which
+  /// requires a small residual after one substitution (Carson and Higham 2017). Adds to the iterations.
   void correct(const Vector& b, Vector& x, Real acceptable, LinearReport& report) {
     Vector r(b.getMap()), dx(x.getMap());
     const Real before = relative_residual(*matrix_, b, x, r);
@@ -103,7 +104,7 @@ class DirectSolver : public LinearSolver {
                                   std::min(0.1 * acceptable / before, 0.1), most_corrections)
                                .iterations;
     } catch (const std::exception&) {
-      return;  // what refinement found stands
+      return;  // keep the result of refinement
     }
     dx.update(1, x, 1);
     const Real after = relative_residual(*matrix_, b, dx, r);

@@ -21,7 +21,7 @@ namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;
 
-/// Calls visit(row, position of the value, global column) for the stored entries owned here.
+/// Calls visit(row, position of the value, global column) for the stored entries of owned rows.
 template <class Visit>
 void for_entries(const CrsMatrix& matrix, const Visit& visit) {
   const auto graph = matrix.getLocalMatrixHost().graph;
@@ -35,7 +35,7 @@ LocalIndex position_in(const GlobalIndices& sorted, LocalIndex begin, LocalIndex
   return std::lower_bound(sorted.begin() + begin, sorted.begin() + end, wanted) - sorted.begin();
 }
 
-/// Global columns of rows or entities, each sorted and without repetition, one after the other.
+/// Global columns of rows or entities, set after set. Each set is sorted and without repetitions.
 struct ColumnSets {
   LocalIndices start{0};
   GlobalIndices column;
@@ -97,7 +97,8 @@ class Planner {
     for (int a : plan_.remaining) plan_coupling(group, a);
   }
 
-  /// The owned entities, and the ghosts that owned rows of the remaining blocks couple to.
+  /// Finds the owned entities, and the ghosts to which owned rows of the remaining blocks couple. Throws an Error on
+  /// all ranks if the blocks of the group have different entities. Collective.
   void find_entities(GroupPlan& group) {
     GlobalIndices owned;
     base::collectively(*comm_, [&] {
@@ -136,7 +137,7 @@ class Planner {
 
   static LocalIndex n_owned(const GroupPlan& group) { return group.slots->n_owned(); }
 
-  /// The largest width for which targets come in groups of so many that follow one another.
+  /// Returns the largest width for which targets form groups of adjacent values.
   static int common_width(const LocalIndices& target) {
     for (int width = max_small_size; width > 1; --width) {
       bool together = target.size() % width == 0;
@@ -205,7 +206,7 @@ class Planner {
     exchange(group, columns, response);
   }
 
-  /// Makes the ghosts' columns known.
+  /// Copies the columns of ghosts from their owners. Collective.
   static void exchange(const GroupPlan& group, const ColumnSets& columns, Response& response) {
     const LocalIndex n = n_owned(group), n_slots = group.slots->n_all();
     const View<GlobalIndex*> length("response lengths", n_slots);
@@ -219,7 +220,7 @@ class Planner {
   }
 
   void plan_coupling(GroupPlan& group, int a) const {
-    const auto for_numbers = [&](const auto& visit) {  // visit(row, slot, component, place)
+    const auto for_numbers = [&](const auto& visit) {  // visit(row, slot, component, position)
       for (std::size_t i = 0; i < group.blocks.size(); ++i) {
         const int z = group.blocks[i], nz = blocks()[z].n_components;
         if (matrix(a, z).is_null()) continue;
@@ -268,7 +269,7 @@ class Planner {
 
   const BlockProblem& problem_;
   RCP<const Comm> comm_;
-  std::vector<int> group_of_;  // [block] -1 where it remains
+  std::vector<int> group_of_;  // [block] -1 for remaining blocks
   EliminationPlan plan_;
 };
 

@@ -11,19 +11,20 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-/// P^T A P. Its graph leaves out what is zero in A.
+/// Returns P^T A P. Its graph omits zeros of A. Collective.
 RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
   const auto product = rcp(new CrsMatrix(P->getDomainMap(), 0));
   Tpetra::TripleMatrixMultiply::MultiplyRAP(*P, true, *A, false, *P, false, *product);
   return product;
 }
 
-/// A itself without P.
+/// Returns P^T A P, or A itself if P is null. Collective.
 RCP<const Matrix> at_order_one(const RCP<const Matrix>& A, const RCP<const CrsMatrix>& P) {
   return P.is_null() ? A : fields::wrapped(at_order_one(A->crs(), P));
 }
 
-/// P^T A P with a graph for any values of A, once; and its present values.
+/// order_one_matrix: P^T A P with a graph valid for any values of A, called once. fill_order_one: sets its present
+/// values. Both are collective.
 RCP<CrsMatrix> order_one_matrix(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
   const auto ones = rcp(new CrsMatrix(A, Teuchos::Copy));
   ones->resumeFill();
@@ -84,12 +85,12 @@ class Cycle : public Operator {
     correct(r, x);
     Tpetra::deep_copy(r, b);
     A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
-    smoother_->apply(r, z);  // Ifpack2 adds to nothing
+    smoother_->apply(r, z);  // Ifpack2 cannot add to x
     y.update(alpha, x, alpha, z, beta);
   }
 
  private:
-  /// x += P K P^T r in the first block; the system has scale^2 times the matrix that K is about the inverse of.
+  /// Adds P K P^T r to x in the first block. The system is scale^2 times the matrix whose inverse K approximates.
   void correct(const MultiVector& r, MultiVector& x) const {
     const auto from = r.offsetView(map_, 0);
     const auto to = x.offsetViewNonConst(map_, 0);

@@ -1,20 +1,20 @@
-// A level above multigrid: what displacements of order 2 have over those of order 1.
+// Level above multigrid for displacements of order 2.
 #pragma once
 
 #include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
 
-/// Whether multigrid needs a finer level for such blocks, of which all but the first enrich it: of order 2; or MueLu,
-/// which does not know enriching functions.
+/// Returns whether multigrid needs a finer level for these blocks, of which all except the first enrich the first.
+/// Reasons: order 2, or enriching functions with MueLu.
 bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks);
 
 class Cycle;
 
-/// The symmetric two-level cycle for a system of such blocks,
-///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x),
-/// with K multigrid on the part of order 1, P its interpolation: that of the first block, zero in blocks that enrich
-/// it, and S a symmetric Gauss-Seidel sweep.
+/// Symmetric two-level cycle for a system of such blocks,
+///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x).
+/// K is multigrid of order 1. P is the interpolation of the first block, zero in enriching blocks. S is a symmetric
+/// Gauss-Seidel sweep.
 class FineLevel : public Preconditioner {
  public:
   FineLevel(const BlockOptions& options, const std::vector<Block>& blocks);
@@ -30,7 +30,7 @@ class FineLevel : public Preconditioner {
   RCP<const fields::Operator> made() const override;
   void set_up_order_one(const LinearSystem& system);
 
-  std::vector<std::string> enriching_;  // blocks
+  std::vector<std::string> enriching_;  // names of the enriching blocks
   std::unique_ptr<Preconditioner> order_one_;
   RCP<const Matrix> product_;  // P^T A P
   WholeMatrix matrix_;

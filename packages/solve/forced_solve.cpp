@@ -6,7 +6,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
-constexpr int most_refinements = 20;  // more than there are powers of next_accuracy
+constexpr int most_refinements = 20;  // more than powers of next_accuracy
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);

@@ -1,35 +1,36 @@
-// Solves with the Jacobian no more accurately than Newton's method has use for.
+// Solves with the Jacobian, only as accurate as Newton's method requires.
 #pragma once
 
 #include "solve/condensed_solve.hpp"
 
 namespace sprekk::solve {
 
-/// While faces change state a Newton step only has to find the states that come next. A solve then ends when two
-/// accuracies, the second a hundred times the first (relative residuals 1e-3, 1e-5, ...), lead to the same states, so
-/// that none is mistaken for what the exact step leads to; else it goes on to the tolerance. If no face changes,
-/// Newton's method converges about quadratically, and the solve ends well below what the next residual will be for that
-/// reason, 0.01 (e / e of the iteration before)^2 with e the largest measure of convergence (as Eisenstat and Walker
-/// 1996, choice 2), or well below what ends Newton's method, 0.01 tolerance / e (as Kelley 1995, 6.3); at the second
-/// accuracy or below. Refers to its arguments. All members are collective.
+/// Inexact linear solves of Newton's method.
+/// - Faces change state: the step only has to find the next states. Relative residuals are 1e-3, 1e-5, ... The solve
+///   ends if two successive accuracies lead to the same states. This avoids states to which the exact step would not
+///   lead. Otherwise the solve continues to the tolerance.
+/// - No face changes state: convergence is almost quadratic. The solve ends at the larger of 0.01 (e_k / e_(k-1))^2 (as
+///   Eisenstat and Walker 1996, choice 2) and 0.01 tolerance / e_k (as Kelley 1995, 6.3), at most the second accuracy.
+///   e is the largest measure of convergence.
+/// Refers to its arguments. All members are collective.
 class ForcedSolve {
  public:
   ForcedSolve(BlockProblem& problem, CondensedSolve& solve) : problem_(problem), solve_(solve) {}
 
-  /// Before the first iteration of Newton's method, which ends when no measure is above the tolerance.
+  /// Starts Newton's method, which ends when no measure exceeds the tolerance.
   void start(Real tolerance) {
     error_ = 0;
     enough_ = tolerance;
   }
 
-  /// Fills problem.matrix() at x; `update` makes ready to solve with it.
+  /// Fills problem.matrix() at x. update() then prepares solves.
   void jacobian(const BlockVector& x);
   void update() { solve_.update(); }
 
-  /// dx <- A^-1 b, of which Newton's step is the opposite, from x to x - dx.
+  /// Computes dx = A^-1 b. The Newton step is from x to x - dx.
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
 
-  /// y <- A x with A = problem.matrix() but for rows of constrained unknowns, which are identity.
+  /// Computes y = A x with A = problem.matrix(), except for rows of constrained unknowns, which are identity.
   void apply(const BlockVector& x, BlockVector& y) const;
 
   Real tolerance() const { return solve_.tolerance(); }
@@ -41,8 +42,8 @@ class ForcedSolve {
   BlockProblem& problem_;
   CondensedSolve& solve_;
   BlockVector x_;
-  Real error_ = 0;   // of the iteration before: its largest measure; 0: there was none
-  Real enough_ = 0;  // what ends Newton's method
+  Real error_ = 0;   // largest measure of the previous iteration; 0: none
+  Real enough_ = 0;  // tolerance of Newton's method
 };
 
 }  // namespace sprekk::solve

@@ -1,4 +1,4 @@
-// Preconditioners of Ifpack2, for a block or several joined.
+// Preconditioners of Ifpack2, for one block or several joined blocks.
 #include <Ifpack2_AdditiveSchwarz.hpp>
 #include <Ifpack2_Factory.hpp>
 
@@ -26,7 +26,7 @@ bool has_zero_on_diagonal(const CrsMatrix& matrix) {
   return false;
 }
 
-/// Of Ifpack2, by its name and parameters.
+/// Returns the method of Ifpack2 with this name and these parameters.
 RCP<Ifpack2Preconditioner> create(const std::string& method, const ParameterList& parameters,
                                   const RCP<const RowMatrix>& matrix) {
   const auto made = Ifpack2::Factory::create<RowMatrix>(method, matrix);
@@ -44,10 +44,10 @@ RCP<CrsMatrix> matrix_of_one(const RCP<const Comm>& comm) {
   return one;
 }
 
-/// The parameters of the method SCHWARZ and those of the method in its subdomains, for which Ifpack2 has four names.
+/// Checks the parameters of the method SCHWARZ and of the method in its subdomains, for which Ifpack2 has four names.
 void check_schwarz(const std::string& place, const ParameterList& given, ParameterList allowed,
                    const RCP<const Comm>& comm) {
-  std::string method = "ILUT";  // if none is named
+  std::string method = "ILUT";  // default
   for (const std::string inner :
        {"inner preconditioner", "subdomain solver", "schwarz: inner preconditioner", "schwarz: subdomain solver"}) {
     allowed.set(inner + " name", "");
@@ -67,7 +67,7 @@ class Ifpack2Method : public Preconditioner {
       : Preconditioner(type, block), type_(type), method_(method), parameters_(parameters) {}
 
   std::string given_list() const override { return type_ == "Ifpack2" ? type_ : ""; }
-  bool is_symmetric() const override { return type_ == "Gauss-Seidel"; }  // of others it is not known
+  bool is_symmetric() const override { return type_ == "Gauss-Seidel"; }  // unknown for others
   void describe(ParameterList& blocks) const override {
     auto& list = blocks.sublist(block());
     list.set("type", type_);
@@ -88,7 +88,7 @@ class Ifpack2Method : public Preconditioner {
   }
   RCP<const Operator> made() const override { return made_; }
 
-  /// What elimination of other blocks adds is added, of a block alone.
+  /// Returns the matrix, for a single block with the Schur complements of other blocks added.
   RCP<const CrsMatrix> with_schur(const LinearSystem& system) {
     const auto& schur = system.diagonal.front().schur;
     if (schur.is_null() || system.diagonal.size() > 1) return matrix_.crs();
@@ -100,7 +100,7 @@ class Ifpack2Method : public Preconditioner {
     return sum_;
   }
 
-  RCP<CrsMatrix> sum_;  // null: that of the system
+  RCP<CrsMatrix> sum_;  // null: matrix of the system
   std::string type_, method_;
   ParameterList parameters_;
   WholeMatrix matrix_;
@@ -112,7 +112,7 @@ class Ifpack2Method : public Preconditioner {
 void check_ifpack2(const std::string& place, const std::string& method, const ParameterList& given,
                    const RCP<const Comm>& comm, const std::vector<std::string>& known) {
   ParameterList list(given);
-  list.setName(place);  // Ifpack2 names it
+  list.setName(place);  // Ifpack2 uses it in messages
   RCP<Ifpack2Preconditioner> made;
   try {
     made = Ifpack2::Factory::create<RowMatrix>(method, matrix_of_one(comm));
@@ -120,7 +120,8 @@ void check_ifpack2(const std::string& place, const std::string& method, const Pa
   } catch (const std::exception& error) {
     throw RefusedList(fmt::format("{}: {}", place, gist(error.what())));
   }
-  if (const auto* schwarz = dynamic_cast<const Ifpack2::AdditiveSchwarz<RowMatrix>*>(made.get()))  // marks copies
+  if (const auto* schwarz = dynamic_cast<const Ifpack2::AdditiveSchwarz<RowMatrix>*>(
+          made.get()))  // copies its list, which hides the use of entries
     return check_schwarz(place, given, *schwarz->getValidParameters(), comm);
   for (const auto& item : given)
     if (!list.getEntry(item.first).isUsed() && std::find(known.begin(), known.end(), item.first) == known.end())

@@ -1,4 +1,4 @@
-// Belos, preconditioned from the right by a solver for each block.
+// Krylov methods of Belos, preconditioned from the right.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
 
-/// y = S A S x, S diagonal.
+/// Operator y = S A S x with a diagonal S.
 class ScaledOperator : public Operator {
  public:
   ScaledOperator(RCP<const Operator> A, RCP<const Vector> S)
@@ -41,7 +41,7 @@ class ScaledOperator : public Operator {
   mutable MultiVector Sx_, ASx_;
 };
 
-/// scale[i] <- 1/sqrt(of S A S's diagonal) for the rows of a block, s its scale.
+/// Sets scale[i] = 1/sqrt(diagonal of s A s) for the rows of a block, where s is its scale.
 void scale_by_diagonal(const Matrix& A, Real s, Vector& scale) {
   A.copy_diagonal(scale);
   const auto values = scale.getLocalViewHost(Tpetra::Access::ReadWrite);
@@ -61,7 +61,7 @@ class IterativeSolver : public LinearSolver {
     preconditioner_ = make_preconditioner(options_, blocks_);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
-    // A matrix of the size of a coarse level is one: its direct solver is all of multigrid then.
+    // A matrix as small as a coarse level: multigrid would consist of the direct solver only.
     if (n <= preconditioner_->coarse_size()) {
       coarse_ = make_direct_solver(options.mumps, 1);
       parameters_.sublist("MUMPS") = coarse_->parameters();
@@ -77,7 +77,7 @@ class IterativeSolver : public LinearSolver {
 
   bool reads_matrix() const override { return coarse_ != nullptr; }
 
-  /// Multigrid of an earlier matrix stays, as long as solves with it are worth it.
+  /// Keeps multigrid of an earlier matrix as long as solves remain fast.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
     const bool keeps = reuse_.may_keep() && preconditioner_->can_be_kept() && system.symmetric == system_.symmetric &&
@@ -96,8 +96,9 @@ class IterativeSolver : public LinearSolver {
     return failure_;
   }
 
-  /// Balances, and a field of one unknown a node, are scaled by the roots of their diagonals: what conducts little then
-  /// counts as much as what conducts well. What rounding leaves of the residual is no failure.
+  /// Solves the scaled system. Balances, and a field with one unknown per node, are scaled by the square roots of their
+  /// diagonals. Regions of low and high conductivity then contribute equally. A residual below the round-off is
+  /// accepted.
   LinearReport solve(const Vector& b, Vector& x, Real tolerance) override {
     if (coarse_) return coarse_->solve(b, x, tolerance);
     if (scale_.is_null()) return solve_scaled(b, x, tolerance);
@@ -144,7 +145,7 @@ class IterativeSolver : public LinearSolver {
     matrix_ = rcp(new ScaledOperator(matrix_, scale_));
   }
 
-  /// Of rows that are scaled, relative to b: each is a sum of terms as large as x.
+  /// Returns the round-off of scaled rows relative to b: the terms of each row are as large as x.
   static Real noise(const Vector& b, const Vector& x) {
     return std::min(16 * std::numeric_limits<Real>::epsilon() * x.norm2() / b.norm2(), most_noise);
   }
@@ -159,7 +160,7 @@ class IterativeSolver : public LinearSolver {
     }
     iterate(b, x, tolerance, reuse_.most_iterations(tolerance), report);
     if (reuse_.gives_up(report.iterations, report.reason.empty() && report.residual <= 2 * tolerance)) {
-      if (!report.reason.empty() || !std::isfinite(report.residual)) {  // what the library left is no start
+      if (!report.reason.empty() || !std::isfinite(report.residual)) {  // unusable as a start
         x.putScalar(0);
         report = {};
       }
@@ -181,7 +182,7 @@ class IterativeSolver : public LinearSolver {
     return report;
   }
 
-  /// Whether multigrid's cycles are tried, or need not be: else only once a solve has taken many iterations.
+  /// Returns whether cycles of multigrid are tried, or need no trial. Otherwise they are tried only after a slow solve.
   bool is_careful() const { return reuse_.is_careful() || symmetric_ || !preconditioner_->has_cycles(); }
 
   static RCP<const Vector> diagonal_of(const Matrix& matrix) {
@@ -190,7 +191,7 @@ class IterativeSolver : public LinearSolver {
     return diagonal;
   }
 
-  /// How many rows have another diagonal than when multigrid was made.
+  /// Returns the number of rows whose diagonal has changed since multigrid was made. Collective.
   GlobalIndex n_changed(const LinearSystem& system) {
     GlobalIndex here = 0;
     for (std::size_t r = 0; r < diagonals_.size(); ++r) {
@@ -204,7 +205,8 @@ class IterativeSolver : public LinearSolver {
     return base::sum_over_ranks(*comm_, here);
   }
 
-  /// For the present system; of multigrid that is kept only what is above it. Leaves a failure.
+  /// Sets up the preconditioner for the present system, or only the parts above multigrid if that remains. Sets
+  /// failure_. Throws RefusedList at the first set-up. Collective.
   void set_up_preconditioner() {
     const bool keeps = reuse_.is_of_earlier_system();
     failure_.clear();
@@ -222,13 +224,13 @@ class IterativeSolver : public LinearSolver {
     } catch (const Error& error) {
       if (!has_worked_ && dynamic_cast<const RefusedList*>(&error)) throw;
       failure_ = error.what();
-      preconditioner_ = make_preconditioner(options_, blocks_);  // what the libraries left may differ among ranks
+      preconditioner_ = make_preconditioner(options_, blocks_);  // its state after a failure may differ among ranks
       inverse_ = Teuchos::null;
       reuse_.lose();
     }
   }
 
-  /// Goes on from x. Leaves a reason only where the library gives up.
+  /// Continues from x. Sets a reason only if the library throws.
   void iterate(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
     try {
       base::collectively(*comm_, [&] { refine(b, x, tolerance, most, report); });
@@ -237,8 +239,8 @@ class IterativeSolver : public LinearSolver {
     }
   }
 
-  /// Krylov's method updates its residual, which rounding drives away from the true one where the matrix is nearly
-  /// singular. Then it solves for what is left, as long as that helps.
+  /// Solves, then refines the result. The updated residual of the Krylov method deviates from the true one if the
+  /// matrix is nearly singular. Then the method solves for the remaining residual, as long as this helps.
   void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
     const bool begins = report.iterations == 0;
     report.residual = begins ? 1 : residual_of(b, x);
@@ -265,22 +267,22 @@ class IterativeSolver : public LinearSolver {
     return relative_residual(*matrix_, b, x, r);
   }
 
-  /// To go on after a solve.
+  /// Returns whether another solve is worthwhile.
   static bool is_worthwhile(Real before, Real residual, Real tolerance) {
     return residual > 2 * tolerance && residual < 0.1 * before;
   }
 
-  /// Our own cycles are linear: so GMRES needs one basis instead of two, for one more cycle at the end. A sweep over
-  /// groups is dear, and may have others in it.
+  /// Returns the default method. Sprekk's cycles are linear: GMRES needs one basis instead of two, and one more cycle
+  /// at the end. A sweep over groups is expensive and may contain nonlinear methods.
   const char* usual_method() const {
     if (symmetric_ && definite_) return "Pseudo Block CG";
     return preconditioner_->has_cycles() ? "Block GMRES" : "Flexible GMRES";
   }
 
-  /// Starts from x = 0. Adds to the iterations, of which there are at most `most`, unless it is 0; false where there
-  /// are too many, or a preconditioner of an earlier matrix is not positive for this one. Of a new one the matrix is
-  /// not: rules of integration leave a little negative energy to some functions at crack tips in hexahedra. GMRES takes
-  /// over for good then.
+  /// Solves from x = 0. Adds to the iterations, at most `most` unless this is 0. Returns false after too many
+  /// iterations, or if the preconditioner of an earlier matrix is not positive for this one. If this happens
+  /// with a new preconditioner, the matrix is indefinite: in hexahedra, quadrature may give single functions at crack
+  /// tips a small negative energy. GMRES then replaces conjugate gradients permanently.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
@@ -309,17 +311,17 @@ class IterativeSolver : public LinearSolver {
   std::function<bool()> should_stop_;
   static constexpr int products_between_stops = 4;
   ParameterList parameters_;
-  std::unique_ptr<LinearSolver> coarse_;  // instead of all that follows; or null
+  std::unique_ptr<LinearSolver> coarse_;  // replaces all members below; or null
   std::unique_ptr<Preconditioner> preconditioner_;
   RCP<const Comm> comm_;
   RCP<const Operator> matrix_;
-  RCP<const Operator> inverse_;        // about that of the matrix
+  RCP<const Operator> inverse_;        // approximate inverse of the matrix
   RCP<const Vector> scale_, unscale_;  // of rows and columns; null: none
   static constexpr Real most_noise = 0.1;
-  static constexpr Real much = 0.1;        // that a diagonal may change,
-  static constexpr int most_changed = 30;  // of all but a few rows, so that multigrid is kept: each takes an iteration
+  static constexpr Real much = 0.1;        // relative change of a diagonal above which a row has changed
+  static constexpr int most_changed = 30;  // changed rows for which multigrid is kept; each costs an iteration
   LinearSystem system_;
-  std::vector<RCP<const Vector>> diagonals_;  // [block] when multigrid was made; null: it has none
+  std::vector<RCP<const Vector>> diagonals_;  // [block] when multigrid was made; null: the block has no matrix
   bool symmetric_ = false, definite_ = true, has_worked_ = false;
   Reuse reuse_;
   std::string failure_ = "the matrix was not set up";

@@ -50,7 +50,7 @@ class JoinedOperator : public fields::Operator {
   Blocks blocks_;
 };
 
-/// The unknowns of a node in every block; 1 where they differ.
+/// Returns the number of unknowns of a node if equal in all blocks, else 1.
 int common_size(const Blocks& blocks) {
   int size = 0;
   for (const auto& block : blocks) {
@@ -122,7 +122,7 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks)
     matrix_ = blocks_.front();
     return;
   }
-  const int here = common_size(blocks_);  // a rank without rows may see another one
+  const int here = common_size(blocks_);  // ranks without rows may differ
   int least = here, most = here;
   const auto& comm = *joined_->map()->getComm();
   Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, 1, &here, &least);
@@ -133,13 +133,14 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks)
   matrix_ = rcp(new Matrix(joined_->map(), columns, joined_->map(), numbers_));
 }
 
-/// For each block the column nodes' numbers in the matrix: of owned unknowns as in its domain, then of ghosts.
+/// Returns, for each block, the matrix numbers of its column nodes. Owned nodes are numbered as in the domain, then
+/// ghosts.
 JoinedMatrix::Nodes JoinedMatrix::number_columns(RCP<const Map>& columns) const {
   const int n = joined_->n_blocks();
   const auto& domain = *joined_->map();
   const auto owned = base::local_elements(domain);
   std::vector<GlobalIndex> all(owned.begin(), owned.end());
-  std::unordered_map<GlobalIndex, LocalIndex> ghosts;  // of first unknowns of nodes
+  std::unordered_map<GlobalIndex, LocalIndex> ghosts;  // by the first unknown of the node
   Nodes nodes(n * n);
   for (int k = 0; k < n * n; ++k) {
     if (blocks_[k].is_null()) continue;
@@ -160,7 +161,7 @@ JoinedMatrix::Nodes JoinedMatrix::number_columns(RCP<const Map>& columns) const 
   return nodes;
 }
 
-/// The graph of the matrix, and which entry of which block goes where.
+/// Finds the graph of the matrix, and the positions of the blocks' entries in it.
 void JoinedMatrix::find_runs(const Nodes& nodes) {
   const int n = joined_->n_blocks();
   struct Entry {

@@ -1,5 +1,4 @@
-// Several blocks as one: vectors, an operator and matrices whose unknowns are those of all blocks, one block after
-// another.
+// Several blocks as one: vectors, an operator and matrices with the unknowns of all blocks, block after block.
 #pragma once
 
 #include <memory>
@@ -9,9 +8,9 @@
 
 namespace sprekk::solve {
 
-/// Numbers the unknowns of blocks in one sequence and scales each block by a number s_r, S in matrix form. Unknowns of
-/// each block must be numbered 0, 1, ... over all ranks; so are the joined ones. A single block stays as it is, and is
-/// not scaled. Stored data.
+/// Joint numbering of the unknowns of blocks, with a scale s_r per block (S: diagonal matrix of the scales). The
+/// unknowns of each block must be numbered 0, 1, ... over all ranks; the joint unknowns are so as well. A single block
+/// is neither renumbered nor scaled. Stored data.
 class Joined {
  public:
   explicit Joined(std::vector<RCP<const fields::Map>> maps);
@@ -19,17 +18,17 @@ class Joined {
   int n_blocks() const { return static_cast<int>(maps_.size()); }
   const RCP<const fields::Map>& map() const { return map_; }
   const RCP<const fields::Map>& map(int r) const { return maps_[r]; }
-  GlobalIndex offset(int r) const { return offsets_[r]; }  ///< the joined number of a block's unknown 0
-  LocalIndex first(int r) const { return firsts_[r]; }     ///< the place of its first owned unknown on this rank
+  GlobalIndex offset(int r) const { return offsets_[r]; }  ///< joint number of the block's unknown 0
+  LocalIndex first(int r) const { return firsts_[r]; }     ///< local position of the block's first owned unknown
 
   void set_scales(const std::vector<Real>& scales) {
     if (n_blocks() > 1) scales_ = scales;
   }
   Real scale(int r) const { return scales_[r]; }
 
-  /// S b; of a single block, b itself.
+  /// Returns S b; for a single block, b itself.
   RCP<fields::Vector> gather(const fields::BlockVector& b) const;
-  /// S y; of a single block, y itself.
+  /// Returns S y, block by block; for a single block, y itself.
   fields::BlockVector scatter(const RCP<fields::Vector>& y) const;
 
  private:
@@ -40,18 +39,19 @@ class Joined {
   RCP<const fields::Map> map_;
 };
 
-/// Matrices of blocks, [r * n + s], null where they do not couple. Their graphs stay as they are.
+/// Matrices of blocks, [r * n + s]; null if blocks do not couple. The graphs must not change.
 using Blocks = std::vector<RCP<const fields::Matrix>>;
 
-/// S A S without storing it; of a single block, A itself.
+/// Returns S A S as an operator without a stored matrix; for a single block, A itself.
 RCP<const fields::Operator> joined_operator(std::shared_ptr<const Joined> joined, Blocks blocks);
 
-/// S A S as one matrix, of nodes where all blocks have nodes of one size; of a single block, A itself. Collective.
+/// Matrix S A S. It is a matrix of nodes if all blocks have nodes of equal size. For a single block, it is A itself.
+/// Collective.
 class JoinedMatrix {
  public:
   JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks);
 
-  /// Takes over the present values of the blocks, and the scales.
+  /// Copies the present values of the blocks, with the present scales. Local.
   void update();
 
   const RCP<const fields::Matrix>& matrix() const { return matrix_; }
@@ -63,12 +63,12 @@ class JoinedMatrix {
 
   std::shared_ptr<const Joined> joined_;
   Blocks blocks_;
-  int size_ = 1;  // of nodes
-  struct Runs {   // of entries that follow one another in a row node of the block and of the matrix
+  int size_ = 1;  // unknowns of a node
+  struct Runs {   // runs of entries adjacent both in a row node of the block and in the matrix
     View<LocalIndex*> row, from, to, length;
   };
   std::vector<Runs> runs_;    // [r * n + s]
-  fields::NodeRows numbers_;  // of the matrix
+  fields::NodeRows numbers_;  // values of the matrix
   RCP<const fields::Matrix> matrix_;
 };
 

@@ -31,7 +31,7 @@ ParameterList krylov_defaults() {
 
 namespace {
 
-/// A that calls a function before each product.
+/// Operator A that calls a function before each product.
 class Watched : public Operator {
  public:
   Watched(const RCP<const Operator>& A, const std::function<void()>& before) : A_(A), before_(before) {}
@@ -71,7 +71,7 @@ KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, con
   try {
     const bool converged = solver->solve() == Belos::Converged;
     return {converged || solver->isLOADetected(), solver->getNumIters()};
-  } catch (const Belos::CGIterateFailure&) {  // by sums over all ranks, on all of them
+  } catch (const Belos::CGIterateFailure&) {  // thrown on all ranks, as it depends on global sums
     return {false, 0, true};
   }
 }
@@ -80,7 +80,7 @@ namespace {
 
 const std::string place = "Sprekk > Solver > Linear solver > Belos";
 
-/// All that a solver has, with its defaults; null: Belos has no such solver for these matrices.
+/// Returns all parameters of a solver with defaults; null if Belos has no such solver for these matrices.
 RCP<const ParameterList> parameters_of(const std::string& method) {
   try {
     return Belos::SolverFactory<Real, MultiVector, Operator>()
@@ -107,7 +107,8 @@ RCP<fields::CrsMatrix> small_matrix(int n, const RCP<const Comm>& comm) {
   return matrix;
 }
 
-/// Of a small system: a method that breaks down on it may do well on others, so that this says nothing.
+/// Tries the parameters on a small system. A breakdown of the method is ignored, as it may work on other systems.
+/// Throws a RefusedList for other exceptions. Collective.
 void try_parameters(const ParameterList& given, const std::string& method, const RCP<const Comm>& comm) {
   auto parameters = krylov_defaults();
   parameters.setParameters(given);
@@ -126,7 +127,7 @@ void try_parameters(const ParameterList& given, const std::string& method, const
 
 }  // namespace
 
-/// Against the valid parameters of the method that the scene names, else of the default methods.
+/// Checks against the valid parameters of the selected method, else of the default methods.
 void check_krylov(const ParameterList& given, const RCP<const Comm>& comm) {
   if (given.numParams() == 0) return;
   std::vector<std::string> methods = {"Pseudo Block CG", "Block GMRES"};

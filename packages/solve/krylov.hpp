@@ -8,23 +8,23 @@
 
 namespace sprekk::solve {
 
-/// What Belos is handed unless a scene says otherwise. Stored data.
+/// Returns the default parameters of Belos. Stored data.
 Teuchos::ParameterList krylov_defaults();
 
-/// Throws a RefusedList where Belos has no such solver, the solver no such parameter, or it refuses a value: tried on
-/// a small system. Collective.
+/// Throws a RefusedList if Belos does not have the solver, or the solver rejects a parameter or value. The parameters
+/// are tried on a small system. Collective.
 void check_krylov(const Teuchos::ParameterList& given, const RCP<const Comm>& comm);
 
 struct KrylovEnd {
-  bool ended;  ///< by itself: converged, or stopped where rounding leaves no more to gain; false: too many iterations
+  bool ended;  ///< converged, or stopped by round-off; false: too many iterations
   int iterations;
-  bool indefinite = false;  ///< conjugate gradients met a direction in which A or M is not positive; x is of no use
+  bool indefinite = false;  ///< conjugate gradients met a direction in which A or M is not positive; x is unusable
 };
 
-/// Solves A x = b from x on, M about A^-1 from the right, by the "Solver Type" of the parameters, or by `usual`, to the
-/// relative residual `tolerance` unless they have one, with at most `most` iterations, or theirs where it is 0.
-/// `before_product`, if there is one, is called before each product with A and may throw. Throws what Belos throws.
-/// Collective.
+/// Solves A x = b, starting from x. M approximates A^-1 and preconditions from the right. The method is the "Solver
+/// Type" of the parameters, else `usual`. The relative residual is `tolerance` unless the parameters contain one.
+/// `most`: largest number of iterations; 0: that of the parameters. `before_product`, if given, is called before each
+/// product with A and may throw. Exceptions of Belos pass through. Collective.
 KrylovEnd krylov(const RCP<const fields::Operator>& A, const RCP<const fields::Operator>& M,
                  const Teuchos::ParameterList& parameters, const std::string& usual, const fields::Vector& b,
                  fields::Vector& x, Real tolerance, int most = 0, const std::function<void()>& before_product = {});

@@ -16,7 +16,7 @@ constexpr Real smallest_step = 1.0 / 64, least_damping = 0.1, most_damping = 10;
 constexpr std::size_t memory = 3, patience = 5, trial_period = 10, short_steps = 4;
 constexpr Real least_way = 0.5;
 constexpr Real swing_damping = 0.3;
-constexpr Real solved_part = 0.1;  // of the merit of f that lags
+constexpr Real solved_part = 0.1;  // of the merit of the lagged f
 constexpr int most_held = 4;
 constexpr int most_unbalanced = 3, most_begun = 3;
 
@@ -84,8 +84,8 @@ std::optional<LineSearch::Trial> LineSearch::full(NOX::Abstract::Group& group, c
   return Trial{1, merit};
 }
 
-/// Merits of states that are far apart may differ by many orders of magnitude: the full step is taken if it leads to
-/// others.
+/// Takes the full step if it leads to other states. The merits of distant states may differ by many orders of
+/// magnitude.
 std::optional<LineSearch::Trial> LineSearch::begin_anew(NOX::Abstract::Group& group, const NOX::Abstract::Group& from,
                                                         const NOX::Abstract::Vector& dx) {
   if (picard_.possible() || n_begun_ == most_begun) return {};
@@ -97,14 +97,15 @@ std::optional<LineSearch::Trial> LineSearch::begin_anew(NOX::Abstract::Group& gr
   return taken;
 }
 
-/// The next step is full. Merits before it say nothing: f was another function, or the iterate is far from the others.
+/// Restarts the search: the next step is full. Earlier merits are not comparable, since f was different or the iterate
+/// is distant from the others.
 void LineSearch::begin_search() {
   since_ = merits_.size();
   monotone_ = false;
   visited_.clear();
 }
 
-/// Where no step of f itself was found, to f that lags.
+/// Returns to the lagged f if no step of f itself was found. Returns false if this is not possible.
 bool LineSearch::goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from) {
   if (!picard_.possible() || picard_.lags() || merits_.empty()) return false;
   group = from;
@@ -115,7 +116,8 @@ bool LineSearch::goes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gro
   return true;
 }
 
-/// Lets Picard look at a step. Where f changes, it is evaluated anew, and so is the merit.
+/// Lets Picard check a step, and returns whether the step is rejected. If f has changed, evaluates f and the merit
+/// again.
 bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Group& from, Trial& taken) {
   const bool lagged = picard_.lags();
   bool back = false;
@@ -134,13 +136,15 @@ bool LineSearch::takes_back(NOX::Abstract::Group& group, const NOX::Abstract::Gr
   return back;
 }
 
-/// Not the first step after Picard begins: then residuals of flow must rise.
+/// Detects an increase of the merit with lagged coefficients. Excludes the first step of a Picard phase, in which flow
+/// residuals necessarily increase.
 bool LineSearch::begins_to_struggle(const Trial& taken) {
   if (struggles_ || !weakens_ || !picard_.lags() || picard_.fresh() || merits_.empty()) return false;
   return struggles_ = taken.merit > merits_.back();
 }
 
-/// Coefficients of an iterate that is far from a solution of the f that lags would lead anywhere.
+/// Freezes the coefficients while the iterate is far from a solution of the lagged f. Its coefficients would be
+/// arbitrary.
 bool LineSearch::holds(const Trial& taken) {
   const bool hold = struggles_ && !merits_.empty() && taken.merit > solved_part * merits_.back();
   n_held_ = hold ? n_held_ + 1 : 0;
@@ -165,7 +169,7 @@ Real LineSearch::limit() const {
   return *std::max_element(merits_.end() - std::min(memory, merits_.size() - since_), merits_.end());
 }
 
-/// Iterates before the first full step leave the linear part out of balance.
+/// Accepts a step. Before the first full step, the linear part is not balanced, so calibration starts with its result.
 void LineSearch::accept(NOX::Abstract::Group& group, Real step, Real merit) {
   const auto x = solution_of(group);
   if (globalisation_.calibrate(x, merits_.empty())) {

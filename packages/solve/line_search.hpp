@@ -1,4 +1,4 @@
-// The line search of Newton: non-monotone, for kinks in f make the merit rise on the way to a solution.
+// Line search of Newton's method. It is non-monotone, since kinks in f may raise the merit on the way to a solution.
 #pragma once
 
 #include <NOX_LineSearch_Generic.H>
@@ -14,35 +14,41 @@
 namespace sprekk::solve {
 
 struct SearchReport {
-  std::string failure;  ///< why there was no step
-  std::string loose;    ///< what nothing held in one of the iterates, the last such
-  /// None of the last five merits is below half the best before; or, where a shorter time step helps, the last four
-  /// steps together were below half of one of Newton's. Where coefficients of fluxes depend on x and do not lag: in
-  /// ten iterates no state changed, and no merit was below half the best before; where they stay as they are, four
-  /// steps did not halve the merit.
+  std::string failure;  ///< reason for a missing step
+  std::string loose;    ///< floating bodies in the last iterate that had some, as text
+  /// Whether the iteration stagnates:
+  /// - None of the last five merits is below half of the best earlier merit, from the tenth iterate on.
+  /// - Problems with storage, also: the last four step lengths sum to less than 0.5.
+  /// - Coefficients of fluxes that depend on x, instead of these: in ten iterates without lag, no state changed, and no
+  ///   merit was below half of the best earlier merit. With frozen coefficients: four steps did not halve the merit.
   bool stagnant = false;
-  bool damped = false;           ///< the last Jacobian that was solved with was, on this rank
-  int n_accepted = 0;            ///< iterates but for the start
-  std::vector<int> last_change;  ///< [as states()] number of the iterate in which a state was last another one
+  bool damped = false;           ///< the last Jacobian of a linear solve was damped or lagged, on this rank
+  int n_accepted = 0;            ///< number of iterates without the start
+  std::vector<int> last_change;  ///< [as states()] number of the last iterate with a change of state
 };
 
-/// The first step is full. After that a = 1, 1/2, .. 1/64 is taken as soon as merit <= (1 - 1e-3 a) max(last 3 merits);
-/// if none is, the step is taken anew with damping 0.1, 1, 10. Where that does not help, but the full first step leads
-/// to other discrete states, it is taken as it is, and the search begins anew, three times in a solve; so it does after
-/// calibrate() has changed f. Before a step is taken its share of motions that nothing resists is balanced. When a
-/// discrete state comes back and the merit is no better than then, iterates would go round in circles: from there on
-/// only the last merit counts. Entities whose state changes, and did in one of the two iterates before, are damped, by
-/// 0.3, in the next step. Where coefficients of fluxes depend on x, Picard says when there is a search, and which steps
-/// are taken back. Joints that weaken with slip: once a full step with lagged coefficients increases the merit of the
-/// lagged problem, steps are searched for a decrease of that merit, except the first step after Picard begins, and the
-/// coefficients are frozen until the merit has fallen to a tenth.
+/// Non-monotone line search.
+/// - The first step is full. Later steps take the first a = 1, 1/2, ..., 1/64 with merit <= (1 - 1e-3 a) max(last 3
+///   merits).
+/// - If no a is accepted, the direction is computed again with damping 0.1, 1, 10.
+/// - If damping fails, but the full first step leads to other contact states, this step is taken and the search
+///   restarts. There are at most three such restarts per solve. The search also restarts after calibrate() changed f.
+/// - Before a step is tried, its share of free motions is balanced, see Globalisation::balance().
+/// - If a state pattern recurs without a better merit, the iteration is in a cycle. From then on only the last merit
+///   counts.
+/// - Entities with a change of state that also changed in one of the two previous iterates are damped by 0.3 in the
+///   next step.
+/// - Coefficients of fluxes that depend on x: Picard decides when steps are searched and which are rejected.
+/// - Joints that weaken with slip: once a full step with lagged coefficients increases the merit of the lagged problem,
+///   later steps are searched for a decrease of this merit. The first step of a Picard phase is not searched. The
+///   coefficients remain frozen until the merit has decreased to a tenth.
 class LineSearch : public NOX::LineSearch::Generic {
  public:
   LineSearch(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
       : problem_(problem), globalisation_(problem.globalisation()), model_(model), picard_(picard), report_(report) {}
 
-  /// Fails, with step 0, where the direction does: after a linear solve that did; and when a body has found no
-  /// resistance in four steps of a solve, which is what the report says then.
+  /// Finds the step. Fails with step 0 if the linear solve failed, if no step is acceptable, or if a body has met no
+  /// resistance in four steps of a solve. The report contains the reason, except for a failed linear solve.
   bool compute(NOX::Abstract::Group& group, double& step, const NOX::Abstract::Vector& direction,
                const NOX::Solver::Generic& solver) override;
 
@@ -73,25 +79,25 @@ class LineSearch : public NOX::LineSearch::Generic {
   Picard& picard_;
   SearchReport& report_;
   int n_unbalanced_ = 0;
-  int n_begun_ = 0;  // how often the search began anew since no step was found
+  int n_begun_ = 0;  // restarts of the search without an acceptable step
   Real damping_ = 0;
   std::vector<char> states_;             // of the last iterate
-  std::vector<Real> swinging_;           // [as states()] damping of entities that go to and fro
+  std::vector<Real> swinging_;           // [as states()] damping of oscillating entities
   std::vector<Real> merits_;             // of all iterates
-  std::vector<Real> steps_;              // to them
-  std::size_t since_ = 0;                // the first of merits_ that is one of f itself
-  std::size_t progress_ = 0;             // the last iterate with a state of its own, or half the least merit before
-  Real least_ = 0;                       // merit so far
+  std::vector<Real> steps_;              // step lengths to the iterates
+  std::size_t since_ = 0;                // index of the first of merits_ that belongs to the present f
+  std::size_t progress_ = 0;             // number of merits at the last change of state, or reduction by half
+  Real least_ = 0;                       // smallest merit so far
   std::size_t pattern_ = 0;              // hash of states_
-  bool changed_ = false;                 // it did in the last iterate
-  std::map<std::size_t, Real> visited_;  // merit at the last visit of a discrete state
+  bool changed_ = false;                 // pattern_ changed in the last iterate
+  std::map<std::size_t, Real> visited_;  // merit at the last visit of a state pattern
   bool monotone_ = false;
-  bool weakens_ = false;    // see Globalisation
-  bool struggles_ = false;  // a full step of the f that lags made its merit rise
-  int n_held_ = 0;          // steps since coefficients that lag changed
+  bool weakens_ = false;    // see Globalisation::weakens()
+  bool struggles_ = false;  // a full step with lagged coefficients increased the merit
+  int n_held_ = 0;          // steps with frozen coefficients
 };
 
-/// Lets NOX make line searches for a problem.
+/// Factory that provides the line search to NOX.
 class LineSearchFactory : public NOX::LineSearch::UserDefinedFactory {
  public:
   LineSearchFactory(BlockProblem& problem, const ThyraModel& model, Picard& picard, SearchReport& report)
@@ -107,7 +113,7 @@ class LineSearchFactory : public NOX::LineSearch::UserDefinedFactory {
   SearchReport& report_;
 };
 
-/// The unknowns and the residual of a NOX group over Thyra, not copied, to be read only.
+/// Return the unknowns or the residual of a NOX group over Thyra, without copying. The result is read-only.
 BlockVector solution_of(const NOX::Abstract::Group& group);
 BlockVector residual_of(const NOX::Abstract::Group& group);
 

@@ -17,7 +17,8 @@ int iterations(const std::vector<LinearReport>& solves) {
 
 namespace {
 
-/// What would not fail by itself. Sprekk gives MUMPS the matrix in a way of its own; Belos takes counts without a look.
+/// Rejects entries that the libraries would accept. Sprekk determines how MUMPS receives the matrix. Belos does not
+/// check counts.
 void check_library_entries(base::Section& section, const Teuchos::ParameterList& mumps,
                            const Teuchos::ParameterList& belos) {
   for (const int i : {5, 18, 19, 20, 21, 30, 31}) {
@@ -81,10 +82,10 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
                                          is_3d ? "3D" : "2D", n, limit)
                            : fmt::format("{}: asked for; {} unknowns", options.type, n);
   if (!direct) {
-    make_direct_solver(options.mumps);  // for its errors
+    make_direct_solver(options.mumps);  // only for its checks
     return {make_iterative_solver(options, blocks), reason};
   }
-  make_preconditioner(options.preconditioner, blocks);  // for its errors: what is said of blocks must be right anyway
+  make_preconditioner(options.preconditioner, blocks);  // only for its checks: options must be valid in any case
   check_krylov(options.belos, blocks.front().map->getComm());
   const int n_ranks = blocks.front().map->getComm()->getSize();
   const bool on_one_rank = options.reproducible.value_or(false) && n_ranks > 1;

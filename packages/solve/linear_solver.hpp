@@ -1,4 +1,4 @@
-// Solves the linear system that local elimination leaves: directly, or by multigrid and Krylov.
+// Linear solvers for the system after local elimination: direct, or Krylov methods with multigrid.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -19,83 +19,87 @@ class Section;
 
 namespace sprekk::solve {
 
-/// What is wanted of a linear solver. The lists are handed to the libraries untouched, over the defaults.
+/// Options of a linear solver. The lists are passed to the libraries unchanged, on top of the defaults.
 struct LinearSolverOptions {
   std::string type = "auto";           ///< auto | direct | iterative
-  Real tolerance = 1e-12;              ///< relative residual that is asked for
-  bool forcing = true;                 ///< less is asked for while faces still change state
-  long long direct_limit_2d = 150000;  ///< auto: most unknowns for direct in 2D (and 1D)
-  long long direct_limit_3d = 3000;    ///< auto: the same in 3D
-  std::optional<bool> reproducible;    ///< ranks do not share the factors of a matrix; absent: they may
+  Real tolerance = 1e-12;              ///< required relative residual
+  bool forcing = true;                 ///< lower accuracy while faces change state, see ForcedSolve
+  long long direct_limit_2d = 150000;  ///< auto: largest number of unknowns for direct in 2D (and 1D)
+  long long direct_limit_3d = 3000;    ///< auto: the same limit in 3D
+  std::optional<bool> reproducible;    ///< factors of a matrix on one rank only; absent: on all ranks
   Teuchos::ParameterList mumps, belos;
   PreconditionerOptions preconditioner;
-  /// No entry. If it is not empty: asked on every rank every few iterations; true on any ends the solve by Stopped.
+  /// Stop request; not an entry of scenes. If set, it is called on all ranks every few iterations. True on any rank
+  /// ends the solve with Stopped.
   std::function<bool()> should_stop;
 
   void describe(base::Section& section);
 };
 
-/// Thrown out of a solve that is to stop, on every rank at once. No std::exception, so that no library reports it.
+/// Exception that ends a solve on all ranks at once. It does not derive from std::exception, so that libraries do not
+/// catch it.
 struct Stopped {};
 
-/// How a solve went. Converged means that the true relative residual is at most acceptable_linear_residual, or ten
-/// times the tolerance if that is more: what is then missing of the tolerance is for the next Newton iteration.
+/// Result of a solve. Converged: the true relative residual is at most the larger of acceptable_linear_residual and ten
+/// times the tolerance. The next Newton iteration corrects the remaining error.
 struct LinearReport {
   bool converged = false;
   int iterations = 0;
   Real residual = 0;   ///< |b - A x| / |b|, computed from A, b and x
-  bool used = true;    ///< Newton's solve that it is part of converged
-  std::string reason;  ///< of a failure
+  bool used = true;    ///< the Newton solve that contains it has converged
+  std::string reason;  ///< reason of a failure
 };
 
-/// The iterations of all these solves.
+/// Returns the sum of the iterations of these solves.
 int iterations(const std::vector<LinearReport>& solves);
 
 inline constexpr Real acceptable_linear_residual = 1e-8;
 
-/// All members are collective on the matrix' communicator, and answer the same on every rank.
+/// Linear solver. All members are collective on the communicator of the matrix and return the same on all ranks.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Whether set-ups read `matrix`.
+  /// Returns whether setup() reads LinearSystem::matrix.
   virtual bool reads_matrix() const { return false; }
 
-  /// Makes ready to solve with this system. Empty, or what failed.
+  /// Prepares solves with this system. Returns an error message, or an empty string.
   virtual std::string setup(const LinearSystem& system) = 0;
 
-  /// x <- A^-1 b to a relative residual of the tolerance, or as near as rounding allows.
+  /// Computes x = A^-1 b to the relative residual `tolerance`, or as accurately as round-off permits.
   virtual LinearReport solve(const Vector& b, Vector& x, Real tolerance) = 0;
 
-  /// About the inverse of the system of the last set-up, as Krylov's method uses it; null if there is none.
+  /// Returns the approximate inverse of the last system, as used by the Krylov method; null if there is none.
   virtual RCP<const fields::Operator> preconditioner() const { return Teuchos::null; }
 
-  /// What the preconditioner's parts have cost. Stored data.
+  /// Returns the costs of the parts of the preconditioner. Stored data.
   virtual std::vector<SolverCost> costs() const { return {}; }
 
-  /// Everything that is handed to the library, defaults included.
+  /// Returns all parameters of the libraries, including defaults.
   virtual const Teuchos::ParameterList& parameters() const = 0;
 };
 
-/// A solver, and why it is this one.
+/// Solver with the reason of its selection.
 struct ChosenSolver {
   std::unique_ptr<LinearSolver> solver;
-  std::string reason;  ///< "direct: 2D with 1234 unknowns; direct up to 150000"
+  std::string reason;  ///< e.g. "direct: 2D with 1234 unknowns; direct up to 150000"
 
-  /// The reason and all parameters, for the log.
+  /// Returns the reason and all parameters, for the log.
   std::string describe() const;
 };
 
-/// The solver for systems of these blocks. Stored data only.
+/// Returns the solver for systems of these blocks. Throws an Error for invalid options, also of the solver that is not
+/// selected. Collective.
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::vector<Block>& blocks);
 
-/// Ranks 0 to most_ranks - 1 share the factors; one alone adds in the same order every time.
+/// Return a direct or an iterative solver. Ranks 0 to most_ranks - 1 share the factors. One rank adds in the same order
+/// every time.
 std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps,
                                                  int most_ranks = std::numeric_limits<int>::max());
 std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options,
                                                     const std::vector<Block>& blocks);
 
-/// |b - A x| / |b| with r <- b - A x; 0 for b = 0 = x.
+/// Returns |b - A x| / |b| and sets r = b - A x; 0 for b = 0 = x. Collective.
 Real relative_residual(const fields::Operator& matrix, const Vector& b, const Vector& x, Vector& r);
 
 }  // namespace sprekk::solve

@@ -1,4 +1,4 @@
-// A linear system in blocks, as solvers and preconditioners see it.
+// Linear system of blocks, as input of solvers and preconditioners.
 #pragma once
 
 #include <functional>
@@ -14,33 +14,34 @@ using fields::CrsMatrix;
 using fields::Matrix;
 using fields::Vector;
 
-/// Calls work(A) with a block's matrix without what crosses interfaces, by whose values multigrid aggregates. Meanwhile
-/// the block's matrix may have these values, too.
+/// Function that calls work(A) with the matrix of a block without couplings across interfaces. Multigrid aggregates by
+/// its values. During the call, the matrix of the block may have these values, too.
 using Bulk = std::function<void(const std::function<void(const RCP<const Matrix>& A)>& work)>;
 
-/// A block on the diagonal of a linear system.
+/// Diagonal block of a linear system.
 struct DiagonalBlock {
   Block block;
-  RCP<const Matrix> matrix;  ///< of the block alone; null if it has none
-  Bulk bulk;                 ///< or empty
+  RCP<const Matrix> matrix;  ///< of the block alone; null if absent
+  Bulk bulk;                 ///< empty: absent
   bool symmetric = true;
   RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
-  bool careful = true;           ///< where it is not symmetric, a cycle of multigrid is looked at and mended if need be
+  bool careful = true;           ///< if not symmetric, a multigrid cycle is tried at set-up and corrected if necessary
 };
 
-/// A linear system in one or more blocks, joined. Graphs must be the same at every set-up.
+/// Linear system of one or several blocks, joined. Graphs must be the same in each set-up.
 struct LinearSystem {
   std::shared_ptr<const Joined> joined;
   Blocks blocks;  ///< [r * n + s], not scaled
   bool symmetric = false;
   std::vector<DiagonalBlock> diagonal;
   RCP<const CrsMatrix> matrix;  ///< of all blocks, scaled; null unless the solver reads it
-  bool reproducible = false;    ///< whether a set-up must leave the same bits every time
+  bool reproducible = false;    ///< set-ups must be bitwise reproducible
 
+  /// Returns S A S with the scales S, without a stored matrix.
   RCP<const fields::Operator> joined_operator() const { return solve::joined_operator(joined, blocks); }
 };
 
-/// That of a single block.
+/// Returns the system of a single block.
 LinearSystem alone(const DiagonalBlock& block);
 
 }  // namespace sprekk::solve

@@ -16,7 +16,7 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Lets J_aa take the place of A_aa, if the problem agrees. Collective.
+/// Stores A_aa in J_aa if the problem permits it. Collective.
 void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
   start_from_bulk(condensed);
   condensed.kept = problem.share(a, condensed.matrix);
@@ -25,7 +25,7 @@ void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
   condensed.bulk_column = {};
 }
 
-/// Of the columns, from those of the unknowns. Collective.
+/// Sets the flags of columns from those of the unknowns. Collective.
 void take_flags(const Vector& constrained, const CondensedBlock& condensed) {
   Vector columns(condensed.matrix->column_map());
   condensed.matrix->spread(constrained, columns);
@@ -49,7 +49,7 @@ LocalElimination::LocalElimination(BlockProblem& problem)
   for (int r = 0; r < n_remaining(); ++r) {
     constrained_.push_back(rcp(new Vector(problem.blocks()[plan_.remaining[r]].map)));
     share(problem, plan_.remaining[r], block(r, r));
-    keep_condensed(block(r, r), plan_.groups, r, n_remaining());  // J has columns there that A does not
+    keep_condensed(block(r, r), plan_.groups, r, n_remaining());  // J has columns that A does not have
   }
   for (auto& condensed : plan_.condensed)
     if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);
@@ -88,7 +88,7 @@ LocalElimination::Status LocalElimination::update(BlockProblem& problem) {
   return {changed, failure};
 }
 
-/// The flags of all columns, too. True if any has changed on any rank.
+/// Updates the flags of unknowns and columns. Returns true if any has changed on any rank. Collective.
 bool LocalElimination::take_constraints(const BlockProblem& problem) {
   int changed = 0, anywhere = 0;
   for (int r = 0; r < n_remaining(); ++r) {
@@ -111,8 +111,8 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
   return anywhere != 0;
 }
 
-/// The sizes of a group's unknowns under the present loads, as powers of two relative to the first block: so scaling
-/// rounds nothing, and factors keep their bits while loads grow in proportion.
+/// Sets the sizes of a group's unknowns under the present loads, as powers of two relative to the first block. Scaling
+/// therefore causes no round-off, and factors remain bitwise equal under proportional loads.
 void LocalElimination::set_scales(const BlockProblem& problem, GroupPlan& group) {
   const auto scale = Kokkos::create_mirror_view(group.column_scale);
   const Real first = problem.blocks()[group.blocks.front()].kinematic_scale;
@@ -124,7 +124,8 @@ void LocalElimination::set_scales(const BlockProblem& problem, GroupPlan& group)
   Kokkos::deep_copy(group.column_scale, scale);
 }
 
-/// Packs and factors A_zz, and makes A_zz^-1 A_zb. False on every rank, with the reason, if an entity is singular.
+/// Packs and factorises A_zz, and computes A_zz^-1 A_zb. If an entity is singular, returns false on all ranks and sets
+/// the reason. Collective.
 bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
   const int m = group.size;
   Kokkos::deep_copy(group.dense, 0.0);
@@ -163,7 +164,7 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
   return true;
 }
 
-/// J_rs -= A_rz (A_zz^-1 A_zs), row by row.
+/// Computes J_rs -= A_rz (A_zz^-1 A_zs), row by row.
 void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   if (block(r, s).matrix.is_null()) return;
   const int m = group.size;
@@ -210,7 +211,7 @@ void LocalElimination::condense(GroupPlan& group, int r, int s) const {
   check_found(n_missing);
 }
 
-/// [component of an entity] the values of A_rz, null where there is none.
+/// Returns the values of A_rz, [component of an entity]; null if absent.
 Kokkos::Array<const Real*, max_small_size> LocalElimination::values_of_components(const GroupPlan& group, int r) const {
   Kokkos::Array<const Real*, max_small_size> values = {};
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
@@ -233,7 +234,7 @@ void LocalElimination::with_bulk(int r, const std::function<void(const RCP<const
   of_J.put_back();
 }
 
-/// z <- A_zz^-1 z for the blocks of one group.
+/// Computes z = A_zz^-1 z for the blocks of one group.
 void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) const {
   const int m = group.size;
   const auto work = group.work, dense = group.dense, lu = group.lu;
@@ -268,7 +269,7 @@ BlockVector LocalElimination::reduce(const BlockVector& b) const {
     lift[plan_.remaining[r]]->elementWiseMultiply(1, *constrained_[r], *b[plan_.remaining[r]], 0);
     most += lift[plan_.remaining[r]]->normInf();
   }
-  const bool lifts = most != 0;  // conditions are met after Newton's first iteration
+  const bool lifts = most != 0;  // false after Newton's first iteration, which satisfies the conditions
   if (lifts) matrix_->apply(lift, s);
   for (std::size_t i = 0; i < b.size(); ++i) s[i]->update(1, *b[i], -1);
   for (const auto& group : plan_.groups) {

@@ -1,4 +1,4 @@
-// Eliminates local groups entity by entity and prescribed unknowns one by one, exactly; what remains goes to a solver.
+// Exact elimination of local groups, entity by entity, and of prescribed unknowns. A linear solver treats the rest.
 #pragma once
 
 #include <cstdint>
@@ -9,37 +9,37 @@
 
 namespace sprekk::solve {
 
-/// For A dx = b with A = problem.matrix(), where the rows of constrained unknowns read dx_i = b_i. With z the unknowns
-/// of the local groups, D the constrained ones and a, b the remaining blocks:
-///     J_ab = A_ab - A_az A_zz^-1 A_zb, rows and columns of D zero but for a positive diagonal
-///     c_a  = s_a - A_az A_zz^-1 s_z, 0 in D, with s = b - A (0, b_D)
-///     dx_b = (0, b_D) + J^-1 c,  dx_z = A_zz^-1 (b_z - A_zb dx_b)
-/// Blocks and their graphs must stay as they are at construction; so must the local groups. All members are collective
-/// unless they return stored data.
+/// Elimination for A dx = b with A = problem.matrix(), where rows of constrained unknowns are dx_i = b_i. z are the
+/// unknowns of the local groups, D the constrained unknowns, a and b the remaining blocks:
+///   J_ab = A_ab - A_az A_zz^-1 A_zb, rows and columns of D zero except for a positive diagonal
+///   c_a  = s_a - A_az A_zz^-1 s_z, 0 in D, with s = b - A (0, b_D)
+///   dx_b = (0, b_D) + J^-1 c,  dx_z = A_zz^-1 (b_z - A_zb dx_b)
+/// Blocks, their graphs and the local groups must not change after construction. All members are collective unless they
+/// return stored data.
 class LocalElimination {
  public:
   struct Status {
-    bool changed;         ///< the values of some J_ab differ from those after the update before
-    std::string failure;  ///< empty, or which entity of which group is singular; J is then not usable
+    bool changed;         ///< values of some J_ab differ from those after the previous update
+    std::string failure;  ///< empty, or the group and entity that are singular; J is then unusable
   };
 
-  /// J takes the place of blocks that the problem shares: see BlockProblem::share().
+  /// Plans the elimination. J stores blocks that the problem shares, see BlockProblem::share(). Throws an Error on all
+  /// ranks for invalid groups.
   explicit LocalElimination(BlockProblem& problem);
 
-  /// Forms J from the present values of problem.matrix(). The same answer on every rank.
+  /// Forms J from the present values of problem.matrix(). The result is the same on all ranks.
   Status update(BlockProblem& problem);
 
-  /// The blocks that remain, as indices into problem.blocks(). [r]
+  /// Returns the remaining blocks as indices into problem.blocks(). [r]
   const std::vector<int>& remaining() const { return plan_.remaining; }
-  /// J between the r-th and the s-th remaining block; null where they do not couple. The object stays the same for
-  /// good.
+  /// Returns J between the r-th and the s-th remaining block; null if they do not couple. The object remains the same.
   RCP<const Matrix> condensed(int r, int s) const;
-  /// Calls work(A) while J of the r-th remaining block is A_aa, constrained like J, without what the local groups add.
+  /// Calls work(A) while J of the r-th remaining block is A_aa with the constraints, but without the local groups.
   void with_bulk(int r, const std::function<void(const RCP<const Matrix>& A)>& work) const;
 
-  /// c [r] for b [block].
+  /// Returns c [r] for b [block].
   BlockVector reduce(const BlockVector& b) const;
-  /// Fills dx [block] from b [block] and y = J^-1 c [r].
+  /// Computes dx [block] from b [block] and y = J^-1 c [r].
   void expand(const BlockVector& b, const BlockVector& y, BlockVector& dx) const;
 
  private:
@@ -54,9 +54,9 @@ class LocalElimination {
   const CondensedBlock& block(int r, int s) const { return plan_.condensed[r * n_remaining() + s]; }
 
   RCP<const Comm> comm_;
-  const fields::BlockMatrix* matrix_;  ///< the problem's own
+  const fields::BlockMatrix* matrix_;  ///< matrix of the problem
   EliminationPlan plan_;
-  std::vector<RCP<Vector>> constrained_;  ///< [r] owned unknown: 1 where prescribed
+  std::vector<RCP<Vector>> constrained_;  ///< [r] owned unknown: 1 if prescribed
   std::uint64_t checksum_ = 0;
   bool fresh_ = true;
 };

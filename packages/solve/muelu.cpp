@@ -1,4 +1,4 @@
-// Smoothed aggregation of MueLu, for a block or several joined.
+// Smoothed aggregation of MueLu, for one block or several joined blocks.
 #include <Amesos2_Factory.hpp>
 #include <Ifpack2_Factory.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
@@ -17,15 +17,17 @@ using Teuchos::ParameterList;
 
 constexpr int coarse_size_of_muelu = 1000;
 
-/// Smoothed aggregation for elasticity. A coarse level is solved on one rank: the direct solver of this Trilinos is
-/// wrong on several, and must not meet a singular matrix: its exception on that rank would leave the others waiting.
-/// The tiny drop tolerance with filtering keeps MueLu from storing patterns of products, which would not fit when
-/// contact closes; reuse "tP" keeps the aggregates and makes everything else anew: prolongators that are kept
-/// ("RP") were smoothed without contact and do not reach across it. The largest eigenvalue
-/// takes more than the usual 10 steps to find where few cells are unlike all others, as those with quarter points at
-/// crack tips; with less than it, the smoother would not be positive.
-/// A block of rock that is a single node on a coarse level has no neighbour in the graph of the bulk there; it must not
-/// be taken for a node without unknowns, which only the finest level has.
+/// Returns the parameters of smoothed aggregation for elasticity.
+/// - Coarse level: on one rank, because the direct solver of this Trilinos is wrong on several. Its matrix must not be
+///   singular: an exception on this rank would leave the others waiting.
+/// - Drop tolerance, tiny, with filtering: prevents MueLu from storing patterns of products, which become invalid when
+///   contact closes.
+/// - Reuse "tP": keeps aggregates only. Prolongators kept by "RP" were smoothed without contact and do not extend
+///   across it.
+/// - Eigenvalue iterations: more than the default of 10. A few cells may differ from all others, e.g. quarter-point
+///   cells at crack tips. With an underestimated eigenvalue, the smoother would not be positive.
+/// - Dirichlet points: only on the finest level. A block of rock with a single coarse node has no neighbours in the
+///   graph of the bulk. It must not be treated as a node without unknowns.
 ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places) {
   ParameterList list("MueLu");
   list.set("verbosity", "none");
@@ -36,14 +38,14 @@ ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places)
   list.set("aggregation: drop tol", 1e-12);
   list.set("sa: use filtered matrix", true);
   list.set("aggregation: preserve Dirichlet points", true);
-  list.sublist("level 1").set("aggregation: preserve Dirichlet points", false);  // made from the finest
-  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than there are modes
+  list.sublist("level 1").set("aggregation: preserve Dirichlet points", false);  // level made from the finest
+  list.set("rap: fix zero diagonals", true);  // an aggregate of one node has fewer unknowns than modes
   list.set("smoother: type", "CHEBYSHEV");
   list.sublist("smoother: params")
       .set("chebyshev: degree", 4)
       .set("chebyshev: ratio eigenvalue", 15.0)
       .set("chebyshev: eigenvalue max iterations", 20);
-  if (n_ranks > 1 && !has_places) list.set("coarse: type", "RELAXATION");  // on the ranks that have it
+  if (n_ranks > 1 && !has_places) list.set("coarse: type", "RELAXATION");  // on the ranks of the level
   if (n_ranks > 1 && has_places) {
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
@@ -55,12 +57,12 @@ ParameterList multigrid_defaults(int n_components, int n_ranks, bool has_places)
   return list;
 }
 
-/// Whether MueLu makes this smoother itself, from more than parameters.
+/// Returns whether MueLu makes this smoother itself, with more data than parameters.
 bool is_of_muelu(const std::string& type) {
   return type.rfind("LINESMOOTHING", 0) == 0 || type == "TOPOLOGICAL" || type == "AGGREGATE" || type == "HIPTMAIR";
 }
 
-/// The parameters of a smoother, or of a coarse level's solver, of this type.
+/// Checks the parameters of a smoother, or of the solver of a coarse level, of this type.
 void check_smoother(const std::string& place, const std::string& type, const ParameterList& given,
                     const RCP<const Comm>& comm) {
   static const std::vector<std::string> of_muelu = {
@@ -84,7 +86,7 @@ void check_coarse_type(const std::string& place, const ParameterList& given) {
         fmt::format("{} > \"coarse: type\": is \"{}\", which neither Amesos2 nor Ifpack2 has here", place, type));
 }
 
-/// The list that a scene gives, or its section of one level. `whole` has the types that it does not give.
+/// Checks the list of a scene, or its section for one level. `whole` contains the types that it omits.
 void check_lists(const std::string& place, const ParameterList& given, const ParameterList& whole,
                  const RCP<const Comm>& comm) {
   check_names(place, given, {*MueLu::MasterList::List()});
@@ -120,9 +122,8 @@ void check(const std::string& place, const ParameterList& given, const Parameter
   }
 }
 
-/// Raises the diagonal of a matrix a little while it lives, and leaves its bits as they were: parts that float, in the
-/// bulk alone or where contact is open, would make the coarse matrix singular, and its direct solver fail on the one
-/// rank that has it.
+/// Raises the diagonal of a matrix slightly during its lifetime, and then restores it bitwise. Floating parts, in the
+/// bulk or at open contact, would make the coarse matrix singular. The direct solver would then fail on its one rank.
 class RaisedDiagonal {
  public:
   explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(base::n_local_rows(matrix)) {
@@ -153,7 +154,7 @@ class RaisedDiagonal {
   std::vector<Real> values_;
 };
 
-/// Another operator, which takes no notice of alpha and beta, and minds them.
+/// Adds support of alpha and beta to an operator that ignores them.
 class Scaled : public Operator {
  public:
   explicit Scaled(RCP<const Operator> A) : A_(std::move(A)) {}
@@ -170,10 +171,11 @@ class Scaled : public Operator {
   RCP<const Operator> A_;
 };
 
-/// Of one block: on its coordinates and near null space, aggregated by its bulk. Of others: on the numbers alone.
+/// Multigrid of MueLu. One block: with its coordinates and near-null space, aggregated by its bulk. Several blocks: by
+/// the matrix only.
 class MueLuMultigrid : public Preconditioner {
  public:
-  /// `given`: some of the parameters are a scene's.
+  /// `given`: the scene contains some of the parameters.
   MueLuMultigrid(const std::string& block, const ParameterList& parameters, bool given)
       : Preconditioner("multigrid", block), parameters_(parameters), given_(given) {}
 
@@ -190,10 +192,10 @@ class MueLuMultigrid : public Preconditioner {
 
   void prepare(const LinearSystem& system, SolverCost& cost) override {
     matrix_.update(system);
-    const auto matrix = matrix_.crs();  // which only RaisedDiagonal changes
+    const auto matrix = matrix_.crs();  // changed by RaisedDiagonal only
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
-    // of what a flow carries the values decide which unknowns are strongly coupled, those of an earlier flow do not
+    // with advection, strong couplings depend on the values, and those of an earlier flow are useless
     const bool anew =
         hierarchy_.is_null() || (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
     if (anew) {
@@ -212,8 +214,8 @@ class MueLuMultigrid : public Preconditioner {
   }
   RCP<const Operator> made() const override { return rcp(new Scaled(hierarchy_)); }
 
-  /// Aggregates by the graph of the bulk, where no edge crosses an interface. Where the matrix is not symmetric the
-  /// restriction is smoothed with its transpose.
+  /// Creates the hierarchy. Aggregates follow the graph of the bulk, which has no edge across interfaces. For
+  /// nonsymmetric matrices, the restriction is smoothed with the transposed matrix.
   void create(const LinearSystem& system, const RCP<CrsMatrix>& bulk) {
     const RaisedDiagonal raised(*bulk);
     ParameterList list(parameters_);
@@ -245,9 +247,9 @@ std::unique_ptr<Preconditioner> make_muelu(const ParameterList& given, const std
   auto list =
       multigrid_defaults(blocks.size() == 1 ? first.n_components : 1, first.map->getComm()->getSize(), has_places);
   if (first.advected) {
-    list.set("smoother: type", "ILUT");  // Chebyshev's polynomials grow where advection dominates
-    // Sums over aggregates of an M-matrix are one; with smoothed prolongators coarse matrices of a strong flow are not,
-    // and cycles may grow without bound.
+    list.set("smoother: type", "ILUT");  // Chebyshev polynomials grow if advection dominates
+    // Aggregate sums of an M-matrix form an M-matrix. Coarse matrices with smoothed prolongators of a strong flow do
+    // not, and cycles may diverge.
     list.set("multigrid algorithm", "unsmoothed");
   }
   if (first.advected || given.isParameter("smoother: type")) list.remove("smoother: params");

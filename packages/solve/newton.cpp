@@ -20,10 +20,10 @@ namespace {
 
 using NOX::StatusTest::StatusType;
 
-constexpr int most_lagged = 60;  // steps while coefficients of fluxes lag
+constexpr int most_lagged = 60;  // steps with lagged coefficients
 
-/// Converged when every measure of the problem is at or below the tolerance; failed when a measure or the residual is
-/// not finite, without progress, or out of iterations. Keeps the history and the reason.
+/// Convergence test. Converged: all measures are at most the tolerance. Failed: a measure or the residual is not
+/// finite, no progress, too many iterations, or stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const SearchReport& search,
@@ -89,7 +89,7 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   list->sublist("Direction").set("Method", "Newton");
   auto& newton = list->sublist("Direction").sublist("Newton");
   newton.set("Forcing Term Method", "Constant");
-  newton.set("Rescue Bad Newton Solve", true);  // the line search refuses it, and says why
+  newton.set("Rescue Bad Newton Solve", true);  // the line search rejects it and reports the reason
   newton.sublist("Linear Solver").set("Tolerance", options.linear_solver.tolerance);
   auto& search = list->sublist("Line Search");
   search.set("Method", "User Defined");
@@ -99,12 +99,12 @@ RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockPr
   auto& printing = list->sublist("Printing");
   printing.set("Output Information", options.print ? shown : 0);
   printing.set("MyPID", problem.comm()->getRank());
-  printing.set("Output Processor", options.print ? 0 : -1);  // NOX would say that a line search failed in any case
+  printing.set("Output Processor", options.print ? 0 : -1);  // NOX would print failed line searches in any case
   list->setParameters(options.nox);
   return list;
 }
 
-/// Reports entries of NOX that ask for another method than Newton's, and what is no section but must be.
+/// Reports NOX entries for methods other than Newton's, and entries that should be sections.
 void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
   const auto check = [&](const Teuchos::ParameterList& list, const std::string& place, const char* name,
                          const char* allowed) {
@@ -124,7 +124,7 @@ void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
 
 constexpr char nox_place[] = "Sprekk > Solver > NOX";
 
-/// What NOX says of its parameters, on one line and without the place in its sources.
+/// Returns an Error with the message of NOX on one line, without source locations.
 Error refused(const std::string& text) {
   std::istringstream lines(text);
   std::string words;
@@ -134,8 +134,8 @@ Error refused(const std::string& text) {
   return Error(std::string(nox_place) + ": NOX does not take these parameters:" + words);
 }
 
-/// NOX keeps no list of its parameters, but it leaves a mark on those that it has read. Throws an Error that names an
-/// entry of `given` that it has not; of what NOX reads when it solves it knows that only `after` a solve.
+/// Throws an Error with an entry of `given` that NOX has not read. NOX has no list of its parameters, but marks those
+/// it has read. Parameters read during a solve can be checked only `after` a solve.
 void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path,
                    bool after) {
   for (const auto& item : given) {
@@ -151,7 +151,7 @@ void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::Parameter
   }
 }
 
-/// NOX throws plain text, too.
+/// Solves, and converts exceptions of NOX, including plain text, to an Error.
 StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::Group>& group,
                     const RCP<NOX::StatusTest::Generic>& test, const RCP<Teuchos::ParameterList>& parameters,
                     const Teuchos::ParameterList& given) {
@@ -184,14 +184,14 @@ void NewtonOptions::describe(base::Section& section) {
 
 namespace {
 
-/// Linear solves stop with Newton's method, and only within it.
+/// Returns options with which linear solves stop if, and only if, Newton's method is active.
 LinearSolverOptions stopping(LinearSolverOptions options, const std::function<bool()>& should_stop,
                              const bool& solving) {
   if (should_stop) options.should_stop = [&solving, should_stop] { return solving && should_stop(); };
   return options;
 }
 
-/// Sets a flag until it is destroyed.
+/// Sets a flag during its lifetime.
 struct While {
   explicit While(bool& flag) : flag(flag) { flag = true; }
   ~While() { flag = false; }
@@ -213,7 +213,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
   model_->start(options_.tolerance);
   problem_.globalisation().damp(0, {});
-  // NOX holds references by RCP; the model outlives the solver here
+  // NOX requires an RCP; the model outlives the solver
   const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
   const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
   SearchReport search;
@@ -238,7 +238,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   if (report.iterations > 0) {
     const bool damped = base::on_any_rank(*problem_.comm(), search.damped);
     factors_ = damped ? Factors::damped : Factors::good;
-    if (report.converged && damped) {  // now, for after a commit faces that slid would stick
+    if (report.converged && damped) {  // before the commit, after which sliding faces would stick
       problem_.globalisation().damp(0, {});
       problem_.jacobian(x);
       factors_ = Factors::old;

@@ -1,4 +1,4 @@
-// Newton's method on a BlockProblem, driven by NOX.
+// Newton's method for a BlockProblem, by NOX.
 #pragma once
 
 #include <functional>
@@ -19,12 +19,13 @@ class CondensedSolve;
 class ThyraModel;
 
 struct NewtonOptions {
-  Real tolerance = 1e-11;  ///< of every measure of the problem
+  Real tolerance = 1e-11;  ///< for each measure of the problem
   int max_iterations = 30;
-  bool print = false;  ///< let NOX report every iteration
+  bool print = false;  ///< NOX prints every iteration
   LinearSolverOptions linear_solver;
-  Teuchos::ParameterList nox;  ///< over the defaults
-  /// No entry. If it is not empty: asked on every rank in every iteration; true on any ends the solve.
+  Teuchos::ParameterList nox;  ///< overrides the defaults
+  /// Stop request; not an entry of scenes. If set, it is called on all ranks in each iteration. True on any rank ends
+  /// the solve.
   std::function<bool()> should_stop;
 
   void describe(base::Section& section);
@@ -32,31 +33,31 @@ struct NewtonOptions {
 
 struct NewtonReport {
   bool converged = false;
-  bool stopped = false;                       ///< should_stop said so
-  int iterations = 0;                         ///< linear solves: Newton steps, those that damping took anew included
-  std::vector<LinearReport> linear_solves;    ///< one for each iteration
-  std::string reason;                         ///< of a failure
-  std::string loose;                          ///< what nothing held in an iterate, in words, the last such
-  std::vector<char> unsettled;                ///< [as Globalisation::states()] changed in the last five iterates
+  bool stopped = false;                       ///< stopped by should_stop
+  int iterations = 0;                         ///< linear solves: Newton steps, including repetitions with damping
+  std::vector<LinearReport> linear_solves;    ///< one per iteration
+  std::string reason;                         ///< reason of a failure
+  std::string loose;                          ///< floating bodies in the last iterate that had some, as text
+  std::vector<char> unsettled;                ///< [as Globalisation::states()] state changed in the last five iterates
   std::vector<Measure> measures;              ///< at the end
-  std::vector<std::vector<Measure>> history;  ///< [iteration, from 0 for the start]
+  std::vector<std::vector<Measure>> history;  ///< [iteration, 0: start]
 };
 
-/// Keeps factors or the hierarchy from one solve to the next. Refers to the problem.
+/// Newton's method. Saves factors or the hierarchy from solve to solve. Refers to the problem.
 class Newton {
  public:
   Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Timers> timers = rcp(new base::Timers));
   ~Newton();
 
-  /// Solves f(x) = 0 from x: full first step; after that backtracking that lets the merit rise above the last but not
-  /// above the worst of three iterates; where that finds nothing, steps with damping. A failure is reported, and x is
-  /// the last iterate then; Errors of the problem's own evaluations pass through. Collective; the same report on every
-  /// rank.
+  /// Solves f(x) = 0, starting from x. The first step is full. Later steps use a non-monotone line search: the merit
+  /// may exceed the last one, but not the largest of three iterates. If this fails, steps are damped. Failures are
+  /// reported; x is then the last iterate. Errors in evaluations of the problem pass through. Collective; the report is
+  /// the same on all ranks.
   NewtonReport solve(BlockVector& x);
 
-  /// dx <- A^-1 b, [block], with the last Jacobian that was solved with: how x answers to small forces b. If that was
-  /// damped, with the one where the solve converged, or at x if it did not; if there was none, with that at x. Rows of
-  /// constrained unknowns are dx_i = b_i. Collective.
+  /// Computes dx = A^-1 b, [block], the linear response of x to small forces b. Rows of constrained unknowns are dx_i =
+  /// b_i. A is the last Jacobian of a linear solve. If that was damped, A is the Jacobian at convergence, or at x after
+  /// a failure. If there was none, A is the Jacobian at x. Collective.
   LinearReport answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   const CondensedSolve& linear() const { return *linear_; }
@@ -64,10 +65,10 @@ class Newton {
  private:
   BlockProblem& problem_;
   NewtonOptions options_;
-  bool solving_ = false;  // where a linear solve may be stopped
+  bool solving_ = false;  // linear solves may be stopped
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ThyraModel> model_;
-  /// What answer() finds: the last Jacobian, an older one than the matrix holds, one with damping.
+  /// Factors for answer(): of the last Jacobian, older than the matrix, or damped.
   enum class Factors { good, old, damped } factors_ = Factors::good;
 };
 

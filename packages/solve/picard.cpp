@@ -7,9 +7,9 @@ namespace {
 
 using Lag = BlockProblem::Lag;
 
-constexpr Real far = 1;        // |ln| of the ratio of coefficients
-constexpr Real closer = 0.3;   // where Newton's method failed, it is tried next at this part of the distance
-constexpr Real little = 0.05;  // of near_, reached after three failures of Newton's method
+constexpr Real far = 1;        // limit for |ln| of the ratio of coefficients
+constexpr Real closer = 0.3;   // factor of the distance after a failure of Newton's method
+constexpr Real little = 0.05;  // for near_, reached after three failures of Newton's method
 constexpr Real least_step = 0.25, most_growth = 1e3;
 
 }  // namespace

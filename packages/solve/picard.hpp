@@ -1,4 +1,4 @@
-// Fixed-point iteration on coefficients of fluxes, on the way to where Newton's method converges.
+// Fixed-point iteration on flux coefficients, before Newton's method.
 #pragma once
 
 #include "fields/block_problem.hpp"
@@ -8,40 +8,43 @@ namespace sprekk::solve {
 using fields::BlockProblem;
 using fields::BlockVector;
 
-/// Newton's method linearises a coefficient that grows with a high power of an unknown where that is small. What enters
-/// in a step then stays in one place, where the unknown grows far too large, in the next iterate in its neighbours, and
-/// so on; and a search for less residual forbids the way, on which residuals rise by orders of magnitude. So f first
-/// takes coefficients as given, see BlockProblem::lag(), and one full Newton step is made for each new set of them. If
-/// the first step goes far, it is taken back, and coefficients start from the largest: where they are convex, iterates
-/// that come from above do not pass over the solution. Once they agree, Newton's method takes over; a step of it that
-/// comes no nearer is taken back, and the fixed-point iteration goes on, to three tenths of the distance. All members
-/// are collective but for those that return what is stored.
+/// Picard iteration for coefficients that grow with a high power of an unknown. Newton's method linearises such
+/// coefficients where the unknown is small. Injected quantities would remain in one place, where the unknown grows far
+/// too large, and reach the neighbours only in the next iterates. A line search rejects this path, since residuals rise
+/// by orders of magnitude.
+/// - f first uses fixed coefficients, see BlockProblem::lag(). One full Newton step is made per set of coefficients.
+/// - If the first step changes the coefficients strongly, it is rejected, and the iteration starts from the largest
+///   coefficients. As these are convex functions, iterates from above do not pass over the solution.
+/// - When coefficients agree, Newton's method takes over. If one of its steps fails, it is rejected, and the
+///   fixed-point iteration continues to 0.3 times the distance.
+/// All members are collective except those that return stored data.
 class Picard {
  public:
-  /// Refers to the problem, whose f lags from now on, at x, if it has such coefficients, until the end of its life.
+  /// Starts the iteration at x. If f has such coefficients, they lag until this object is destroyed. Refers to the
+  /// problem.
   Picard(BlockProblem& problem, const BlockVector& x);
   ~Picard() { problem_.lag(BlockProblem::Lag::none, {}); }
   Picard(const Picard&) = delete;
   Picard& operator=(const Picard&) = delete;
 
   bool possible() const { return possible_; }  ///< f has such coefficients
-  bool lags() const { return lags_; }          ///< they are not those of x: its zeros are not those of f
-  bool fresh() const { return fresh_; }        ///< no step was made since it began or was resumed
-  bool agrees() const;                         ///< coefficients differed by little when Newton's method last took over
-  int n_steps() const { return n_; }           ///< while it lagged
+  bool lags() const { return lags_; }          ///< coefficients are fixed: zeros of the lagged f are not those of f
+  bool fresh() const { return fresh_; }        ///< no step since the start or resume()
+  bool agrees() const;                         ///< coefficients agreed closely when Newton's method last took over
+  int n_steps() const { return n_; }           ///< number of steps with fixed coefficients
 
-  /// After a full step of the f that lags, to x. True if the step is to be taken back.
+  /// Updates the coefficients after a full step of the lagged f to x. Returns whether the step is rejected.
   bool follow(const BlockVector& x);
-  /// Instead of follow(), while the lagged problem is not yet solved: the coefficients are frozen.
+  /// Replaces follow() while the lagged problem is not solved: the coefficients remain frozen.
   void hold() { ++n_; }
-  /// After a step of f itself from `from`, of which the search took the part `step`. True if it is to be taken back: f
-  /// lags again.
+  /// Checks a step of f itself from `from` with the step length `step`. Returns whether it is rejected; f then lags
+  /// again.
   bool resume(const BlockVector& from, Real step, Real merit, Real merit_before);
 
  private:
   BlockProblem& problem_;
   bool possible_, lags_;
-  Real near_ = 1;  // |ln| of the ratio of coefficients
+  Real near_ = 1;  // limit for |ln| of the ratio of coefficients
   int n_ = 0;
   bool fresh_ = true;
 };

@@ -21,11 +21,10 @@ using fields::Operator;
 using multigrid::Multigrid;
 using Teuchos::ParameterList;
 
-/// The least degree of Chebyshev's polynomial where enriching functions are smoothed with the others.
+/// Smallest Chebyshev degree if enriching functions are smoothed as well.
 constexpr int degree_with_enrichment = 6;
 
-/// Multigrid on nodes: those of a block, and of blocks that enrich it, which take part in smoothing on the finest
-/// level.
+/// Multigrid on the nodes of a block. Blocks that enrich it take part in smoothing on the finest level.
 class NodeMultigrid : public Preconditioner {
  public:
   NodeMultigrid(const multigrid::Options& options, const std::vector<Block>& blocks)
@@ -79,8 +78,8 @@ class NodeMultigrid : public Preconditioner {
     multigrid_ = rcp(new Multigrid(matrix_.matrix(), std::move(nodes), n, modes, options_));
   }
 
-  /// What conducted well does so no more, or the other way, in more than a thousandth of the couplings: nodes are to be
-  /// grouped anew. Collective.
+  /// Returns whether more than a thousandth of the couplings changed between strong and weak. Nodes must then be
+  /// grouped again. Collective.
   bool has_other_couplings(const LinearSystem& system) const {
     constexpr GlobalIndex few = 1000;
     const auto& comm = *system.joined->map()->getComm();
@@ -95,7 +94,7 @@ class NodeMultigrid : public Preconditioner {
     return few * all[0] > all[1];
   }
 
-  /// Calls use(matrix) of the nodes that are grouped.
+  /// Calls use(matrix) with the matrix that determines the groups of nodes.
   template <class Use>
   static void look(const LinearSystem& system, const Use& use) {
     const auto& first = system.diagonal.front();
@@ -106,13 +105,13 @@ class NodeMultigrid : public Preconditioner {
   }
 
   multigrid::Options options_;
-  std::vector<std::string> enriching_;  // blocks
+  std::vector<std::string> enriching_;  // names of the enriching blocks
   WholeMatrix matrix_;
   RCP<Multigrid> multigrid_;
-  std::vector<bool> weak_;  // couplings, when nodes were grouped; empty: these do not depend on it
+  std::vector<bool> weak_;  // weak couplings when nodes were grouped; empty: not relevant
 };
 
-/// Factors of the matrix of a group.
+/// Preconditioner with the factors of the matrix of a group.
 class Direct : public Preconditioner {
  public:
   explicit Direct(const std::string& block) : Preconditioner("direct solver", block) {}
@@ -147,7 +146,7 @@ int place_of(const std::string& name, const std::vector<Block>& blocks) {
   return found == blocks.end() ? -1 : static_cast<int>(found - blocks.begin());
 }
 
-/// The block that the group of this one begins with.
+/// Returns the first block of the group of this block. Throws an Error for unknown names and cycles.
 int first_of_group(const PreconditionerOptions& options, const std::vector<Block>& blocks, int member) {
   int block = member;
   for (std::size_t steps = 0; steps <= blocks.size(); ++steps) {
@@ -162,7 +161,7 @@ int first_of_group(const PreconditionerOptions& options, const std::vector<Block
   fail(blocks[member].name, "with", "leads in a circle");
 }
 
-/// [group][member] blocks, the first members first.
+/// Returns the blocks of each group, [group][member], first members first. Throws an Error for invalid options.
 std::vector<std::vector<int>> groups_of(const PreconditionerOptions& options, const std::vector<Block>& blocks) {
   for (const auto& [name, of_block] : options.blocks)
     SPREKK_CHECK(place_of(name, blocks) >= 0,
@@ -187,7 +186,7 @@ std::vector<std::vector<int>> groups_of(const PreconditionerOptions& options, co
   return groups;
 }
 
-/// Groups in the order of the sweep.
+/// Returns the groups in the order of the sweep. Throws an Error for an invalid order.
 std::vector<std::vector<int>> in_order(const SweepOptions& options, const std::vector<Block>& blocks,
                                        const std::vector<std::vector<int>>& groups) {
   if (options.order.empty()) return groups;
@@ -203,12 +202,12 @@ std::vector<std::vector<int>> in_order(const SweepOptions& options, const std::v
   return ordered;
 }
 
-/// What is condensed into a block of a kind that multigrid knows.
+/// Returns whether the second of two blocks is condensed into the first, which multigrid can solve.
 bool is_condensed_pair(const std::vector<Block>& blocks) {
   return blocks.size() == 2 && blocks[1].condensed_into == blocks[0].name && !blocks[0].coordinates.is_null();
 }
 
-/// Whether all blocks but the first enrich it, in nodes of its size.
+/// Returns whether all blocks except the first enrich it and have nodes of its size.
 bool enrich_first(const std::vector<Block>& blocks) {
   return std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) {
     return block.enriches == blocks.front().name && block.n_components == blocks.front().n_components;
@@ -249,7 +248,7 @@ void Preconditioner::setup(const LinearSystem& system, bool keeps) {
     timed(cost_->setup_seconds, [&] { base::collectively(*system.joined->map()->getComm(), work); });
   } catch (const Error& error) {
     const std::string text = error.what(), mine = "preconditioner of block '";
-    if (dynamic_cast<const RefusedList*>(&error) || text.rfind(mine, 0) == 0) throw;  // of a part
+    if (dynamic_cast<const RefusedList*>(&error) || text.rfind(mine, 0) == 0) throw;  // from a part
     if (!given_list().empty())
       throw RefusedList(
           fmt::format("Sprekk > Solver > Blocks > {} > {}: the library cannot be set up with these "
@@ -324,7 +323,7 @@ void add_to_diagonal(CrsMatrix& A, const Vector& added) {
         local.values(k) += values(row, 0);
 }
 
-/// The last paragraph of an exception's text: what went wrong, without the place in the library.
+/// Returns the last paragraph of an exception's text: the cause, without source location.
 std::string gist(const std::string& text) {
   const auto end = text.find_last_not_of('\n') + 1, gap = text.rfind("\n\n", end - 1), first = text.find("\n\n");
   if (gap == std::string::npos) return text.substr(0, end);

@@ -1,4 +1,4 @@
-// How blocks are preconditioned, as a scene says it.
+// Options of preconditioners, as entries of scenes.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -19,32 +19,32 @@ struct MultigridOptions : multigrid::Options {
   void describe(base::Section& section);
 };
 
-/// Of one block, or of the group that begins with it. The lists are handed to the libraries untouched, over the
-/// defaults.
+/// Options of one block, or of the group that begins with it. The lists are passed to the libraries unchanged, on top
+/// of the defaults.
 struct BlockOptions {
   std::string type = "auto";  ///< auto | multigrid | MueLu | Ifpack2 | Gauss-Seidel | direct
-  std::string with;           ///< the block of whose group this one is a part; empty: as the fields ask for
-  std::optional<MultigridOptions> multigrid;  ///< of Sprekk's own; absent: the defaults
+  std::string with;           ///< block whose group includes this block; empty: as declared by the fields
+  std::optional<MultigridOptions> multigrid;  ///< of Sprekk's multigrid; absent: the defaults
   Teuchos::ParameterList muelu{"MueLu"}, ifpack2{"Ifpack2"};
 
   void describe(base::Section& section);
 };
 
-/// How the groups of blocks are gone through, with their approximate inverses B_f and x the residual.
+/// Options of the sweep over groups with approximate inverses B_f. x is the residual.
 struct SweepOptions {
-  /// diagonal: y_f = B_f x_f;  forward: y_f = B_f (x - A (y_1 + ... + y_(f-1)))_f;  symmetric: forward, then the same
-  /// backward for what is left of x.
+  /// diagonal: y_f = B_f x_f;  forward: y_f = B_f (x - A (y_1 + ... + y_(f-1)))_f;  symmetric: forward, then backward
+  /// on the remaining residual.
   std::string type = "forward";
-  std::vector<std::string> order;  ///< the first blocks of all groups; empty: as the fields come
+  std::vector<std::string> order;  ///< first blocks of all groups; empty: in the order of the fields
 
   void describe(base::Section& section);
 };
 
 struct PreconditionerOptions {
-  std::map<std::string, BlockOptions> blocks;  ///< by their names
+  std::map<std::string, BlockOptions> blocks;  ///< by name
   SweepOptions sweep;
 
-  /// What is said of a block, or of no block.
+  /// Returns the options of a block, or the defaults.
   const BlockOptions& of(const std::string& block) const;
 };
 

@@ -1,4 +1,4 @@
-// LU factors of the small dense matrices of single entities. Device-callable.
+// LU factors of small dense matrices of single entities; device code.
 #pragma once
 
 #include <cfloat>
@@ -16,9 +16,9 @@ KOKKOS_INLINE_FUNCTION void exchange(Real& x, Real& y) {
   y = kept;
 }
 
-/// Replaces a [m, m] (row by row) by its LU factors. Rows are exchanged as if the matrix had been equilibrated: columns
-/// by column_scale, rows to a largest entry of 1; the entries themselves are not scaled. False if a pivot cannot be
-/// told from the rounding errors of its own terms, or is not finite.
+/// Replaces a [m, m] (row by row) by its LU factors. Rows are exchanged as for an equilibrated matrix: columns scaled
+/// by column_scale, rows to a largest entry of 1. The entries themselves are not scaled. Returns false if a pivot is
+/// below the round-off of its terms or not finite.
 KOKKOS_INLINE_FUNCTION bool lu_factor(int m, Real* a, int* pivot, const Real* column_scale) {
   Real weight[max_small_size], magnitude[max_small_size * max_small_size];
   for (int i = 0; i < m; ++i) {
@@ -56,7 +56,7 @@ KOKKOS_INLINE_FUNCTION bool lu_factor(int m, Real* a, int* pivot, const Real* co
   return true;
 }
 
-/// b <- A^-1 b for n columns. [m, n]
+/// Computes b = A^-1 b for n columns. [m, n]
 KOKKOS_INLINE_FUNCTION void lu_solve(int m, const Real* lu, const int* pivot, Real* b, int n = 1) {
   const auto subtract = [=](int i, int j) {
     if (lu[i * m + j] == 0) return;
@@ -72,8 +72,8 @@ KOKKOS_INLINE_FUNCTION void lu_solve(int m, const Real* lu, const int* pivot, Re
   }
 }
 
-/// b <- A^-1 b with one step of iterative refinement, which makes every component of the answer accurate, however small
-/// beside the others.
+/// Computes b = A^-1 b with one step of iterative refinement. Each component is then accurate, even if much smaller
+/// than the others.
 KOKKOS_INLINE_FUNCTION void lu_solve_refined(int m, const Real* a, const Real* lu, const int* pivot, Real* b) {
   Real x[max_small_size];
   for (int i = 0; i < m; ++i) x[i] = b[i];

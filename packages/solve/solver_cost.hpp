@@ -1,4 +1,4 @@
-// What approximate inverses cost: set-ups, applications, memory.
+// Costs of approximate inverses: set-ups, applications, memory.
 #pragma once
 
 #include <chrono>
@@ -10,21 +10,21 @@
 
 namespace sprekk::solve {
 
-/// Of one approximate inverse since the start of the run; times and memory are those of this rank.
+/// Costs of one approximate inverse since the start of the run. Times and memory are those of this rank.
 struct SolverCost {
   std::string name;
   int n_setups = 0;
   long long n_applications = 0;
   double setup_seconds = 0, application_seconds = 0;
-  double operator_complexity = 0;  ///< entries of the matrices of all levels over those of the finest; 0: not multigrid
-  double bytes = 0;                ///< that it stores on this rank
-  double cycle_bytes = 0;          ///< of matrices that an application reads on this rank; 0: not known
-  std::vector<GlobalIndex> n_unknowns;     ///< [level] of all ranks; empty: not known, as the following
-  std::vector<int> n_ranks;                ///< [level] that have some of them
-  double messages = 0, message_bytes = 0;  ///< that this rank receives in an application
+  double operator_complexity = 0;          ///< matrix entries of all levels, relative to the finest; 0: not multigrid
+  double bytes = 0;                        ///< stored on this rank, bytes
+  double cycle_bytes = 0;                  ///< matrices read by an application on this rank, bytes; 0: unknown
+  std::vector<GlobalIndex> n_unknowns;     ///< [level] over all ranks; empty: unknown, also below
+  std::vector<int> n_ranks;                ///< [level] number of ranks with unknowns
+  double messages = 0, message_bytes = 0;  ///< received by this rank in an application
 };
 
-/// Adds the time that work() takes to `seconds`.
+/// Adds the time of work(), s, to `seconds`.
 template <class Work>
 void timed(double& seconds, const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -32,7 +32,7 @@ void timed(double& seconds, const Work& work) {
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Another operator, with its applications counted and timed in a cost.
+/// Operator that counts and times the applications of another one.
 class CountedOperator : public fields::Operator {
  public:
   CountedOperator(RCP<const fields::Operator> counted, std::shared_ptr<SolverCost> cost)

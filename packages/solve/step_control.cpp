@@ -7,10 +7,10 @@ namespace sprekk::solve {
 
 namespace {
 
-constexpr Real aim = 0.8;                              // of the tolerance
-constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // of what is rejected
-constexpr Real shorter = 0.9;                          // of a rejected step, that the next attempt must be below
-constexpr Real same = 1e-12;                           // of times that differ by rounding
+constexpr Real aim = 0.8;                              // relative to the tolerance
+constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // relative to the rejected length
+constexpr Real shorter = 0.9;                          // largest length after a rejection, relative to the rejected one
+constexpr Real same = 1e-12;                           // relative round-off of times
 
 }  // namespace
 
@@ -24,7 +24,7 @@ Real StepControl::bounded(Real dt) const { return std::clamp(dt, options_.smalle
 
 Real StepControl::end_of_step(Real t) const {
   const Real stop = *next_stop(t), rest = stop - t;
-  constexpr Real slightly = 1.05;  // longer is better than one step more
+  constexpr Real slightly = 1.05;  // a slightly longer step is better than an additional one
   if (rest <= slightly * memory_.length) return stop;
   return t + (rest < 2 * memory_.length ? rest / 2 : memory_.length);
 }
@@ -61,7 +61,7 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
   return Verdict::accepted;
 }
 
-/// Where steps a tenth as long take about as many, the length stays.
+/// Returns the factor suggested by the iterations; 1 if steps a tenth as long need about as many.
 Real StepControl::factor_by_iterations(Real dt, int n) {
   constexpr Real easier = 0.5, harder = 2, much_shorter = 0.1;
   const Real factor = std::sqrt(static_cast<Real>(*options_.iterations) / std::max(1, n));

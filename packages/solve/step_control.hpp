@@ -1,4 +1,4 @@
-// How long time steps are, from what the last ones erred in and how hard they were to solve.
+// Length of time steps, from the errors and iterations of the last steps.
 #pragma once
 
 #include "fields/step_error.hpp"
@@ -9,18 +9,20 @@
 namespace sprekk::solve {
 
 struct StepControlOptions {
-  std::optional<Real> tolerance;  ///< of relative errors
-  std::optional<int> iterations;  ///< of Newton's method, that a step is to take
+  std::optional<Real> tolerance;  ///< for relative errors
+  std::optional<int> iterations;  ///< required number of Newton iterations per step
   Real first = 1, smallest = 0, largest = 1;
   Real most_growth = 3;
 };
 
-/// Errors e of order p suggest the length dt (aim tolerance/e)^(1/p), the least of all of them; n Newton iterations
-/// suggest dt (wanted/n)^(1/2), but no shorter one where a tenth of the length has not saved any; where an error is
-/// unknown a step is no longer than the one before. Steps with an error above the tolerance are to be rejected, unless
-/// no shorter one is allowed, or one was tried and is hardly better (loads that jump at a time do so in steps of any
-/// length), or `most_rejections` were in a row. The attempt after a rejected one is at most 0.9 times as long. Stops,
-/// increasing, are met; the last two steps before one are equal, so that none is tiny.
+/// Selection of step lengths. An error e of order p suggests the length dt (aim tolerance/e)^(1/p); the smallest
+/// counts. n Newton iterations suggest dt (wanted/n)^(1/2). The length is not reduced further if a tenth of it has not
+/// saved iterations. If an error is unknown, a step is at most as long as the previous one.
+/// - Steps with an error above the tolerance are rejected. Exceptions: the minimum length, `most_rejections` in
+///   succession, or a rejected longer step that was only slightly less accurate (loads that jump do so in steps of any
+///   length).
+/// - After a rejection, the next attempt has at most half the length, or the minimum length.
+/// - Steps end at the stops, which must increase. The last two steps before a stop are equal, so that none is tiny.
 class StepControl {
  public:
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
@@ -28,26 +30,27 @@ class StepControl {
 
   static constexpr int most_rejections = 30;
 
-  /// The end of the next step, from t.
+  /// Returns the end of the next step from t.
   Real end_of_step(Real t) const;
   enum class Verdict {
     accepted,
-    rejected,  ///< a shorter one is to be tried
-    jumped,    ///< accepted, for a shorter step does not help
-    limited    ///< accepted: no shorter step is allowed, or `most_rejections` were in a row
+    rejected,  ///< try a shorter step
+    jumped,    ///< accepted, since a shorter step does not help
+    limited    ///< accepted: minimum length, or `most_rejections` in succession
   };
-  /// Of a step of length dt, and sets the length of the next one.
+  /// Judges a step of length dt and sets the length of the next step.
   Verdict judge(Real dt, const fields::StepErrors& errors, int newton_iterations);
-  /// Loads within a step of length dt are not straight, with this error: the next attempt is shorter.
+  /// Shortens the next attempt after a step of length dt with nonlinear loads. bend: relative deviation from a linear
+  /// path.
   void shorten(Real dt, Real bend);
-  /// Loads turn at the present time t: the next step is short.
+  /// Makes the next step short, because loads change their course at the present time t.
   void be_careful(Real t);
 
-  /// What goes on after a restart, to any bit.
+  /// Data for a bitwise equal restart.
   struct Memory {
-    Real length;                ///< that the next step is to have
-    Real judged = 0;            ///< the longest step of the last that took about as many iterations
-    int judged_iterations = 0;  ///< those of it
+    Real length;                ///< length of the next step
+    Real judged = 0;            ///< longest of the last steps with about the same number of iterations
+    int judged_iterations = 0;  ///< iterations of this step
   };
   const Memory& memory() const { return memory_; }
   void resume(const Memory& memory);
@@ -60,9 +63,9 @@ class StepControl {
   StepControlOptions options_;
   std::vector<Real> stops_;
   Memory memory_;
-  Real worst_ = 0;        // error over tolerance of the attempt that was rejected last, in this step; or 0
-  Real rejected_dt_ = 0;  // its length
-  int n_rejected_ = 0;    // attempts in this step
+  Real worst_ = 0;        // error over tolerance of the last rejected attempt of this step; or 0
+  Real rejected_dt_ = 0;  // length of this attempt
+  int n_rejected_ = 0;    // rejected attempts of this step
 };
 
 }  // namespace sprekk::solve

@@ -9,12 +9,12 @@ using fields::Map;
 using fields::MultiVector;
 using fields::Operator;
 
-/// sum += B_f (x - A sum)_f for the groups in turn; of a diagonal sweep, B_f x_f.
+/// Operator sum += B_f (x - A sum)_f for the groups in turn; in diagonal sweeps B_f x_f.
 class SweepOperator : public Operator {
  public:
   struct Part {
     std::vector<int> blocks;
-    RCP<const Operator> inverse;  // B_f; of one block, without its scale
+    RCP<const Operator> inverse;  // B_f; for one block, without its scale
   };
 
   SweepOperator(const LinearSystem& system, const std::string& type, std::vector<Part> parts)
@@ -56,7 +56,7 @@ class SweepOperator : public Operator {
     each(part, [&](int r, LocalIndex first) { to(r)->update(1, *z.offsetView(joined_->map(r), first), 1); });
   }
 
-  /// visit(block, its first place in vectors of the part)
+  /// Calls visit(block, its first position in vectors of the part).
   template <class Visit>
   void each(const Part& part, const Visit& visit) const {
     LocalIndex first = 0;
@@ -90,7 +90,7 @@ Sweep::Sweep(const SweepOptions& options, const std::vector<Block>& blocks, cons
 
 LinearSystem Sweep::part(int group, const LinearSystem& system) const {
   std::vector<Real> scales;
-  // symmetric blocks need not couple so
+  // couplings between symmetric blocks may be nonsymmetric
   const bool alone = groups_[group].size() == 1;
   LinearSystem part{joined_[group], {}, alone || system.symmetric, {}, {}, system.reproducible};
   for (const int r : groups_[group]) {

@@ -1,14 +1,14 @@
-// One sweep over groups of blocks, each with a preconditioner of its own.
+// Sweep over groups of blocks with one preconditioner each.
 #pragma once
 
 #include "solve/preconditioner.hpp"
 
 namespace sprekk::solve {
 
-/// Block Jacobi, block Gauss-Seidel or its symmetric form, as SweepOptions says.
+/// Block Jacobi, block Gauss-Seidel or symmetric block Gauss-Seidel, see SweepOptions.
 class Sweep : public Preconditioner {
  public:
-  /// `groups` [group][member] of blocks, in the order of the sweep; `parts` [group].
+  /// groups: [group][member] block numbers, in the order of the sweep. parts: [group].
   Sweep(const SweepOptions& options, const std::vector<Block>& blocks, const std::vector<std::vector<int>>& groups,
         std::vector<std::unique_ptr<Preconditioner>> parts);
 

@@ -13,7 +13,7 @@ using MultiVectorBase = Thyra::MultiVectorBase<Real>;
 using ProductVector = Thyra::ProductVectorBase<Real>;
 using Extract = Thyra::TpetraOperatorVectorExtraction<Real, LocalIndex, GlobalIndex>;
 
-/// The Jacobian that NOX has evaluated, to multiply and to solve with.
+/// Jacobian evaluated by NOX, for products and solves.
 class JacobianOperator : public Thyra::LinearOpWithSolveBase<Real> {
  public:
   JacobianOperator(ForcedSolve& solve, RCP<const Space> space, RCP<ThyraModel::LinearHistory> history)
@@ -60,7 +60,7 @@ class JacobianOperator : public Thyra::LinearOpWithSolveBase<Real> {
   RCP<ThyraModel::LinearHistory> history_;
 };
 
-/// Makes JacobianOperators, and has them updated when the Jacobian was evaluated.
+/// Factory of JacobianOperators. It updates them after an evaluation of the Jacobian.
 class JacobianFactory : public Thyra::LinearOpWithSolveFactoryBase<Real> {
  public:
   explicit JacobianFactory(RCP<Thyra::LinearOpBase<Real>> jacobian) : jacobian_(std::move(jacobian)) {}

@@ -1,4 +1,4 @@
-// A BlockProblem as Thyra sees it.
+// Adapter of a BlockProblem for Thyra.
 #pragma once
 
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
@@ -7,11 +7,12 @@
 
 namespace sprekk::solve {
 
-/// The Tpetra vectors of a product vector, not copied. The result must not be written to if the argument is const.
+/// Returns the Tpetra vectors of a product vector without copying. Do not write to the result if the argument is const.
 BlockVector blocks_of(const Thyra::VectorBase<Real>& v);
 
-/// f(x) = problem.residual and W = df/dx, over product vectors of all blocks. W's solve is `solve`; its apply is
-/// problem.matrix() with the rows of constrained unknowns replaced by identity. Refers to both arguments.
+/// Model f(x) = problem.residual and W = df/dx, with product vectors of all blocks. `solve` solves with W. The product
+/// with W is that with problem.matrix(), except for rows of constrained unknowns, which are identity. Refers to both
+/// arguments.
 class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
  public:
   using Space = Thyra::VectorSpaceBase<Real>;
@@ -20,19 +21,20 @@ class ThyraModel : public Thyra::StateFuncModelEvaluatorBase<Real> {
 
   ThyraModel(BlockProblem& problem, CondensedSolve& solve);
 
-  /// Before Newton's method, which ends when no measure is above the tolerance.
+  /// Starts Newton's method, which ends when no measure exceeds the tolerance.
   void start(Real tolerance) {
     history_->clear();
     solve_.start(tolerance);
   }
-  /// What linear solves say since then.
+  /// Reports of the linear solves since start().
   using LinearHistory = std::vector<LinearReport>;
   const LinearHistory& linear_history() const { return *history_; }
 
-  /// dx <- -W^-1 f with the Jacobian at x, evaluated anew. False if the solve failed; the history says why.
+  /// Computes dx = -W^-1 f with the Jacobian at x, which is evaluated again. Returns false if the solve failed; the
+  /// history contains the reason.
   bool direction(const BlockVector& x, const BlockVector& f, BlockVector& dx) const;
 
-  /// A product vector that is a copy of x. [block]
+  /// Returns a product vector that is a copy of x. [block]
   RCP<Thyra::VectorBase<Real>> make_vector(const BlockVector& x) const;
 
   RCP<const Space> get_x_space() const override { return space_; }

@@ -40,13 +40,14 @@ NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
   return newton;
 }
 
-/// As if the bodies crept to their places: tethered to where they are, they move to where a tether holds them, are
-/// tethered there, and so on, with weaker tethers as long as Newton follows. At last without: after a weak one, or, if
-/// Newton fails then, after the weakest, for thin layers yield to forces that are much smaller.
+/// Proximal continuation. Springs (tethers) pull the sides of fractures to their present position. Newton's method
+/// finds the state, from which new springs start, with a lower stiffness while Newton's method converges. The last
+/// solve is without springs: after a weak spring or, if that fails, after the weakest. Thin layers yield to much
+/// smaller forces.
 NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
   auto place = fields::create_like(x);
   fields::copy(x, place);
-  const Release release{problem_, x};  // also where an evaluation throws
+  const Release release{problem_, x};  // also if an evaluation throws
   Real stiffness = first_tether, enough = weak_tether;
   for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
     const bool last = stiffness < enough;
@@ -62,8 +63,8 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
   return {};
 }
 
-/// Moves what nothing holds to where it comes to lie, and solves again, mostly without an iteration. A place that turns
-/// out to be none leaves x as it was: joints that differ by less than settle() can tell are one to it.
+/// Moves floating bodies to their minimum-norm position and solves again, mostly without an iteration. If this solve
+/// fails, x is restored: settle() cannot distinguish joints with very small differences.
 NewtonReport TimeStepper::settle(BlockVector& x, NewtonReport newton, int& settlings, StepReport& report) {
   auto found = fields::create_like(x);
   for (settlings = 0; settlings < most_settlings; ++settlings) {
@@ -87,7 +88,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   // in units of the smallest substep, so that substeps end exactly at t_to
   const long long whole = t_to > t ? 1LL << options_.max_halvings : 1;
   const Real t_from = t;
-  std::string loose;  // in the last substep that failed and in which something was
+  std::string loose;  // floating bodies in the last failed substep that had some
   const long long tethered = problem_.stores() ? std::max(1LL, whole >> least_cuts) : whole;
   const auto time = [&](long long at) { return at == whole ? t_to : t_from + (t_to - t_from) * at / whole; };
   long long done = 0, size = whole;
@@ -127,7 +128,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
     report.unsettled = newton.unsettled;
     if (size == 1) {
-      if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // where x is
+      if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // time of x
       if (const auto where = problem_.globalisation().where(report.unsettled); !where.empty())
         report.reason += "; faces that keep changing between open, stick and slip: " + where;
       if (!loose.empty())

@@ -1,4 +1,4 @@
-// From one time to the next, in as many substeps as Newton needs.
+// Time stepping with as many substeps as Newton's method requires.
 #pragma once
 
 #include "solve/newton.hpp"
@@ -6,8 +6,8 @@
 namespace sprekk::solve {
 
 struct TimeSteppingOptions {
-  int max_halvings = 6;  ///< the smallest substep is the step / 2^max_halvings
-  bool tethers = true;   ///< before the first halving, see TimeStepper::relax()
+  int max_halvings = 6;  ///< smallest substep: step / 2^max_halvings
+  bool tethers = true;   ///< proximal continuation before the first halving, see TimeStepper::relax()
 
   void describe(base::Section& section);
 };
@@ -15,28 +15,27 @@ struct TimeSteppingOptions {
 struct StepReport {
   bool converged = false;
   bool stopped = false;                     ///< by NewtonOptions::should_stop
-  Real time = 0;                            ///< that x now belongs to
-  int newton_iterations = 0;                ///< rejected substeps included
+  Real time = 0;                            ///< time of the state x
+  int newton_iterations = 0;                ///< including rejected substeps
   std::vector<LinearReport> linear_solves;  ///< likewise, [Newton iteration]
-  int substeps = 0;                         ///< committed
+  int substeps = 0;                         ///< committed substeps
   int cuts = 0;
-  std::string reason;             ///< of the last failure, if there was one
-  std::vector<char> unsettled;    ///< [as Globalisation::states()] in the last failure, those that found no state
-  std::string loose;              ///< what nothing holds in the state at `time`, in words
+  std::string reason;             ///< of the last failure, if any
+  std::vector<char> unsettled;    ///< [as Globalisation::states()] oscillating states in the last failure
+  std::string loose;              ///< floating bodies in the state at `time`, as text
   std::vector<Measure> measures;  ///< of the last Newton solve
 };
 
-/// Refers to the problem and to Newton.
+/// Time stepper. Refers to the problem and to Newton.
 class TimeStepper {
  public:
   TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
       : problem_(problem), newton_(newton), options_(options) {}
 
-  /// Takes x, the committed state at t, to t_to. Where Newton fails and there is contact the bodies are let go step by
-  /// step, see relax(), of a problem that stores from the third halving on; where that fails too the substep is halved
-  /// and x restored; after one that converged it doubles.
-  /// Each is committed, and t goes with x: they belong together also where the smallest substep fails, or an evaluation
-  /// throws. Collective.
+  /// Advances x, the committed state at t, to t_to. If Newton's method fails and there is contact, proximal
+  /// continuation follows, see relax(); with storage, only from the third halving on. If this fails, x is restored and
+  /// the substep halved. After a converged substep, the length is doubled. Each converged substep is committed, and t
+  /// is the time of x, even if the smallest substep fails or an evaluation throws. Collective.
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
