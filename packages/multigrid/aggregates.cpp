@@ -9,13 +9,13 @@
 namespace sprekk::multigrid {
 namespace {
 
-constexpr Real rounding = 1e-12;     // blocks this much smaller than those on the diagonal are zero
-constexpr Real independent = 1e-10;  // part of a motion that must be left for it to be one of its own
-constexpr Real strong = 0.02;        // a coupling, relative to the geometric mean of the diagonals
+constexpr Real rounding = 1e-12;     // smaller blocks, relative to the diagonals, are zero
+constexpr Real independent = 1e-10;  // smallest independent part of a motion, relative
+constexpr Real strong = 0.02;        // smallest strong coupling, relative to the geometric mean of the diagonals
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
-constexpr Real steps = 3;  // that a node reaches, in distances of its nearest neighbour: the diagonal of a cube is 1.7
+constexpr Real steps = 3;  // reach of a node in distances of its nearest neighbour; the diagonal of a cube is 1.7
 
-/// The largest entries of the blocks on the diagonal. Collective, for those of ghosts.
+/// Returns the largest entry of each diagonal block, including ghosts. Collective.
 View<Real*> diagonal_sizes(const NodeMatrix& A) {
   const auto& graph = A.graph;
   const View<Real*> size("size", graph.columns->n_all());
@@ -39,7 +39,7 @@ Real largest(const Real* values, int n) {
   return result;
 }
 
-/// [node] by their places, ghosts' included. Collective.
+/// Returns the positions of all nodes, including ghosts, [node, 3]. Collective.
 View<Real*> all_places(const NodeGraph& graph, const std::vector<std::array<Real, 3>>& owned) {
   const View<Real*> all("places", static_cast<std::size_t>(graph.columns->n_all()) * 3);
   for (std::size_t i = 0; i < owned.size(); ++i) std::copy_n(owned[i].data(), 3, &all(3 * i));
@@ -47,14 +47,14 @@ View<Real*> all_places(const NodeGraph& graph, const std::vector<std::array<Real
   return all;
 }
 
-/// Sorted without what is there twice.
+/// Sorts the values and removes repetitions.
 template <class T>
 void make_set(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// Neighbours of aggregates: those of their nodes.
+/// Returns the neighbours of aggregates: the aggregates of their nodes' neighbours.
 Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
   std::vector<std::vector<LocalIndex>> found(aggregates.n);
   for (std::size_t i = 0; i < aggregates.of.size(); ++i)

@@ -1,4 +1,4 @@
-// The sizes of blocks that there is code for.
+// Block sizes with compiled code.
 #pragma once
 
 #include <type_traits>
@@ -11,7 +11,8 @@ namespace sprekk::multigrid {
 using fields::Cursor;
 using fields::Numbers;
 
-/// work(height, width) with the sizes of a block as constants of compile time; false if there is no code for them.
+/// Calls work(height, width) with the block size as compile-time constants. Returns false if there is no code for this
+/// size.
 template <class Work>
 bool try_sizes(int height, int width, const Work& work) {
   const auto is = [&](auto h, auto w) {
@@ -27,7 +28,7 @@ bool try_sizes(int height, int width, const Work& work) {
          is(three, six) || is(six, three);
 }
 
-/// The same as try_sizes() where there must be code for them, in the widest instructions.
+/// Calls work like try_sizes(), with the widest instructions. Throws an Error if there is no code for this size.
 template <class Work>
 void with_sizes(int height, int width, const Work& work) {
   bool found = false;

@@ -13,12 +13,12 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-constexpr Real usual_smallest = 1.0 / 15, margin = 1.1;  // estimates of the largest come from below
+constexpr Real usual_smallest = 1.0 / 15, margin = 1.1;  // estimates are below the largest eigenvalue
 constexpr int n_steps = 10;                              // of Lanczos' method
 
-/// A number in [0.5, 1.5) that hardly repeats, for each index of the whole problem.
+/// Returns a pseudo-random number in [0.5, 1.5) for each global index.
 KOKKOS_INLINE_FUNCTION Real scattered(unsigned long long i) {
-  i = (i + 1) * 0x9e3779b97f4a7c15ull;  // as splitmix64 (Steele, Lea and Flood 2014)
+  i = (i + 1) * 0x9e3779b97f4a7c15ull;  // splitmix64 (Steele, Lea and Flood 2014)
   i = (i ^ (i >> 30)) * 0xbf58476d1ce4e5b9ull;
   i = (i ^ (i >> 27)) * 0x94d049bb133111ebull;
   return 0.5 + static_cast<Real>((i ^ (i >> 31)) >> 11) * 0x1p-53;
@@ -59,8 +59,8 @@ void Chebyshev::update(const NodeMatrix& A, int degree) {
   find_largest_eigenvalue();
 }
 
-/// Lanczos' method, from the same vector whatever was set up before. Of a matrix that is not quite symmetric it finds
-/// about the largest eigenvalue, too.
+/// Estimates the largest eigenvalue by Lanczos' method with a fixed start vector. For slightly nonsymmetric matrices
+/// the estimate is approximate. Collective.
 void Chebyshev::find_largest_eigenvalue() {
   const auto x = x_, next = next_, last = step_;
   const auto& halo = *graph_.columns;
@@ -101,7 +101,7 @@ void Chebyshev::find_largest_eigenvalue() {
   if (const Real found = std::fmax(-diagonal.front(), diagonal.back()); info == 0 && found > 0) largest_ = found;
 }
 
-/// Over all owned nodes.
+/// Returns the product over all owned nodes. Collective.
 Real Chebyshev::dot(const View<Real*>& x, const View<Real*>& y) const {
   const auto& halo = *graph_.columns;
   Real here = 0;

@@ -52,7 +52,7 @@ View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map) {
 
 namespace {
 
-/// [entry] Collective.
+/// Returns whether the nodes of each entry are out of reach of each other, [entry]. Collective.
 std::vector<bool> out_of_reach(const NodeGraph& graph, const Nodes& nodes, const std::vector<Real>& reaches) {
   std::vector<bool> far(graph.n_entries(), false);
   const auto& halo = *graph.columns;
@@ -70,7 +70,7 @@ std::vector<bool> out_of_reach(const NodeGraph& graph, const Nodes& nodes, const
   return far;
 }
 
-/// [entry of `beyond`] the same nodes in local numbers of the graph, -1: not among its columns. Collective.
+/// Returns the local numbers of the nodes in `beyond`, [entry of `beyond`]; -1: not among the columns. Collective.
 std::vector<LocalIndex> ghosts_beyond(const NodeGraph& graph, const Nodes& nodes) {
   const LocalIndex n_all = graph.columns->n_all();
   const View<GlobalIndex*> number("number", n_all);
@@ -149,7 +149,7 @@ Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes) {
     }
   }
   const auto all = base::sum_over_ranks(*graph.columns->owned()->getComm(), here);
-  constexpr Real few = 0.1;  // as slivers of networks are
+  constexpr Real few = 0.1;  // e.g. slivers of networks
   return all[1] > few * all[2] ? std::sqrt(all[0] / all[1]) : 0;
 }
 

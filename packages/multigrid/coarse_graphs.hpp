@@ -1,4 +1,4 @@
-// Graphs of the products that lead to the next level of multigrid.
+// Graphs of the products that form the next level of multigrid.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,15 @@
 
 namespace sprekk::multigrid {
 
-/// Sets of nodes, one for each row: row i has node(start(i)) ... node(start(i + 1) - 1), sorted.
+/// Sets of nodes per row: row i contains node(start(i)) ... node(start(i + 1) - 1), sorted.
 template <class Node>
 struct Rows {
   View<std::size_t*> start;
   View<Node*> node;
 };
 
-/// name(i, add) hands the nodes of row i to add, perhaps several times the same; all are below n_columns.
+/// Returns the rows of which name(i, add) passes the nodes of row i to add, possibly repeatedly; all are below
+/// n_columns.
 template <class Name>
 Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name) {
   std::vector<LocalIndex> all, last_row(n_columns, -1);
@@ -33,32 +34,32 @@ Rows<LocalIndex> make_rows(LocalIndex n, LocalIndex n_columns, const Name& name)
   return rows;
 }
 
-/// The same rows, sorted by global numbers. Stored data.
+/// Returns the rows in global numbers, sorted. Stored data.
 Rows<GlobalIndex> to_global(const Rows<LocalIndex>& local, const Map& map);
 
-/// The rows of owned nodes, with those of ghosts after them. Collective.
+/// Returns the rows of owned nodes, followed by those of ghosts. Collective.
 Rows<GlobalIndex> with_ghosts(const Rows<GlobalIndex>& owned, const Halo& halo);
 
-/// Owned coarse nodes, then all others that are named; -1 is none. Collective.
+/// Returns the map of the owned coarse nodes, then all others in `named`; -1 is ignored. Collective.
 RCP<const Map> with_named(const RCP<const Map>& owned, const std::vector<View<GlobalIndex*>>& named);
 
-/// Stored data.
+/// Returns local numbers of the nodes in the map; -1 if absent. Stored data.
 View<LocalIndex*> to_local(const View<GlobalIndex*>& nodes, const Map& map);
 
-/// The entries of a graph to do without: between nodes out of each other's reach, or weak ones. Collective.
+/// Returns the entries of a graph to omit: between nodes out of reach of each other, or weak ones. Collective.
 std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 
-/// Adds to `coarse` the numbers of aggregates and their neighbours on other ranks; `aggregate` [node of the graph] in
-/// local numbers of `numbers`, -1: none. Collective.
+/// Adds the numbers of aggregates and their neighbours on other ranks to `coarse`. aggregate: [node of the graph] local
+/// number in `numbers`, -1: none. Collective.
 void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<LocalIndex*>& aggregate, const Map& numbers,
                     Nodes& coarse);
 
-/// Makes contact weak at nodes from which some of it is out of reach, as in faces with a long edge: jumps that
-/// alternate along that edge do no work on contact, so that a prolongator which took all of a face to jump alike would
-/// resist them. Contact is what couples free nodes that are no neighbours. Puts the shortest edge of such
-/// nodes into `nodes.contact_edge`, that of a finer level where there is one, and 0 of all others; returns how flat
-/// cells are at nodes that are left out now and were not on the finer level: the distance of their nearest neighbour
-/// over that edge, the root of the mean square; 0 if they are less than a tenth of those in contact. Collective.
+/// Marks contact as weak at nodes from which part of it is out of reach, as on faces with a long edge. Jumps that
+/// alternate along this edge do no work on contact. A prolongator with a uniform jump on each face would resist them.
+/// Contact couples free nodes that are not neighbours. Sets `nodes.contact_edge` of these nodes to their shortest edge,
+/// or keeps that of a finer level, and sets 0 elsewhere. Returns the flatness of cells at nodes that were marked on the
+/// finer level and are no longer marked. It is the root mean square of the distance of the nearest neighbour over
+/// contact_edge; 0 if these are less than a tenth of the nodes in contact. Collective.
 Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes);
 
 }  // namespace sprekk::multigrid

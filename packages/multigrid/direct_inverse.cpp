@@ -13,7 +13,7 @@ namespace {
 
 using fields::Map;
 
-/// The matrix with rows and columns numbered from 0 without gaps; it shares the values. Collective.
+/// Returns the matrix with rows and columns numbered from 0 without gaps. The values are shared. Collective.
 RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
   const auto invalid = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const auto &rows = A->getRowMap(), &columns = A->getColMap();
@@ -62,7 +62,7 @@ void DirectInverse::factor_dense() {
   pivots_.resize(n);
   int info = 0;
   Teuchos::LAPACK<int, Real>().GETRF(n, n, factors_.data(), n, pivots_.data(), &info);
-  const int singular = base::max_over_ranks(*rows.getComm(), info);  // ranks may round differently
+  const int singular = base::max_over_ranks(*rows.getComm(), info);  // round-off may differ among ranks
   SPREKK_CHECK(singular == 0, "{}: the matrix is singular (after {} pivots)", name_, singular - 1);
 }
 

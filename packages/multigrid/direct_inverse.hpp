@@ -1,4 +1,4 @@
-// The inverse of a matrix that is small enough for one rank, or a few.
+// Inverse of a matrix that is small enough for one or a few ranks.
 #pragma once
 
 #include <memory>
@@ -9,23 +9,23 @@
 
 namespace sprekk::multigrid {
 
-/// By factors, for multigrid's last level and blocks that are solved directly: those of MUMPS on the first ranks, as
-/// many as gain from it; of few unknowns, for which calls of MUMPS take longer than the work, dense ones on every rank.
-/// The graph must stay as it is.
+/// Inverse by factors, for the last level of multigrid and for blocks that are solved directly. MUMPS factorises on the
+/// first ranks, as many as are useful. For few unknowns, calls of MUMPS would dominate, so dense factors are on every
+/// rank. The graph must not change.
 class DirectInverse : public fields::Operator {
  public:
-  static constexpr int most_dense = 300;        ///< unknowns
-  static constexpr int least_of_a_rank = 2000;  ///< unknowns: two ranks gain little from sharing twice as many
+  static constexpr int most_dense = 300;        ///< largest number of unknowns for dense factors
+  static constexpr int least_of_a_rank = 2000;  ///< unknowns; twice as many gain little on two ranks
 
-  /// `name` begins the messages of errors. Of several ranks, the last bits vary. Collective.
+  /// Prepares the factors. `name` begins error messages. On several ranks, the last bits vary. Collective.
   DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int most_ranks = 1);
 
-  /// Factors the present values. Throws where they are singular. Collective.
+  /// Factorises the present values. Throws an Error on all ranks if they are singular. Collective.
   void setup(bool symmetric);
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
-  /// y <- A^-1 b.
+  /// Computes y = A^-1 b. Throws an Error if MUMPS fails.
   void apply(const fields::MultiVector& b, fields::MultiVector& y, Teuchos::ETransp, Real, Real) const override;
 
  private:
@@ -34,12 +34,12 @@ class DirectInverse : public fields::Operator {
 
   std::string name_;
   RCP<const fields::Map> map_;
-  RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; with the values of the matrix it was made of
+  RCP<const CrsMatrix> A_;  // numbered from 0 without gaps; shares the values of the original matrix
   mutable Vector from_, to_;
   std::unique_ptr<Mumps> mumps_;  // null: dense
-  std::vector<Real> factors_;     // of the whole matrix, column by column
+  std::vector<Real> factors_;     // whole matrix, column by column
   std::vector<int> pivots_;
-  mutable std::vector<Real> part_, whole_;  // of a vector: what this rank has, zero elsewhere; all of it
+  mutable std::vector<Real> part_, whole_;  // of a vector: values of this rank, zero elsewhere; all values
 };
 
 }  // namespace sprekk::multigrid

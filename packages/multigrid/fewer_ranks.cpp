@@ -13,14 +13,14 @@ namespace {
 
 const auto count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
 
-/// What this rank has after ranks have handed over their nodes: the nodes of a run of ranks that begins with it, or
-/// none. Runs have about as many nodes each. Collective.
+/// Returns the number of nodes of this rank after the transfer: those of a run that begins with this rank, or none.
+/// Runs have similar numbers of nodes. Collective.
 GlobalIndex n_taken(const Map& owned, int n_runs) {
   const auto& comm = *owned.getComm();
   const auto counts = base::gather_over_ranks(comm, std::vector<GlobalIndex>{base::n_local_elements(owned)});
   const auto all = std::accumulate(counts.begin(), counts.end(), GlobalIndex{0});
   GlobalIndex before = 0, taken = 0;
-  int first = -1;  // rank of the present run
+  int first = -1;  // first rank of the present run
   for (GlobalIndex rank = 0, run = -1, n_ranks = comm.getSize(); rank < n_ranks; ++rank) {
     const GlobalIndex n = counts[rank], its_run = (2 * before + n) * n_runs / (2 * all);
     before += n;
@@ -30,7 +30,7 @@ GlobalIndex n_taken(const Map& owned, int n_runs) {
   return taken;
 }
 
-/// Local neighbours and those of other ranks, all by their numbers.
+/// Returns local neighbours and those on other ranks, all by global number.
 Rows<GlobalIndex> all_neighbours(const Nodes& nodes) {
   const auto n = nodes.free.size();
   Rows<GlobalIndex> rows{View<std::size_t*>("start", n + 1),
@@ -88,7 +88,7 @@ FewerRanks::FewerRanks(const NodeMatrix& A, const ShortNodeMatrix& P, Nodes& nod
 
 void FewerRanks::update(const NodeMatrix& A) {
   const std::size_t block = static_cast<std::size_t>(A.height) * A.width;
-  const auto value = takes_ ? matrix_.value : A.value;  // of ranks that hand over
+  const auto value = takes_ ? matrix_.value : A.value;  // ranks that transfer nodes
   if (takes_) std::copy_n(A.value.data(), A.value.extent(0), value.data());
   gathered_.columns->exchange_rows(gathered_.start, value, static_cast<int>(block));
   std::vector<Real> row;

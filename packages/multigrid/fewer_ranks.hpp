@@ -1,4 +1,4 @@
-// A level of multigrid on fewer ranks than the one above.
+// Level of multigrid on fewer ranks than the level above.
 #pragma once
 
 #include <memory>
@@ -8,37 +8,37 @@
 
 namespace sprekk::multigrid {
 
-/// Runs of neighbouring ranks hand their nodes to the first rank of the run, so that it has enough to do for the
-/// messages it waits for, and aggregates can join what several ranks had. Parts of a mesh come from recursive
-/// bisection: those with numbers next to each other lie next to each other. Ranks that have handed over their nodes
-/// take no part in the level. Nodes keep their numbers, which go through the ranks.
+/// Transfer of nodes from runs of consecutive ranks to the first rank of each run. This rank then has enough work
+/// compared with its messages, and aggregates can join nodes of several ranks. Mesh parts come from recursive
+/// bisection, so consecutive ranks are usually adjacent in space. Ranks without nodes take no part in the level. Nodes
+/// keep their numbers, which increase with the ranks.
 class FewerRanks {
  public:
-  /// Makes the graphs of A, whose nodes go to about n_ranks ranks, and of P, which interpolates from these nodes, and
-  /// moves what is known of them. Collective.
+  /// Creates the graphs of A on about n_ranks ranks, and of the prolongator P from these nodes, and moves `nodes`.
+  /// Collective.
   FewerRanks(const NodeMatrix& A, const ShortNodeMatrix& P, Nodes& nodes, int n_ranks);
 
-  void update(const NodeMatrix& A);  ///< takes the values; collective
+  void update(const NodeMatrix& A);  ///< copies the values; collective
 
-  const NodeMatrix& matrix() const { return matrix_; }        ///< A where its nodes are now
-  const ShortNodeMatrix& prolongation() const { return P_; }  ///< P, with its values, for such columns
-  const NodeGraph& gathered() const { return gathered_; }     ///< nodes where they were, and as ghosts those taken over
+  const NodeMatrix& matrix() const { return matrix_; }        ///< A on the present ranks
+  const ShortNodeMatrix& prolongation() const { return P_; }  ///< P with its values, with these columns
+  const NodeGraph& gathered() const { return gathered_; }     ///< nodes before the transfer; ghosts: received nodes
   std::size_t bytes() const { return sizeof(LocalIndex) * (place_.size() + P_.graph.column.extent(0)); }
 
  private:
   void move(Nodes& nodes) const;
 
-  NodeGraph gathered_;             // its rows: of A, those taken over among them
-  bool takes_ = false;             // this rank has nodes now
-  std::vector<LocalIndex> place_;  // [entry of matrix_] where in the row that was handed over
+  NodeGraph gathered_;             // rows: those of A, including received ones
+  bool takes_ = false;             // this rank has nodes after the transfer
+  std::vector<LocalIndex> place_;  // [entry of matrix_] position in the received row
   NodeMatrix matrix_;
   ShortNodeMatrix P_;
 };
 
-/// How many ranks have nodes. Collective.
+/// Returns the number of ranks with nodes. Collective.
 int n_ranks_of(const NodeGraph& graph);
 
-/// A, all of whose nodes this rank has, without the other ranks. Stored data.
+/// Returns A, whose nodes are all on this rank, as a matrix of this rank only. Stored data.
 NodeMatrix alone(const NodeMatrix& A);
 
 }  // namespace sprekk::multigrid

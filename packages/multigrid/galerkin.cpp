@@ -12,7 +12,7 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Z += X Y of blocks [h, b] and [b, m] whose rows are so far apart.
+/// Computes Z += X Y for blocks [h, b] and [b, m] with the given distances of rows.
 template <int h, int b, int m, class Number>
 KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, const Number* Y, std::size_t apart_Y,
                                            Real* Z, std::size_t apart_Z) {
@@ -28,7 +28,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, c
 
 constexpr std::size_t word = 64;
 
-/// A bit for each; none where all are false.
+/// Returns the flags as bits; empty if all are false.
 View<std::uint64_t*> in_bits(const std::vector<bool>& flags) {
   if (std::find(flags.begin(), flags.end(), true) == flags.end()) return {};
   const View<std::uint64_t*> bits("bits", (flags.size() + word - 1) / word);
@@ -94,7 +94,7 @@ Galerkin::Galerkin(const NodeMatrix& A, const Nodes& nodes, const Aggregates& ag
   start_AP_all_ = AP.start;
   column_AP_all_ = to_local(AP.node, *coarse->all());
 
-  std::vector<std::vector<LocalIndex>> named_by(n_coarse);  // rows of P
+  std::vector<std::vector<LocalIndex>> named_by(n_coarse);  // rows of P with this column
   for (LocalIndex k = 0; k < n_all; ++k)
     for (std::size_t e = P.start(k); e < P.start(k + 1); ++e)
       if (column_P_all_(e) < n_coarse) named_by[column_P_all_(e)].push_back(k);
@@ -273,7 +273,7 @@ void Galerkin::multiply_right(const NodeMatrix& A, const View<Real*>& AP, std::s
           Real* const row = &AP(b * m * to(k_made));
           for (std::size_t k = 0; k < b * m * n; ++k) row[k] = 0;
           Cursor cursor{&column(start(i)), n};
-          std::size_t begins = 0;  // where the last one did: rows of neighbours often begin alike
+          std::size_t begins = 0;  // previous start; rows of neighbours often begin alike
           for (std::size_t k = 0; k < n_a; ++k) {
             const LocalIndex j = graph.column(begin + k);
             const std::size_t first_p = start_P(j), n_p = start_P(j + 1) - first_p;
@@ -304,7 +304,7 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
           Real* const row = &out(m * m * start(I));
           for (std::size_t k = 0; k < m * m * n; ++k) row[k] = 0;
           Cursor cursor{&column(start(I)), n};
-          std::size_t begins = 0;  // where the last one did
+          std::size_t begins = 0;  // previous start
           for (std::size_t k = 0; k < n_r; ++k) {
             const LocalIndex fine = column_R(begin + k);
             const std::size_t n_ap = start_AP(fine + 1) - start_AP(fine);
@@ -320,7 +320,7 @@ void Galerkin::multiply_left(const View<Real*>& AP, LocalIndex first, LocalIndex
               add_block<m, b, m>(block, b, from + s * m, n_ap * m, row + place * m, n * m);
             }
           }
-          for (std::size_t k = 0; k < n; ++k)  // modes that an aggregate does not have stand alone
+          for (std::size_t k = 0; k < n; ++k)  // unit diagonal for modes that the aggregate lacks
             for (int q = 0; q < m && column(start(I) + k) == I; ++q)
               if (row[(q * n + k) * m + q] == 0) row[(q * n + k) * m + q] = 1;
         });

@@ -14,23 +14,23 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// By how much of itself the diagonal of the last matrix is raised: parts of rock that float would make it singular.
+/// Relative increase of the diagonal of the last matrix, which would be singular for floating parts of rock.
 constexpr Real raise = 1e-8;
 
-constexpr Real most_growth = 5;  // of the residual in a cycle
+constexpr Real most_growth = 5;  // largest growth of the residual in a cycle
 constexpr int most_widenings = 4;
 constexpr int most_degree = 200, most_finest_degree = 24;
 
-/// Levels end where there are more coarse nodes than this share of the fine ones: all alone, or one on each rank.
+/// Largest ratio of coarse to fine nodes. Above it, coarsening ends: nodes are isolated, or there is one per rank.
 constexpr Real least_coarsening = 0.8;
 
-/// Of a rank, on average, or a level moves to fewer ranks.
+/// Smallest average number of nodes per rank; below it, a level moves to fewer ranks.
 constexpr int least_nodes = 30;
 
-/// Nodes of an aggregate of the finest level. In space a coarse node has six unknowns; nodes with few neighbours, as in
-/// tetrahedra, would make so many coarse ones that the levels below took half of the memory and time of the finest one.
-/// Where a row has 27 nodes inside of the rock, as in hexahedra, more would only let cycles contract less. Small parts,
-/// in which most nodes have neighbours on other ranks, may take the other choice. Collective.
+/// Returns the minimum number of nodes per aggregate on the finest level. In 3D a coarse node has six unknowns. Small
+/// aggregates, as in tetrahedra, would make the coarser levels half as expensive as the finest, in memory and time. In
+/// hexahedra, rows have 27 nodes inside the rock, and larger aggregates would only reduce the convergence rate. In
+/// small parts, where most nodes have neighbours on other ranks, the choice may differ. Collective.
 std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   constexpr int modes_in_space = 6;
   constexpr std::size_t long_row = 27, enough = 36;
@@ -46,10 +46,10 @@ std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   return share * all[0] < all[1] ? enough : 0;
 }
 
-/// Of the smoother. Jumps that alternate along the long edges of fractures do no work on contact, which is as stiff as
-/// the short edges of flat cells: the diagonal is too large for them by up to the square of the aspect ratio. As long
-/// as cells are coarsened across short edges coarse nodes represent them; on the level on which that ends only the
-/// smoother knows them.
+/// Returns the degree of the smoother. Jumps that alternate along long edges of fractures do no work on contact. Its
+/// stiffness is similar to that of the short edges of flat cells. The diagonal is therefore too large for these jumps,
+/// by up to the square of the aspect ratio. Coarse nodes represent the jumps while cells are coarsened across short
+/// edges. On the level where this ends, only the smoother reduces them.
 int degree_for(Real flatness, int degree) {
   return std::max(degree, static_cast<int>(std::lround(std::min<Real>(2 * flatness, most_degree))));
 }
@@ -90,7 +90,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     coarsen_beyond(A.graph, nodes, galerkin->aggregate(), *galerkin->coarse().graph.columns->all(), coarse);
     auto moved = on_fewer_ranks(*galerkin, coarse);
     levels_.back().smoother = std::make_unique<Chebyshev>(A);
-    if (modes.is_null()) {  // what is weak on the next level its matrix tells
+    if (modes.is_null()) {  // the matrix of the next level determines its weak couplings
       levels_.back().smoother->update(A);
       galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
       if (moved) moved->update(galerkin->coarse());
@@ -113,7 +113,8 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
   operator_complexity_ = all[1] / all[0];
 }
 
-/// The coarse level, where ranks have little of its matrix, or so few nodes that aggregates end at ranks; else null.
+/// Returns the coarse level on fewer ranks if ranks have small matrices or few nodes, which limits aggregates; else
+/// null. Collective.
 std::unique_ptr<FewerRanks> Multigrid::on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const {
   const auto& coarse = galerkin.coarse();
   const auto numbers = base::sum_over_ranks(*map_->getComm(), static_cast<double>(coarse.value.extent(0)));
@@ -141,7 +142,7 @@ void Multigrid::add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved
                      options_.degree});
 }
 
-/// From the next level.
+/// Returns the prolongator from the next level.
 const ShortNodeMatrix& Multigrid::prolongation(std::size_t level) const {
   const auto& moved = levels_[level + 1].moved;
   return moved ? moved->prolongation() : levels_[level].to_coarse->prolongation();
@@ -176,7 +177,7 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
 void Multigrid::factor_last(bool symmetric) {
   const auto& A = levels_.back().A;
   const bool on_one = n_ranks_.back() == 1;
-  if (n_nodes(A) == 0 || (on_one && A.graph.n_rows() == 0)) return;  // no node couples to another: smoothing is all
+  if (n_nodes(A) == 0 || (on_one && A.graph.n_rows() == 0)) return;  // no coupled nodes: smoothing only
   const auto last = crs_matrix(on_one ? alone(A) : A);
   raise_diagonal(*last);
   if (last_.is_null()) {
@@ -188,8 +189,8 @@ void Multigrid::factor_last(bool symmetric) {
   last_->setup(symmetric);
 }
 
-/// |b - A M b| / |b| of a vector b that is the same on any number of ranks. Large where eigenvalues of a matrix that is
-/// not symmetric lie so far from the real axis that the smoother enlarges what belongs to them.
+/// Returns |b - A M b| / |b| for a vector b that does not depend on the number of ranks. It is large if eigenvalues of
+/// a nonsymmetric matrix are so far from the real axis that the smoother amplifies their components. Collective.
 Real Multigrid::growth() const {
   Vector b(map_), Mb(map_), r(map_);
   for (std::size_t i = 0; i < b.getLocalLength(); ++i)
@@ -240,8 +241,8 @@ void Multigrid::solve_last(const ConstView<Real*>& from) const {
   try {
     last_->apply(b, x, Teuchos::NO_TRANS, 1, 0);
   } catch (const Error&) {
-    if (n_ranks_.back() > 1) throw;                       // on all of them
-    x.putScalar(std::numeric_limits<Real>::quiet_NaN());  // this rank alone knows: the norms of the solver tell all
+    if (n_ranks_.back() > 1) throw;                       // thrown on all of them
+    x.putScalar(std::numeric_limits<Real>::quiet_NaN());  // only this rank knows; NaN reaches the others through norms
   }
   const auto values = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
   Kokkos::parallel_for(
@@ -258,8 +259,8 @@ double Multigrid::bytes() const {
   return sum;
 }
 
-/// On each level exchanges for two residuals, for products of the smoother, for restriction, and for prolongation those
-/// of the next one, and what is handed over to fewer ranks.
+/// Returns the messages of each level: exchanges for two residuals, products of the smoother, restriction, prolongation
+/// from the next level, and transfer to fewer ranks.
 Multigrid::Traffic Multigrid::traffic() const {
   Traffic all;
   const auto add = [&](int times, const NodeGraph& graph, int width) {
@@ -283,7 +284,7 @@ std::vector<GlobalIndex> Multigrid::n_unknowns() const {
   return n;
 }
 
-/// Of each level: its matrix twice for residuals, its copy for the smoother, interpolation and restriction.
+/// Returns the bytes of each level: the matrix twice for residuals, its rounded copy, prolongator and restriction.
 double Multigrid::cycle_bytes() const {
   double sum = 0;
   for (const auto& level : levels_) {

@@ -1,4 +1,4 @@
-// Multigrid on blocks of nodes.
+// Multigrid for matrices of node blocks.
 #pragma once
 
 #include "multigrid/chebyshev.hpp"
@@ -9,53 +9,55 @@
 
 namespace sprekk::multigrid {
 
-/// About the inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are made once. Levels
-/// of whose matrices ranks would have little move to fewer ranks, the last ones to one. Each piece of rock keeps at
-/// least one node on every level. It throws where the last level is singular. All members are collective unless they
-/// return stored data.
+/// Approximate inverse of a matrix: one V-cycle of smoothed aggregation. The graphs of all levels are created once.
+/// Levels with small matrices per rank move to fewer ranks, the last ones to one. Each piece of rock keeps at least one
+/// node on every level. Throws an Error if the last level is singular. All members are collective unless they return
+/// stored data.
 class Multigrid : public fields::Operator {
  public:
-  /// Whether there is code for that many unknowns of a node and motions.
+  /// Returns whether there is compiled code for this number of unknowns per node and modes.
   static bool can_solve(int n_components, int n_modes);
 
-  /// Aggregates of `nodes`, of a matrix that has the graph of those that follow or less and no edge across an
-  /// interface, so no aggregate of any level reaches across one. `modes` [unknown, mode], null for the constant ones.
+  /// Creates the levels from aggregates of `nodes`. These must belong to a matrix whose graph is a subset of that of
+  /// later matrices and has no edge across an interface. No aggregate of any level then crosses an interface. modes:
+  /// [unknown, mode], null for constants.
   Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_components, const RCP<const MultiVector>& modes,
             const Options& options = {});
-  /// Aggregates of the nodes of a matrix; `places` [node, dim], null: near and far neighbours are alike.
+  /// Creates the levels from the nodes of the matrix `bulk`. places: [node, dim], m; null: all neighbours count as
+  /// near.
   Multigrid(const RCP<const Matrix>& matrix, const Matrix& bulk, int n_components, const RCP<const MultiVector>& modes,
             const RCP<const MultiVector>& places = Teuchos::null)
       : Multigrid(matrix, nodes_of(node_matrix(bulk, n_components), modes, places), n_components, modes) {}
 
-  /// Makes ready for the values of a matrix with the graph of the first. `careful`: if it is not symmetric, tries a
-  /// cycle, and smooths less if the residual grows much in it.
+  /// Prepares the values of a matrix with the graph of the first one. `careful`: for nonsymmetric matrices, tries a
+  /// cycle and reduces the smoothing if the residual grows strongly.
   void setup(const RCP<const Matrix>& matrix, bool symmetric, bool careful = true);
 
   RCP<const Map> getDomainMap() const override { return map_; }
   RCP<const Map> getRangeMap() const override { return map_; }
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override;
 
-  /// Entries of the matrices of all levels over those of the finest.
+  /// Returns the matrix entries of all levels, relative to the finest.
   double operator_complexity() const { return operator_complexity_; }
-  double bytes() const;        ///< that this rank has stored
-  double cycle_bytes() const;  ///< of matrices that this rank reads in a V-cycle
-  /// What this rank receives in a V-cycle, without the solve on the last level.
+  double bytes() const;        ///< stored on this rank
+  double cycle_bytes() const;  ///< of matrices read by this rank in a V-cycle
+  /// Messages and bytes received by this rank in a V-cycle, without the solve on the last level.
   struct Traffic {
     double messages = 0, bytes = 0;
   };
   Traffic traffic() const;
   int n_levels() const { return static_cast<int>(levels_.size()); }
-  std::vector<GlobalIndex> n_unknowns() const;                  ///< [level], all ranks; collective
-  const std::vector<int>& n_ranks() const { return n_ranks_; }  ///< [level] that have some of them
+  std::vector<GlobalIndex> n_unknowns() const;                  ///< [level], over all ranks; collective
+  const std::vector<int>& n_ranks() const { return n_ranks_; }  ///< [level] number of ranks with unknowns
 
  private:
   struct Level {
     NodeMatrix A;
     std::unique_ptr<Chebyshev> smoother;
-    std::unique_ptr<FewerRanks> moved;    // null: its nodes are where the level above has made them
+    std::unique_ptr<FewerRanks> moved;    // null: nodes are on the ranks of the level above
     std::unique_ptr<Galerkin> to_coarse;  // null: the last level
-    View<Real*> b, x, r;                  // [owned, and those handed over], none on the finest level; [all], [all]
-    int degree;                           // of the smoother, of a symmetric matrix
+    View<Real*> b, x, r;                  // [owned, and transferred], empty on the finest level; [all], [all]
+    int degree;                           // of the smoother for symmetric matrices
   };
 
   void add_level(const NodeMatrix& A, std::unique_ptr<FewerRanks> moved);
@@ -71,7 +73,7 @@ class Multigrid : public fields::Operator {
   int size_;
   Options options_;
   double operator_complexity_ = 1;
-  bool shares_ = false;  // the finest level has the values of the matrix itself, on all ranks
+  bool shares_ = false;  // the finest level shares the values of the matrix on all ranks
   std::vector<Level> levels_;
   std::vector<int> n_ranks_;  // [level]
   RCP<CrsMatrix> last_matrix_;

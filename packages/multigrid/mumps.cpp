@@ -48,7 +48,7 @@ Mumps::~Mumps() { release(); }
 
 std::string Mumps::factor(const RCP<const CrsMatrix>& A, bool symmetric) {
   matrix_ = A;
-  if (!ready_ || (symmetric_ && !symmetric)) {  // not back again: an analysis costs more than symmetry saves
+  if (!ready_ || (symmetric_ && !symmetric)) {  // no return to symmetric: an analysis costs more than symmetry saves
     release();
     start(symmetric);
   }
@@ -86,7 +86,7 @@ int Mumps::run(int job) {
 
 MPI_Comm Mumps::all_ranks() const { return Tpetra::Details::extractMpiCommFromTeuchos(*comm_); }
 
-/// All rows of the matrix on rank 0; their values are the places of the matrix' values once these are gathered.
+/// Returns the rows of the matrix on rank 0. Its values are the positions of the gathered values. Collective.
 RCP<const CrsMatrix> Mumps::places_on_root() {
   const auto places = rcp(new CrsMatrix(*matrix_, Teuchos::Copy));
   const auto values = places->getLocalMatrixHost().values;
@@ -100,7 +100,7 @@ RCP<const CrsMatrix> Mumps::places_on_root() {
   return Tpetra::importAndFillCompleteCrsMatrix<CrsMatrix>(RCP<const CrsMatrix>(places), *to_root_);
 }
 
-/// Starts MUMPS on its own communicator and tells it the graph.
+/// Starts MUMPS on its own communicator and passes the graph. Collective.
 void Mumps::start(bool symmetric) {
   const auto& map = *matrix_->getRowMap();
   const GlobalIndex n = map.getGlobalNumElements();
@@ -123,7 +123,7 @@ void Mumps::start(bool symmetric) {
   mumps_.sym = symmetric ? 2 : 0;
   run(initialise);
   for (int quiet : {1, 2, 3, 4}) mumps_.icntl[quiet - 1] = quiet < 4 ? -1 : 0;
-  mumps_.icntl[17] = 3;  // distributed matrix; with a centralised one the analysis would look at values
+  mumps_.icntl[17] = 3;  // distributed matrix: with a centralised one, the analysis would depend on values
   for (const auto& [i, value] : icntl_) mumps_.icntl[i] = value;
   for (const auto& [i, value] : cntl_) mumps_.cntl[i] = value;
 
@@ -132,12 +132,13 @@ void Mumps::start(bool symmetric) {
   const auto &rows = *factored->getRowMap(), &columns = *factored->getColMap();
   const bool chosen = symmetric || gathers_;
   const std::size_t n_entries = graph.entries.extent(0);
-  const std::size_t n_handed = symmetric ? (n_entries + graph.numRows()) / 2 : n_entries;  // if its graph is, too
+  const std::size_t n_handed =
+      symmetric ? (n_entries + graph.numRows()) / 2 : n_entries;  // if the graph is symmetric, too
   for (auto* indices : {&rows_, &columns_}) {
     indices->clear();
-    indices->reserve(std::max<std::size_t>(1, n_handed));  // MUMPS wants a pointer also where nothing is
+    indices->reserve(std::max<std::size_t>(1, n_handed));  // MUMPS requires a pointer even without entries
   }
-  positions_ = std::vector<std::size_t>();  // with the memory that an earlier graph took
+  positions_ = std::vector<std::size_t>();  // releases the memory of an earlier graph
   values_ = std::vector<double>();
   positions_.reserve(chosen ? n_handed : 0);
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; ++row)
@@ -184,7 +185,7 @@ void Mumps::fill_values() {
   }
   for (std::size_t k = 0; k < positions_.size(); ++k) values_[k] = from[positions_[k]];
   const bool all = positions_.empty() && !rows_.empty();
-  mumps_.a_loc = all ? const_cast<Real*>(from) : values_.data();  // MUMPS leaves them as they are
+  mumps_.a_loc = all ? const_cast<Real*>(from) : values_.data();  // MUMPS does not change them
 }
 
 void Mumps::release() {

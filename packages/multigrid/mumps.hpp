@@ -16,24 +16,26 @@ namespace sprekk::multigrid {
 using fields::CrsMatrix;
 using fields::Vector;
 
-/// L U of a matrix, or L D L^T of a symmetric one; unknowns are numbered from 0 without gaps. All members are
-/// collective and answer the same on every rank, unless they return stored data.
+/// Factors L U, or L D L^T for symmetric matrices. Unknowns must be numbered from 0 without gaps. All members are
+/// collective and return the same on all ranks, unless they return stored data.
 class Mumps {
  public:
-  /// `controls`: ICNTL(i) and CNTL(i), over the defaults. Ranks 0 to most_ranks - 1 share the factors; one alone adds
-  /// in the same order every time. Throws where MUMPS has no such control.
+  /// `controls`: ICNTL(i) and CNTL(i), which override the defaults. Ranks 0 to most_ranks - 1 share the factors. One
+  /// rank adds in the same order every time. Throws an Error for unknown controls.
   Mumps(const Teuchos::ParameterList& controls, int most_ranks);
   ~Mumps();
   Mumps(const Mumps&) = delete;
   Mumps& operator=(const Mumps&) = delete;
 
-  /// Factors the present values of A, whose graph must stay that of the first. Empty, or what failed.
+  /// Factorises the present values of A, whose graph must not change. Returns an error message, or an empty string.
+  /// Throws an Error if unknowns are not numbered from 0 without gaps.
   std::string factor(const RCP<const CrsMatrix>& A, bool symmetric);
 
-  /// x <- A^-1 b by the factors, as exact as these. Empty, or what failed, now or in the last factor().
+  /// Computes x = A^-1 b with the accuracy of the factors. Returns an error message, also that of the last factor(), or
+  /// an empty string.
   std::string substitute(const Vector& b, Vector& x);
 
-  /// All controls that differ from those of MUMPS itself. Stored data.
+  /// Returns all controls that differ from the defaults of MUMPS. Stored data.
   const Teuchos::ParameterList& parameters() const { return parameters_; }
 
  private:
@@ -46,23 +48,23 @@ class Mumps {
   void release();
 
   Teuchos::ParameterList parameters_;
-  const int most_ranks_;  // that share the factors
+  const int most_ranks_;  // ranks that share the factors
   RCP<const Comm> comm_;
-  std::map<int, int> icntl_;    // from 0
-  std::map<int, double> cntl_;  // from 0
+  std::map<int, int> icntl_;    // by i - 1
+  std::map<int, double> cntl_;  // by i - 1
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false;
-  bool gathers_ = false;  // rank 0 gets all of the matrix
+  bool gathers_ = false;  // rank 0 receives the whole matrix
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
-  std::vector<int> counts_, starts_;    // of the ranks' values
-  std::vector<Real> gathered_;          // those of all ranks
+  std::vector<int> counts_, starts_;    // [rank] number and start of values
+  std::vector<Real> gathered_;          // values of all ranks
   std::vector<int> rows_, columns_;     // 1-based
-  std::vector<std::size_t> positions_;  // of the entries handed over, in the matrix' or all ranks' values; none: all
-  std::vector<double> values_;          // of these
+  std::vector<std::size_t> positions_;  // indices of the values passed to MUMPS, of the matrix or of all ranks; empty: all
+  std::vector<double> values_;          // values of these entries
   RCP<fields::Import> to_root_, from_root_;
-  RCP<Vector> at_root_;  // all of a vector on rank 0
+  RCP<Vector> at_root_;  // whole vector on rank 0
 };
 
 }  // namespace sprekk::multigrid

@@ -10,7 +10,7 @@
 namespace sprekk::multigrid {
 namespace {
 
-/// The nodes of unknowns: those of owned ones, and those of all columns, ghosts after them; [local column] -> node.
+/// Nodes of unknowns: halo of owned nodes, followed by ghosts, and [local column] -> node.
 struct ColumnNodes {
   std::shared_ptr<const Halo> halo;
   std::vector<LocalIndex> node;
@@ -41,7 +41,7 @@ ColumnNodes column_nodes(const CrsMatrix& A, int size) {
   return result;
 }
 
-/// Whether the unknowns of every node have neighbouring columns, and their rows the same ones.
+/// Returns whether the columns of each node are adjacent, and the rows of each node have equal columns.
 template <class Graph>
 bool in_blocks(const Graph& graph, const ColumnNodes& columns, const Map& map, int size) {
   const auto n_columns = static_cast<LocalIndex>(columns.node.size());
@@ -104,12 +104,12 @@ NodeMatrix copied(const Local& A, const ColumnNodes& columns, const Map& map, in
   return result;
 }
 
-/// sums_r += a_rk x_k over n numbers of h rows that begin so far apart.
+/// Computes sums_r += a_rk x_k over n values of h rows with the given distance.
 template <int h, class Number>
 KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart, const Real* x, std::size_t n,
                                               Real* sums) {
-  constexpr int lanes = 4, n_sums = h < 6 ? 2 : 1;  // so that an addition need not wait for the one before
-  constexpr std::size_t ahead = 8192, line = 64;    // bytes: the memory is asked for them so long before their turn
+  constexpr int lanes = 4, n_sums = h < 6 ? 2 : 1;  // an addition need not wait for the previous one
+  constexpr std::size_t ahead = 8192, line = 64;    // bytes; prefetch distance
   Numbers<lanes> wide[n_sums][h];
   const auto add = [&](std::size_t k, int to) {
     Numbers<lanes> of_x;
@@ -137,8 +137,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_products(const Number* a, std::size_t apart
   }
 }
 
-/// out(i, sums, height) for every row node i, with the numbers of (A x) there. What its rows need of x is gathered
-/// first; they are read side by side, each ahead of time, since the processor does not foresee so many streams.
+/// Calls out(i, sums, height) for each row node i with the values of (A x). The required values of x are gathered
+/// first. Rows are read side by side with explicit prefetching, since the processor does not predict so many streams.
 /// Exchanges the ghosts of x [all columns] first. Collective.
 template <class Number, class Out>
 void for_rows(const NodeMatrixOf<Number>& A, const View<Real*>& x, const Out& out) {

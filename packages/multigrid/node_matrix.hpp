@@ -1,4 +1,4 @@
-// Sparse matrices of dense blocks, one for each pair of nodes that couple.
+// Sparse matrices of dense blocks, one for each coupled pair of nodes.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,8 @@ using fields::Matrix;
 using fields::MultiVector;
 using fields::Vector;
 
-/// Which nodes couple: row i has the columns column(start(i)) ... column(start(i + 1) - 1), local numbers of `columns`.
+/// Graph of coupled nodes: row i has the columns column(start(i)) ... column(start(i + 1) - 1), local numbers in
+/// `columns`.
 struct NodeGraph {
   std::shared_ptr<const Halo> columns;
   View<std::size_t*> start;
@@ -25,8 +26,8 @@ struct NodeGraph {
   std::size_t n_entries() const { return column.extent(0); }
 };
 
-/// Blocks [height, width] on a graph of nodes. Those of row i make `height` rows of numbers, one after another, from
-/// value(height * width * start(i)) on: as Tpetra stores them where the unknowns of a node follow one another.
+/// Blocks [height, width] on a graph of nodes. The blocks of row i form `height` adjacent rows of values, beginning at
+/// value(height * width * start(i)). Tpetra stores values in the same order if the unknowns of a node are adjacent.
 template <class Number>
 struct NodeMatrixOf {
   int height = 0, width = 0;
@@ -34,25 +35,24 @@ struct NodeMatrixOf {
   View<Number*> value;
 };
 using NodeMatrix = NodeMatrixOf<Real>;
-using ShortNodeMatrix = NodeMatrixOf<float>;  ///< in half of the bytes; products with it are in double precision
+using ShortNodeMatrix = NodeMatrixOf<float>;  ///< half of the bytes; products are computed in double precision
 
-/// A matrix that is stored in blocks of this size, with its numbers; of another one, see below. Collective.
+/// Returns A as a node matrix. If A has blocks of this size, the values are shared; else see below. Collective.
 NodeMatrix node_matrix(const Matrix& A, int size);
-/// A as blocks of size x size, in which the unknowns size * n ... size * n + size - 1 are those of node n. It shares
-/// the values of A where A's rows and columns on this rank allow that. Throws where unknowns are numbered otherwise.
-/// Collective.
+/// Returns A with blocks size x size. The unknowns size * n ... size * n + size - 1 belong to node n. The values are
+/// shared if the local rows and columns of A permit it. Throws an Error for another numbering. Collective.
 NodeMatrix node_matrix(const CrsMatrix& A, int size);
 
-/// A square matrix number by number, the unknowns of node n as above. Collective.
+/// Returns a square matrix with single entries, with the unknowns of node n as above. Collective.
 RCP<CrsMatrix> crs_matrix(const NodeMatrix& A);
 
-/// y <- A x with x [all columns], whose ghosts it exchanges first; y [rows]. Collective.
+/// Computes y = A x, x [all columns], y [rows]. Exchanges the ghosts of x first. Collective.
 template <class Number>
 void product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y);
-/// y += A x. Collective.
+/// Computes y += A x. Exchanges the ghosts of x first. Collective.
 template <class Number>
 void add_product(const NodeMatrixOf<Number>& A, const View<Real*>& x, const View<Real*>& y);
-/// r <- b - A x. Collective.
+/// Computes r = b - A x. Exchanges the ghosts of x first. Collective.
 void residual(const NodeMatrix& A, const View<Real*>& x, const ConstView<Real*>& b, const View<Real*>& r);
 
 }  // namespace sprekk::multigrid

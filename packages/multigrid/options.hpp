@@ -1,13 +1,13 @@
-// What can be chosen of multigrid.
+// Options of multigrid.
 #pragma once
 
 namespace sprekk::multigrid {
 
 struct Options {
-  int degree = 4;                ///< of Chebyshev's polynomial, at least 1; flat cells in contact take a higher one
-  int finest_degree = 0;         ///< at least, on the finest level
-  int coarse_size = 300;         ///< no further level below so many unknowns: a direct solve
-  int least_of_a_rank = 100000;  ///< numbers of a level's matrix: where ranks have fewer, it moves to fewer ranks
+  int degree = 4;                ///< Chebyshev degree, at least 1; higher for flat cells in contact
+  int finest_degree = 0;         ///< smallest degree on the finest level
+  int coarse_size = 300;         ///< levels with at most this number of unknowns are solved directly
+  int least_of_a_rank = 100000;  ///< matrix entries per rank; with fewer, a level moves to fewer ranks
 };
 
 }  // namespace sprekk::multigrid

@@ -10,7 +10,7 @@ namespace {
 using Number = RoundedMatrix::Number;
 
 constexpr Real largest_number = 32640;
-constexpr Real exceeds_one = 1 + 1e-12;  // more than by rounding
+constexpr Real exceeds_one = 1 + 1e-12;  // by more than round-off
 
 KOKKOS_INLINE_FUNCTION Number nearest(Real x) {
   const Real within = x < largest_number ? (x > -largest_number ? x : -largest_number) : largest_number;
@@ -36,7 +36,7 @@ void RoundedMatrix::update(const NodeMatrix& A, const View<Real*>& scale) {
         "round", Kokkos::RangePolicy<Execution>(0, graph_.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t begin = start(i), n = start(i + 1) - begin;
           for (int r = 0; r < b; ++r) {
-            const auto store = [&](Real most) {  // returns the largest number
+            const auto store = [&](Real most) {  // returns the largest magnitude
               const Real factor = largest_number / most;
               Real largest = 0;
               for (std::size_t k = 0; k < n; ++k)

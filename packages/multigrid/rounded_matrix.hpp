@@ -1,4 +1,4 @@
-// A matrix of blocks in two bytes a number: what smoothers read.
+// Block matrix with two bytes per entry, for smoothers.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace sprekk::multigrid {
 
-/// S A S for a diagonal matrix S, in whole multiples of a unit that each row has: 1/32640 of 1, or of the row's largest
-/// number where that is more. Numbers are off by at most half of that; with S = D^-1/2, D the diagonal of a positive
-/// definite A, none is larger than 1, and the matrix is as symmetric as A (32640 = 2^7 3 5 17, so that 1/2, 1/3 and
-/// the like, which the last bit of A could push to either side, are multiples themselves).
+/// S A S for a diagonal matrix S, in multiples of a unit per row. The unit is 1/32640, or the largest entry of the row
+/// over 32640 if this entry exceeds 1. The error is at most half a unit. With S = D^-1/2 and the diagonal D of a
+/// positive definite A, no entry exceeds 1. The matrix is then as symmetric as A. As 32640 = 2^7 3 5 17, entries such
+/// as 1/2 and 1/3 are exact multiples, and the last bit of A cannot change their rounding.
 class RoundedMatrix {
  public:
   using Number = std::int16_t;
 
   explicit RoundedMatrix(const NodeMatrix& A);
 
-  /// Takes the values of A, `scale` [all nodes, unknown] being S. What is no number makes products none.
+  /// Copies the values of A. scale: S, [all nodes, unknown]. NaN entries make products NaN.
   void update(const NodeMatrix& A, const View<Real*>& scale);
 
-  /// out(i, sums) for every row node i with the b numbers of (S A S x) there, x [all nodes, unknown], whose ghosts it
-  /// exchanges first; b is the size of blocks. `wide`: in instructions that not every processor has. Collective.
+  /// Calls out(i, sums) for each row node i with the b values of (S A S x) there; b is the block size. x: [all nodes,
+  /// unknown], its ghosts are exchanged first. `wide`: use instructions that some processors lack. Collective.
   template <int b, class Out>
   void multiply(const View<Real*>& x, const Out& out, bool wide = fields::has_wide_instructions()) const;
 
@@ -33,8 +33,8 @@ class RoundedMatrix {
 
  private:
   NodeGraph graph_;
-  View<Number*> value_;  // [entry, column, row], and a few numbers more
-  View<float*> unit_;    // [owned node, unknown] what 1 stands for in that row
+  View<Number*> value_;  // [entry, column, row], and some padding
+  View<float*> unit_;    // [owned node, unknown] unit of the row
 };
 
 namespace rounded {
@@ -43,7 +43,7 @@ using Number = RoundedMatrix::Number;
 
 constexpr int padded(int size) { return (size + 3) / 4 * 4; }
 
-/// sum_r = the numbers in row r of n blocks of b x b, which follow one another, times x. sum [padded(b)]
+/// Sets sum_r to row r of n adjacent blocks b x b times x. sum [padded(b)]
 template <int b>
 KOKKOS_INLINE_FUNCTION void multiply_row(const Number* a, const LocalIndex* column, std::size_t n, const Real* x,
                                          Real* sum) {
@@ -56,15 +56,15 @@ KOKKOS_INLINE_FUNCTION void multiply_row(const Number* a, const LocalIndex* colu
 }
 
 #ifdef SPREKK_WIDE_INSTRUCTIONS
-/// The same, column by column of a block, of which four numbers are read at a time: the last ones may be the next
-/// column's, and their sums are not used. Compilers convert such numbers in halves.
+/// Computes the same with vector instructions, column by column of a block. Four values are read at a time; the last
+/// ones may belong to the next column, and their sums are not used. Compilers convert such values in halves.
 template <int b>
 __attribute__((target("avx2,fma"))) void multiply_row_wide(const Number* a, const LocalIndex* column, std::size_t n,
                                                            const Real* x, Real* sum) {
-  constexpr std::size_t ahead = 4096;  // so many numbers before their turn the memory is asked for them,
-  constexpr int line = 32;             // and so many it brings at once
+  constexpr std::size_t ahead = 4096;  // prefetch distance in values,
+  constexpr int line = 32;             // and values per cache line
   constexpr int n_parts = padded(b) / 4;
-  constexpr int n_sums = b < 6 ? b : 3;  // of a row, so that an addition need not wait for the one before
+  constexpr int n_sums = b < 6 ? b : 3;  // sums per row, so that an addition need not wait for the previous one
   __m256d sums[n_sums][n_parts];
   for (auto& of_row : sums)
     for (auto& part : of_row) part = _mm256_setzero_pd();

@@ -17,8 +17,8 @@ std::vector<LocalIndex> cut(LocalIndex n_rows, int n_slices) {
   return first;
 }
 
-/// visit(slice, row) for the rows of A P that slices name and neither they nor the slices before have made, without
-/// those that stay.
+/// Calls visit(slice, row) for the rows of A P that a slice computes: those it needs that are neither kept nor in the
+/// buffer from the previous slice.
 template <class Visit>
 void for_rows(const NodeGraph& R, const std::vector<LocalIndex>& first, const View<std::size_t*>& start_kept,
               const Visit& visit) {
@@ -32,7 +32,7 @@ void for_rows(const NodeGraph& R, const std::vector<LocalIndex>& first, const Vi
     }
 }
 
-/// Rows that other ranks name, and those of ghosts.
+/// Returns the starts of kept rows: rows needed by other ranks, and ghost rows.
 View<std::size_t*> start_of_kept(const Halo& halo, const View<std::size_t*>& start) {
   const View<std::size_t*> result("start of kept rows", halo.n_all() + 1);
   const auto keep = [&](LocalIndex row) { result(row + 1) = start(row + 1) - start(row); };
