@@ -1,6 +1,5 @@
-// A host's flow code coupled to Sprekk's mechanics by exchange and as rows of its Jacobian, beside Sprekk's own flow:
-// what each costs, and how far results are from those of Sprekk's flow. A fluid is injected into a fracture, which
-// slips and opens.
+// Coupling of a host's flow code to Sprekk's mechanics: by exchange, and as rows of Sprekk's Jacobian. The program
+// compares costs and results with Sprekk's own flow. A fluid is injected into a fracture, which slips and opens.
 #include "coupled.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -13,7 +12,7 @@ using namespace sprekk;
 
 namespace {
 
-/// Steps by `step`, and what they cost.
+/// Coupling method with its steps and their costs.
 struct Way {
   std::string name;
   model::Model& model;
@@ -58,7 +57,7 @@ int run(int dim, int cells, int steps, const std::string& solver, RCP<const Comm
                                faces[2]);
     counts.insert(faces);
   }
-  bool good = counts.size() > 1;  // contact changes
+  bool good = counts.size() > 1;  // contact states have changed
   if (tells) std::cout << "way            exchanges  Newton  Krylov  seconds  p         u         jump\n";
   for (auto& way : ways) {
     const auto off = [&](const char* name) {
@@ -77,7 +76,7 @@ int run(int dim, int cells, int steps, const std::string& solver, RCP<const Comm
 
 }  // namespace
 
-/// coupled [dimension [cells per edge [steps [direct | iterative]]]]
+/// Arguments: coupled [dimension [cells per edge [steps [direct | iterative]]]]
 int main(int argc, char** argv) {
   Tpetra::ScopeGuard guard(&argc, &argv);
   const auto number = [&](int k, int otherwise) { return argc > k ? std::stoi(argv[k]) : otherwise; };

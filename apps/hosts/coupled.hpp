@@ -1,5 +1,5 @@
-// A host with a flow code of its own couples it to Sprekk's mechanics in two ways: by exchange, and as rows of Sprekk's
-// Jacobian. The scene for both, and for Sprekk's own flow.
+// Coupling of a host with its own flow code to Sprekk's mechanics, by exchange and as rows of Sprekk's Jacobian. The
+// header contains the scene for both, and for Sprekk's own flow.
 #pragma once
 
 #include "own_flow.hpp"
@@ -11,11 +11,12 @@
 
 namespace hosts {
 
-// Rock, and the fluid's mobility and storage in it; the box is pressed on by 2 MPa and, more than that, from above.
+// Rock, and the fluid's mobility and storage in it. The box is compressed by 2 MPa, with an additional shear traction
+// of 0.4 MPa on "north".
 constexpr Real E = 10e9, nu = 0.25, alpha = 0.8, k_mu = 1e-12, storage = 2e-10;  // Pa, -, -, m^2/(Pa s), 1/Pa
 constexpr Real viscosity = 1e-3, aperture = 2e-4, least = 1e-5, injection = 1e-6, dt = 10;  // Pa s, m, m, m/s^2, s
 
-/// Of 1 m; the fracture ends inside.
+/// Returns a grid of a box of 1 m with a fracture that ends inside.
 inline Grid grid(int dim, int cells) {
   const Real h = 1.0 / cells;
   const std::array<int, 2> middle = {cells / 4, cells - cells / 4};
@@ -31,7 +32,7 @@ inline Fluid fluid() {
   return {k_mu, storage, alpha * alpha / (4 * M), viscosity, aperture, least, injection};
 }
 
-/// A block on rollers, without a fluid.
+/// Returns the scene of a block on rollers, without a fluid.
 inline model::Scene block(int dim, int cells) {
   const auto [n, h, plane, along, across] = grid(dim, cells);
   model::Scene scene;
@@ -84,7 +85,7 @@ inline void take(model::Model& model, Real t, Cost& cost) {
   cost.krylov += solve::iterations(report.linear_solves);
 }
 
-/// The host's reservoir beside a model of the block. Each rank solves all of the flow, as the code is serial.
+/// Host's reservoir with a model of the block. The code is serial: each rank solves the whole flow.
 class Exchange {
  public:
   Exchange(int dim, int cells, RCP<const Comm> comm, model::Scene scene)
@@ -104,11 +105,12 @@ class Exchange {
   }
 
   model::Model& model() { return *model_; }
-  /// Of owned cells, then of owned fracture faces.
+  /// Returns the pressures of owned cells, then of owned fracture faces, Pa.
   Values pressures() const { return owned(p_); }
 
-  /// Fixed stress: the flow is solved as if the rock yielded to pressures under constant stress, then the mechanics
-  /// with its pressures, until neither changes.
+  /// Takes a fixed-stress step to t. Flow is solved with the compliance of the rock under constant stress, then
+  /// mechanics with the pressures, until pressures change by less than the tolerance, Pa. Throws an Error after 500
+  /// exchanges. Collective.
   Cost step(Real t, Real tolerance) {
     Cost cost;
     const Real K = E / (3 * (1 - 2 * nu)), length = 0.5;
@@ -154,10 +156,10 @@ class Exchange {
   Reservoir reservoir_;
   Values room_, p_;
   std::unique_ptr<model::Model> model_;
-  std::vector<int> number_;  // [owned cell, then owned fracture face] in the host's grid
+  std::vector<int> number_;  // [owned cell, then owned fracture face] number in the host's grid
 };
 
-/// The block and the host's flow in one Jacobian.
+/// Returns a model of the block with the host's flow in one Jacobian. Collective.
 inline std::unique_ptr<model::Model> make_together(model::Scene scene, RCP<const Comm> comm) {
   scene.host_fluid = physics::HostFluid{true};
   const auto flow = [](const mesh::Mesh& mesh) {
@@ -168,7 +170,7 @@ inline std::unique_ptr<model::Model> make_together(model::Scene scene, RCP<const
   return std::make_unique<model::Model>(scene, comm, flow);
 }
 
-/// The block and Sprekk's own flow.
+/// Returns a model of the block with Sprekk's own flow. Collective.
 inline std::unique_ptr<model::Model> make_sprekk(model::Scene scene, RCP<const Comm> comm) {
   auto& flow = scene.flow.emplace();
   flow.viscosity = viscosity;
@@ -180,7 +182,7 @@ inline std::unique_ptr<model::Model> make_sprekk(model::Scene scene, RCP<const C
   return std::make_unique<model::Model>(scene, comm);
 }
 
-/// Pressures of a model in one Jacobian, as those of Exchange.
+/// Returns the pressures of a model with one Jacobian, in the order of Exchange::pressures(), Pa.
 inline Values pressures(model::Model& model) {
   Values all;
   const auto p = model.field("pressure").values, trace = model.field("face pressure").values;
@@ -190,7 +192,7 @@ inline Values pressures(model::Model& model) {
   return all;
 }
 
-/// How many fracture faces are open, stick, slip; over all ranks.
+/// Returns the number of open, sticking and sliding fracture faces over all ranks. Collective.
 inline std::array<int, 3> count_states(model::Model& model) {
   std::array<int, 3> here{}, all{};
   for (const Real state : model.output("state").values) ++here[static_cast<int>(state)];
@@ -198,7 +200,7 @@ inline std::array<int, 3> count_states(model::Model& model) {
   return all;
 }
 
-/// max |a - b| / max |b|, over all ranks; infinite where one is no number, or their sizes differ.
+/// Returns max |a - b| / max |b| over all ranks; infinite for NaN or different sizes. Collective.
 inline Real distance(const Values& a, const Values& b, const Comm& comm) {
   const Real infinite = std::numeric_limits<Real>::infinity();
   Real here[2] = {a.size() == b.size() ? 0 : infinite, 0}, all[2];

@@ -1,4 +1,4 @@
-// A module of a host, with an unknown of its own: grout that is sealed in the fractures and resists to be squeezed.
+// Host module with an additional unknown: grout sealed in the fractures, which resists compression.
 #pragma once
 
 #include "mesh/extents.hpp"
@@ -8,15 +8,15 @@ namespace hosts {
 
 using namespace sprekk;
 
-/// The grout at one side of one fracture face. The volume of all grout in the face is |f| (w_n + h), where w_n is the
-/// mean normal displacement jump; it has the pressure p = -K w_n/h, which acts on both sides. Rows:
+/// Grout at one side of one fracture face. The volume of grout in the face is |f| (w_n + h), with the mean normal jump
+/// w_n. Its pressure p = -K w_n/h acts on both sides. Rows:
 ///   displacement, side bubble   - p d(volume)/d(u, beta)
 ///   grout pressure              - |f| (w_n + h p/K)
 ///
 /// | symbol | shape                        | unit      |                                                              |
 /// | x      | u [node, dim], beta [dim], p | m, m, Pa  | unknowns                                                     |
-/// | r      | rows of the same             | N, N, m^3 |                                                              |
-/// | V      | [side, as x]                 | m^2       | d(volume)/d(u, beta, h), this side's part                    |
+/// | r      | rows of these unknowns       | N, N, m^3 |                                                              |
+/// | V      | [side, as x]                 | m^2       | d(volume)/d(u, beta, h), part of this side                   |
 /// | h_K    |                              | m/Pa      | h/K, thickness at zero displacement over bulk modulus        |
 template <mesh::Shape shape>
 struct GroutedSide {
@@ -45,13 +45,14 @@ struct GroutedSide {
   }
 };
 
-/// h, m, and K, Pa. In the local group of contact, p is eliminated face by face; in "" it stays in the linear system.
+/// Returns the module with h, m, and K, Pa. In the local group of contact, p is eliminated face by face; with "", p
+/// remains in the linear system. Throws an Error for enriched tips.
 inline auto make_grout(const mesh::Mesh& mesh, Real h, Real K, const std::string& local_group = "fracture face") {
   const fields::Field pressure{"grout pressure", fields::Entity::fracture_face, 1, "Pa"};
   assembly::Description grout{"grout", fmt::format("h = {} m, K = {} Pa", h, K)};
   grout.unknowns = {{pressure, "stress", {{"displacement", mesh::typical_face_area(mesh)}}}};
   grout.unknowns[0].local_group = local_group;
-  grout.linear = true;  // and symmetric
+  grout.linear = true;  // constant and symmetric Jacobian
   return mesh::for_shape(mesh.shape, [&](auto shape) {
     return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes<shape()>(mesh), h / K});
   });

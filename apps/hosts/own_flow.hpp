@@ -1,4 +1,4 @@
-// The flow of a host as a module: the equations of reservoir.hpp as rows of Sprekk's Jacobian.
+// Flow of a host as a module: the equations of reservoir.hpp as rows of Sprekk's Jacobian.
 #pragma once
 
 #include "mesh/facets.hpp"
@@ -10,11 +10,11 @@ namespace hosts {
 using namespace sprekk;
 using mesh::operator+, mesh::operator-, mesh::operator*;
 
-/// Rock: what a cell stores, and what flows from it through its faces, q = T (p - p_face).
+/// Flow in rock: storage of a cell, and outflow through its faces, q = T (p - p_face).
 ///
 /// | symbol | shape        | unit       |                                       |
 /// | x      | 1 + faces    | Pa         | pressure of the cell, of its faces    |
-/// | r      | 1 + faces    | m^3/s      | stored + sum q, -q                    |
+/// | r      | 1 + faces    | m^3/s      | storage + sum q, -q                   |
 /// | T      | [cell, face] | m^3/(Pa s) | half-transmissibilities               |
 /// | volume | [cell]       | m^3        | V                                     |
 /// | storage |             | 1/Pa       | 1/M                                   |
@@ -50,12 +50,12 @@ struct CellFlow {
   }
 };
 
-/// Fracture: a face that widens, is injected into, and leaks into its neighbours through its ridges.
+/// Flow in a fracture: a face opens, receives injection, and exchanges fluid with its neighbours through its ridges.
 ///
 /// | symbol | shape         | unit  |                                                          |
-/// | x      | 2 + ridges    | Pa, m | pressure of the face, of its ridges; widening b          |
+/// | x      | 2 + ridges    | Pa, m | pressure of the face, of its ridges; aperture change b   |
 /// | r      | 1 + ridges    | m^3/s | |f| ((b - old)/dt - injection) + sum q, -q               |
-/// | shape  | [face, ridge] | -     | length of the ridge over its distance                    |
+/// | form   | [face, ridge] | -     | length of the ridge over its distance                    |
 /// | area   | [face]        | m^2   |                                                          |
 /// | old    | [owned face]  | m     | b at the start of the step                               |
 template <mesh::Shape shape>
@@ -105,9 +105,9 @@ class OwnFlow final : public assembly::Module {
     using assembly::Loop;
     assembly::Unknown cells{{"pressure", fields::Entity::cell, 1, "Pa"}, "pressure", {}};
     assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, "pressure", {}};
-    facets.near_null_space = assembly::NearNullSpace::constants;  // multigrid, for the pressure of faces
-    cells.condensed_into = "face pressure";                       // from which those of cells are eliminated
-    cells.balance = facets.balance = true;                        // of volume per time
+    facets.near_null_space = assembly::NearNullSpace::constants;  // multigrid for face pressures
+    cells.condensed_into = "face pressure";                       // cell pressures are eliminated from them
+    cells.balance = facets.balance = true;                        // rows: volume per time
     assembly::Declaration d;
     d.unknowns = {cells, facets};
     d.scales = {{"pressure", 1e-12}};
@@ -161,12 +161,12 @@ class OwnFlow final : public assembly::Module {
 
   CellFlow<shape> cell_;
   FaceFlow<shape> face_;
-  std::array<int, 2> own_{};  // blocks of what is kept
+  std::array<int, 2> own_{};  // blocks with history variables
   std::unique_ptr<InCells> in_cells_;
   std::unique_ptr<InFaces> in_faces_;
 };
 
-/// Half-transmissibilities of faces, and of ridges without the transmissivity of the fracture.
+/// Computes half-transmissibilities of faces, and of ridges without the transmissivity of the fracture.
 template <mesh::Shape shape>
 OwnFlow<shape>::OwnFlow(const mesh::Mesh& mesh, const Fluid& fluid) {
   constexpr int n = CellFlow<shape>::n, n_ridges = FaceFlow<shape>::n;

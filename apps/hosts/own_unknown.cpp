@@ -1,5 +1,5 @@
-// A host that adds an unknown of its own to a scene: grout in a fracture, its pressure solved for together with the
-// rock. A column is pushed down; first the grout alone carries it, then the walls of the fracture touch.
+// Host that adds an unknown to a scene: the pressure of grout in a fracture, solved together with the rock. A column is
+// compressed. At first the grout alone transmits the load, then the sides of the fracture come into contact.
 #include "grout.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -11,8 +11,8 @@ using namespace sprekk;
 int main(int argc, char** argv) {
   Tpetra::ScopeGuard guard(&argc, &argv);
   const auto comm = Tpetra::getDefaultComm();
-  constexpr Real E = 10e9, squeeze = 5e-4;  // of column.xml: Pa, m
-  constexpr Real h = 0.02, K = 0.5e9;       // of the grout: m, Pa
+  constexpr Real E = 10e9, squeeze = 5e-4;  // column.xml: Pa, m
+  constexpr Real h = 0.02, K = 0.5e9;       // grout: m, Pa
   const auto grout = [=](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> modules;
     modules.push_back(hosts::make_grout(mesh, h, K));
@@ -23,11 +23,11 @@ int main(int argc, char** argv) {
     bool good = true;
     for (Real t : {1, 3}) {
       good = model.step_to(t).converged && good;
-      // By hand: springs in series, d = p (1 m/E + h/K); once the walls touch, the rock alone yields further.
+      // Analytical solution: springs in series, d = p (1 m/E + h/K). After contact of the sides, only the rock deforms.
       const Real d = 1e-3 * t, alone = d / (1 / E + h / K), full = squeeze * K / h;
       const Real by_hand = std::min(alone, full), contact = alone > full ? (d - squeeze) * E - full : 0;
       const auto p = model.field("grout pressure").values, lambda = model.field("traction").values;
-      Real off = 0;  // largest error on this rank's faces, Pa
+      Real off = 0;  // largest error on the faces of this rank, Pa
       for (std::size_t face = 0; face < p.extent(0); ++face)
         off = std::max({off, std::abs(p(face, 0) - by_hand), std::abs(lambda(face, 0) + contact)});
       std::cout << fmt::format("{} m: grout {} Pa, walls {} Pa, error {} Pa\n", d, by_hand, contact, off);

@@ -1,4 +1,4 @@
-// The flow code of a host: finite volumes with two-point fluxes on a grid of its own, which knows nothing of Sprekk.
+// Flow code of a host: finite volumes with two-point fluxes on its own grid, independent of Sprekk.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace hosts {
 
-/// A box with one fracture in a plane y = constant, n cells with edges h; in 2D n[2] = 1, h[2] = 1. The box is closed.
+/// Closed box with one fracture in a plane y = constant: n cells with edges h, m. In 2D n[2] = 1, h[2] = 1.
 struct Grid {
   std::array<int, 3> n;
   std::array<double, 3> h;
-  int plane;                          ///< the fracture lies below the cells with this index in y
-  std::array<int, 2> from_x, from_z;  ///< its first cell, and the one after its last
+  int plane;                          ///< the fracture is at the lower y face of cells with this y index
+  std::array<int, 2> from_x, from_z;  ///< first cell of the fracture, and the one after its last
 
   int n_cells() const { return n[0] * n[1] * n[2]; }
   int n_faces() const { return (from_x[1] - from_x[0]) * (from_z[1] - from_z[0]); }
@@ -30,23 +30,23 @@ struct Grid {
 };
 
 struct Fluid {
-  double mobility;         ///< of the rock, k/mu, m^2/(Pa s)
-  double storage;          ///< of the rock at constant strain, 1/M, 1/Pa
-  double stabilisation;    ///< alpha^2/(4 (lambda + 2G)), 1/Pa; times h^2: mobility of dp/dt, docs/model/flow.md
+  double mobility;         ///< rock, k/mu, m^2/(Pa s)
+  double storage;          ///< rock at constant strain, 1/M, 1/Pa
+  double stabilisation;    ///< alpha^2/(4 (lambda + 2G)), 1/Pa; times h^2: mobility of dp/dt, see docs/model/flow.md
   double viscosity;        ///< Pa s
-  double aperture, least;  ///< of the fracture at the start, and the least hydraulic one, m
-  double injection;        ///< into the fracture, grows with time, m/s^2
+  double aperture, least;  ///< fracture: initial aperture, smallest hydraulic aperture, m
+  double injection;        ///< rate of injection into the fracture, proportional to time, m/s^2
 
   double transmissibility(double widening) const {
     return std::pow(std::max(least, aperture + widening), 3) / (12 * viscosity);
   }
 };
 
-/// The pressures of cells, then of fracture faces, and the room that the rock leaves the fluid, in the same order: of
-/// cells what pores have gained, m^3, of faces the widening, m.
+/// Pressures of cells, then of fracture faces, Pa; or the volume available to the fluid, in the same order: gained pore
+/// volume of cells, m^3, and aperture change of faces, m.
 using Values = std::vector<double>;
 
-/// Solves A x = b by Gauss's elimination with rows exchanged; x comes in b.
+/// Solves A x = b by Gaussian elimination with partial pivoting. b is overwritten by x.
 inline void solve(std::vector<Values>& A, Values& b) {
   const int n = static_cast<int>(b.size());
   for (int k = 0; k < n; ++k) {
@@ -68,15 +68,15 @@ inline void solve(std::vector<Values>& A, Values& b) {
   }
 }
 
-/// One implicit step after another, each with the room for the fluid taken as given.
+/// Implicit time steps, each for a given volume available to the fluid.
 class Reservoir {
  public:
   Reservoir(const Grid& grid, const Fluid& fluid) : grid_(grid), fluid_(fluid), old_(size(), 0), old_room_(size(), 0) {}
 
   int size() const { return grid_.n_cells() + grid_.n_faces(); }
 
-  /// The pressures at the end t of a step dt with the room of `now`. What the room makes of a pressure that differs
-  /// from `last`, for which it was found, is guessed: by `yields` (of rock, 1/Pa; of the fracture, m/Pa).
+  /// Returns the pressures at the end t of a step dt with the volumes `room`, which were found for the pressures
+  /// `last`. The change of the volumes with pressure is approximated by `yields` (rock, 1/Pa; fracture, m/Pa).
   Values pressures(double t, double dt, const Values& room, const Values& last, const std::array<double, 2>& yields) {
     A_.assign(size(), Values(size(), 0));
     b_.assign(size(), 0);
@@ -95,14 +95,14 @@ class Reservoir {
     return b_;
   }
 
-  /// The step is over.
+  /// Accepts the step.
   void accept(const Values& pressures, const Values& room) {
     old_ = pressures;
     old_room_ = room;
   }
 
  private:
-  /// What flows between a and b in dt: T dt (p_a - p_b), and `rate` times what that difference grows by.
+  /// Adds the flow from a to b in dt: T dt (p_a - p_b), plus `rate` times the increase of this difference.
   void flow(int a, int b, double T_dt, double rate) {
     for (const auto [from, to] : {std::array{a, b}, std::array{b, a}}) {
       A_[from][from] += T_dt + rate;
@@ -127,7 +127,7 @@ class Reservoir {
             auto next = here;
             ++next[axis];
             const int a = grid_.cell(i, j, k), b = grid_.cell(next[0], next[1], next[2]);
-            const double T = volume / (h[axis] * h[axis]);  // over the mobility
+            const double T = volume / (h[axis] * h[axis]);  // divided by the mobility
             if (axis == 1 && next[1] == grid_.plane && face >= 0) {
               for (const int cell : {a, b}) flow(cell, first_face + face, 2 * T * fluid_.mobility * dt, 0);
             } else {

@@ -1,5 +1,5 @@
-// A host that owns main, the communicator, the scene and the time loop: it shears a block with a joint, finds by
-// bisection when the joint slides, and then gives the joint a slip of its own.
+// Host that controls main, the communicator, the scene and the time loop. It shears a block with a joint, finds the
+// onset of sliding by bisection, and then prescribes a slip of the joint.
 #include "model/model.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -11,10 +11,10 @@
 using namespace sprekk;
 
 namespace {
-// A block of 1 m: rock (Poisson's ratio 0), stiffness and friction of the joint, compression.
+// Block of 1 m: rock (Poisson's ratio 0), stiffness and friction of the joint, compression.
 constexpr Real E = 10e9, K_t = 30e9, mu = 0.6, compression = 1e-3;  // Pa, Pa/m, -, m
 
-/// The top is pressed down until t = 1, then moves sideways by 1 mm per unit of time.
+/// Returns the scene: the top moves down until t = 1, then sideways by 1 mm per unit of time.
 model::Scene block() {
   model::Scene scene;
   scene.mesh.cells = {4, 4};
@@ -49,10 +49,10 @@ Real largest(const std::vector<Real>& values, MPI_Comm comm) {
 
 void step(model::Model& model, Real t) {
   const auto report = model.step_to(t);
-  if (!report.converged) throw Error(report.reason);  // the model is then where it was
+  if (!report.converged) throw Error(report.reason);  // the model keeps its last state
 }
 
-/// Errors of the displacement below the joint, where u = (tau y/G, -compression y).
+/// Returns the errors of the displacement below the joint, where u = (tau y/G, -compression y), m.
 std::vector<Real> displacement_errors(model::Model& model, Real tau) {
   const auto u = model.field("displacement").values;
   std::vector<Real> errors;
@@ -71,10 +71,10 @@ int run(MPI_Comm comm) {
     step(model, model.time() + dt);
     if (largest(model.output("slip").values, comm) > 1e-12) model.restore(before);
   }
-  // By hand: the block and the joint shear in series, tau = d/(1 m/G + 1/K_t), up to mu times the pressure.
+  // Analytical solution: block and joint shear in series, tau = d/(1 m/G + 1/K_t), at most mu times the pressure.
   const Real compliance = 2 / E + 1 / K_t, onset = 1 + 1e3 * mu * E * compression * compliance, stuck = model.time();
 
-  // A slip that the host knows of relieves the shear stress; from here on it is part of the joint's history.
+  // A slip given by the host reduces the shear stress. From here on, it is part of the joint's history.
   const auto plastic = model.field("elastic-plastic jump: plastic jump").values;
   constexpr Real given = 2e-4;
   for (std::size_t face = 0; face < plastic.extent(0); ++face) plastic(face, 0) = given;
@@ -82,7 +82,7 @@ int run(MPI_Comm comm) {
   const Real tau = (1e-3 * (model.time() - 1) - given) / compliance;
   const Real error = largest(displacement_errors(model, tau), comm);
 
-  // The joint becomes weak: it slips until its friction bears what is left of the shear stress.
+  // The joint is weakened and slips until its friction balances the remaining shear stress.
   auto weaker = model.scene();
   weaker.materials["smooth"].friction_coefficient = mu / 6;
   model.change(weaker);
@@ -101,8 +101,8 @@ int main(int argc, char** argv) {
   Kokkos::initialize(argc, argv);
   int status = 1;
   try {
-    status = run(MPI_COMM_WORLD);  // no model may outlive Kokkos
-  } catch (const Error& error) {   // the same on every rank
+    status = run(MPI_COMM_WORLD);  // models must be destroyed before Kokkos ends
+  } catch (const Error& error) {   // thrown on all ranks
     std::cerr << error.what() << '\n';
   }
   Kokkos::finalize();

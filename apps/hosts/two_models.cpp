@@ -1,5 +1,5 @@
-// A host that runs two models at the same time: on one half of the ranks each, and by turns on the same ranks. Nothing
-// that one does may reach the other: both end with the same bits as when they run alone.
+// Host that runs two models at the same time: on one half of the ranks each, and alternately on the same ranks. The
+// models must not affect each other: both end with the same bits as in separate runs.
 #include "model/model.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -12,7 +12,7 @@ using namespace sprekk;
 namespace {
 constexpr Real E = 10e9;  // Pa
 
-/// A block of 1 m with a joint in its middle, pushed down and sideways; of two kinds, 0 and 1.
+/// Returns the scene of a block of 1 m with a joint in its middle, moved down and sideways; kind 0 or 1.
 model::Scene block(int kind) {
   model::Scene scene;
   scene.mesh.cell = kind == 0 ? "quadrilateral" : "triangle";
@@ -35,7 +35,7 @@ model::Scene block(int kind) {
   auto& top = scene.boundary_conditions["top"];
   top.boundary = "north";
   top.displacement = {right, down};
-  scene.solver.linear_solver.reproducible = true;  // MUMPS on several ranks adds in the order in which messages come
+  scene.solver.linear_solver.reproducible = true;  // on several ranks, MUMPS adds in the order of messages
   return scene;
 }
 
@@ -60,7 +60,7 @@ std::vector<Real> alone(int kind, RCP<const Comm> comm) {
   return unknowns(model);
 }
 
-/// By hand: the joint slides at mu times the pressure, E times the compression.
+/// Compares with the analytical solution: shear traction mu E compression on the sliding joint.
 bool is_exact(model::Model& model, Real mu, Real compression) {
   const auto lambda = model.field("traction").values;  // normal, tangential
   for (std::size_t face = 0; face < lambda.extent(0); ++face)
@@ -69,7 +69,7 @@ bool is_exact(model::Model& model, Real mu, Real compression) {
 }
 
 bool works(RCP<const Comm> world) {
-  // By turns on all ranks.
+  // alternately on all ranks
   model::Model first(block(0), world), second(block(1), world);
   for (Real t : times) {
     step(first, t);
@@ -78,7 +78,7 @@ bool works(RCP<const Comm> world) {
   bool good = unknowns(first) == alone(0, world) && unknowns(second) == alone(1, world);
   good = good && is_exact(first, 0.4, 1e-3) && is_exact(second, 0.7, 5e-4);
 
-  // At the same time, each on its half of the ranks; then one after the other.
+  // at the same time, each on half of the ranks; then one after the other
   const int rank = world->getRank(), kind = 2 * rank < world->getSize() ? 0 : 1;
   const RCP<const Comm> half = world->split(kind, rank);
   const auto together = alone(kind, half);

@@ -1,5 +1,5 @@
-// Elasticity with packages/multigrid alone: conjugate gradients, preconditioned by one cycle, on a cube of trilinear
-// elements. Its sides move by a linear field, which is then the solution of the discrete problem as well.
+// Elasticity with packages/multigrid only: conjugate gradients preconditioned by one cycle, on a cube of trilinear
+// elements. The prescribed displacement of the sides is linear, so the discrete solution is this linear field.
 #include "multigrid/multigrid.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -12,14 +12,14 @@
 using namespace sprekk;
 using Point = std::array<int, 3>;
 
-constexpr int n = 24;                                  // inner nodes along an edge, which are apart by 1
-constexpr Real lambda = 1, mu = 1;                     // Lame's
-constexpr Real S[] = {1, -1}, M[] = {2. / 6, 1. / 6};  // stiffness and mass of a linear element in one dimension
+constexpr int n = 24;                                  // inner nodes along an edge; spacing 1
+constexpr Real lambda = 1, mu = 1;                     // Lame's constants
+constexpr Real S[] = {1, -1}, M[] = {2. / 6, 1. / 6};  // stiffness and mass of a linear 1D element
 
 Point point(GlobalIndex node) { return {int(node % n), int(node / n % n), int(node / n / n)}; }
 Real exact(const Point& p, int k) { return 0.1 * p[k] - 0.3 * p[(k + 1) % 3] + 0.2; }
 
-/// The integral of dN_a/dx_i dN_b/dx_j over an element, for its nodes a and b in {0, 1}^3.
+/// Returns the integral of dN_a/dx_i dN_b/dx_j over an element, for its nodes a and b in {0, 1}^3.
 Real integral(const Point& a, const Point& b, int i, int j) {
   Real product = 1;
   for (int k = 0; k < 3; ++k)
@@ -27,7 +27,7 @@ Real integral(const Point& a, const Point& b, int i, int j) {
   return product;
 }
 
-/// Adds the rows of a node, from the eight elements around it; what the sides prescribe goes to b.
+/// Adds the rows of a node from its eight elements. Prescribed displacements contribute to b.
 void add_rows(GlobalIndex node, fields::CrsMatrix& A, fields::Vector& b) {
   const Point p = point(node);
   for (int k = 0; k < 64; ++k) {
@@ -47,7 +47,7 @@ void add_rows(GlobalIndex node, fields::CrsMatrix& A, fields::Vector& b) {
   }
 }
 
-/// x <- A^-1 b by conjugate gradients, to a relative residual of 1e-10; returns the iterations.
+/// Computes x = A^-1 b by conjugate gradients to a relative residual of 1e-10. Returns the number of iterations.
 int solve(const fields::Operator& A, const fields::Operator& M, const fields::Vector& b, fields::Vector& x) {
   fields::Vector r(b, Teuchos::Copy), z(b.getMap()), p(b.getMap()), Ap(b.getMap());
   Real rz = 0;
@@ -91,5 +91,5 @@ int main(int argc, char** argv) {
   const Real error = x.normInf() / exact({n, 0, 0}, 0);
   if (comm->getRank() == 0)
     std::printf("%d unknowns: %d iterations, relative error %.1e\n", 3 * n * n * n, iterations, error);
-  return iterations <= 10 && error < 1e-8 ? 0 : 1;  // it takes 9, and 11 without the rigid motions
+  return iterations <= 10 && error < 1e-8 ? 0 : 1;  // 9 iterations; without rigid motions 11
 }

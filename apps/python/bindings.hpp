@@ -1,4 +1,4 @@
-// What the translation units of the Python module share.
+// Declarations shared by the translation units of the Python module.
 #pragma once
 
 #include "base/types.hpp"
@@ -17,15 +17,15 @@ namespace sprekk::python {
 
 namespace py = pybind11;
 
-/// A scene as its entries, which may be changed into another scene, and as models read it.
+/// Scene as entries, which may be changed to form another scene, and as input of models.
 class SceneHandle;
 
-/// Ranks of an mpi4py.MPI.Comm, which is referred to.
+/// Returns the communicator of an mpi4py.MPI.Comm, which must remain alive.
 inline RCP<const Comm> comm_of(const py::object& comm) {
   return rcp(new Teuchos::MpiComm<int>(MPI_Comm_f2c(comm.attr("py2f")().cast<MPI_Fint>())));
 }
 
-/// An array of this shape that takes the values over, without copying them.
+/// Returns an array of this shape that owns the values, without a copy.
 template <class T>
 py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
   auto* owned = new std::vector<T>(std::move(values));

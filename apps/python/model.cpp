@@ -1,4 +1,4 @@
-// Models: steps, fields in place, and what a state tells.
+// Models: steps, views of fields, and outputs of states.
 #include "own_module.hpp"
 #include "ranks.hpp"
 #include "scene_handle.hpp"
@@ -24,8 +24,7 @@ using model::Model;
 
 namespace {
 
-/// Whether a solve is to stop, asked in each iteration of Newton's method: Python has been asked to (Ctrl-C), or what
-/// is written in Python has failed.
+/// Stop request, called in each iteration of Newton's method. True after Ctrl-C, or if Python code has failed.
 struct Interrupt {
   Failure failure;
 
@@ -41,14 +40,14 @@ struct Interrupt {
 py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces);
 py::dict local_mesh(const mesh::Mesh& mesh) { return mesh_of(mesh, mesh.n_fracture_faces()); }
 
-/// What must be the same on all ranks.
+/// Returns the text that must be equal on all ranks.
 std::string text_of(const SceneHandle& scene, const std::optional<std::pair<bool, Real>>& host_fluid) {
   model::Scene copy = scene.scene();
   const auto fluid = host_fluid ? fmt::format("pressure of a host {} {}", host_fluid->first, host_fluid->second) : "";
   return base::to_xml(base::effective(copy, "Sprekk")) + fluid;
 }
 
-/// A model with what must not end before it.
+/// Model with the objects that must outlive it.
 class ModelHandle {
  public:
   ModelHandle(const SceneHandle& scene, py::object comm, const std::optional<std::pair<bool, Real>>& host_fluid,
@@ -88,8 +87,8 @@ class ModelHandle {
     (*this)->change(own);
   }
 
-  /// Throws on all ranks what has failed in Python on any, after what was evaluated there; `in_step`: the step is taken
-  /// back. Collective.
+  /// Throws an Error on all ranks if Python code has failed on any rank during an evaluation. `in_step`: the step is
+  /// undone. Collective.
   void check(bool in_step = true) {
     const auto& ranks = *(*this)->mesh().comm;
     if (!has_modules_ || !base::on_any_rank(ranks, !failure_->empty())) return;
@@ -105,7 +104,7 @@ class ModelHandle {
   std::unique_ptr<Model> model_;
 };
 
-/// Goes through the steps of a scene.
+/// Loop over the steps of a scene.
 struct StepsHandle {
   ModelHandle& model;
   model::Steps steps;
@@ -117,7 +116,7 @@ struct StepsHandle {
   }
 };
 
-/// A field's memory, with what owns it: arrays outlive models.
+/// Returns a view of a field. The array keeps the memory alive after the model ends.
 py::array_t<Real> view_of(Model& model, const std::string& name) {
   struct Owner {
     model::FieldView field;
@@ -142,7 +141,7 @@ py::tuple kind_of(const fields::Field& field) {
   return py::make_tuple(fields::name_of(field.entity), field.n_components, field.unit);
 }
 
-/// Names with what they live on, components and unit.
+/// Returns entity, number of components and unit by name.
 py::dict fields_of(Model& model) {
   py::dict all;
   for (const auto& layout : model.system().layouts()) all[layout.field().name.c_str()] = kind_of(layout.field());
@@ -161,7 +160,7 @@ py::dict dict_of(std::vector<OutputField> outputs) {
   return all;
 }
 
-/// What the mean over a face at a side consists of: shares of the nodes [node], mean of the bubble.
+/// Returns the weights of the mean over a face at a side: [node], and the mean of the bubble.
 std::pair<std::vector<Real>, Real> face_mean(const mesh::Mesh& mesh, LocalIndex f, int side) {
   const auto& face = mesh.fracture_faces[f];
   const auto shares = assembly::mean_shares(mesh, face.cell[side], face.local_face[side]);
@@ -169,7 +168,7 @@ std::pair<std::vector<Real>, Real> face_mean(const mesh::Mesh& mesh, LocalIndex 
                    assembly::bubble_mean(mesh, face.cell[side], face.local_face[side]));
 }
 
-/// This rank's part of the mesh: owned entities first, all cells and nodes, and so many fracture faces.
+/// Returns this rank's part of the mesh: owned entities first, all cells and nodes, and n_faces fracture faces.
 py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces) {
   const py::ssize_t dim = mesh.dim(), per_cell = mesh.nodes_per_cell(), n = n_faces;
   const py::ssize_t per_face = mesh::n_face_nodes(mesh.shape);
@@ -189,7 +188,7 @@ py::dict mesh_of(const mesh::Mesh& mesh, LocalIndex n_faces) {
   }
   std::vector<Real> shares, bubble, side_shares, side_bubble;
   for (LocalIndex f = 0; f < n_faces; ++f) {
-    const bool known = mesh.fracture_faces[f].cell[mesh::minus] >= 0;  // else it is zero
+    const bool known = mesh.fracture_faces[f].cell[mesh::minus] >= 0;  // otherwise zero
     const auto [nodes, own] = known ? face_mean(mesh, f, mesh::minus) : std::pair(std::vector<Real>(per_face), Real(0));
     shares.insert(shares.end(), nodes.begin(), nodes.end());
     bubble.push_back(own);
@@ -259,7 +258,7 @@ py::list reactions_of(Model& model) {
   return all;
 }
 
-/// Numbers that describe the whole state, by their names, "a > b".
+/// Returns numbers that describe the whole state, by name, "a > b". Collective.
 py::dict totals_of(Model& model) {
   py::dict all;
   for (const auto& total : model.system().totals(model.state()))
@@ -271,16 +270,16 @@ void set_fluid_pressure(Model& model, const std::vector<Real>& cells, const std:
   physics::set_fluid_pressure(model.system(), cells, faces);
 }
 
-/// Everything that a state is, kept by Python.
+/// Complete state, owned by Python.
 struct CheckpointHandle {
   io::Checkpoint checkpoint;
   RCP<const Comm> comm;
-  py::object ranks;  ///< that the communicator refers to
+  py::object ranks;  ///< mpi4py object of the communicator
 };
 
-/// Rows and columns of a system with all blocks one after another, global numbers.
+/// Global numbers of rows and columns of a system with block after block.
 struct Numbering {
-  std::vector<GlobalIndex> first;  ///< [block]
+  std::vector<GlobalIndex> first;  ///< [block] first number
   explicit Numbering(const assembly::System& system) {
     GlobalIndex n = 0;
     for (const auto& block : system.blocks()) {
@@ -305,7 +304,8 @@ fields::BlockVector vectors_of(const assembly::System& system, const py::list& u
   return x;
 }
 
-/// The residual at x of a step that ends at t and takes dt, by blocks; no state changes but where loads stand.
+/// Returns the residual at x for a step of length dt that ends at t, by blocks. It changes the time of the loads, but
+/// no other state. Collective.
 py::list residual_at(Model& model, const py::list& unknowns, Real t, Real dt) {
   auto& system = model.system();
   const auto x = vectors_of(system, unknowns);
@@ -322,8 +322,8 @@ py::list residual_at(Model& model, const py::list& unknowns, Real t, Real dt) {
   return all;
 }
 
-/// Its derivative, by rows, columns and values of this rank's entries; rows of prescribed unknowns are those of the
-/// identity. With the size of the whole system, and of each block the number of its first unknown.
+/// Returns the Jacobian at x as rows, columns and values of this rank's entries. Rows of prescribed unknowns are
+/// identity. Also returns the size of the system and, for each block, the numbers of this rank's unknowns. Collective.
 py::tuple jacobian_at(Model& model, const py::list& unknowns, Real t, Real dt) {
   auto& system = model.system();
   const auto x = vectors_of(system, unknowns);
@@ -372,7 +372,7 @@ py::tuple jacobian_at(Model& model, const py::list& unknowns, Real t, Real dt) {
                         numbers.first.back(), owned);
 }
 
-/// (module, row, column, error) of each part of the Jacobian at x against differences.
+/// Returns (module, row, column, error) for each block of the Jacobian at x, compared with differences. Collective.
 py::list jacobian_errors(Model& model, const py::list& unknowns, Real t, Real dt) {
   auto& system = model.system();
   const auto x = vectors_of(system, unknowns);
@@ -389,7 +389,7 @@ std::vector<std::string> blocks_of(const Model& model) {
   return names;
 }
 
-/// Calls work() without the interpreter's lock, which other threads may take meanwhile.
+/// Calls work() without the interpreter lock, so that other threads may run.
 template <class Work>
 auto freely(const Work& work) {
   const py::gil_scoped_release free;

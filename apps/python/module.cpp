@@ -1,5 +1,5 @@
-// The extension module sprekk._sprekk. MPI is mpi4py's, which has begun it before this is imported and ends it after
-// the interpreter has ended. Kokkos is begun here and not ended: arrays may live as long as the interpreter.
+// Extension module sprekk._sprekk. mpi4py initialises MPI before the import and finalises it after the interpreter
+// ends. Kokkos is initialised here and not finalised, because arrays may exist until the interpreter ends.
 #include "bindings.hpp"
 
 #include "base/check.hpp"

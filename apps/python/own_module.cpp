@@ -1,4 +1,4 @@
-// Modules whose residuals are Python: blocks of numpy arrays over all entities of a loop at once.
+// Modules with residuals in Python, computed with numpy arrays over all entities of a loop at once.
 #include "own_module.hpp"
 
 #include "assembly/loop.hpp"
@@ -17,7 +17,7 @@ using fields::Entity;
 
 namespace {
 
-/// Runs work() with the interpreter's lock; an exception becomes an Error, which all ranks get to know.
+/// Runs work() with the interpreter lock. An exception becomes an Error, which is reported on all ranks.
 template <class Work>
 auto in_python(const std::string& module, const Work& work) {
   const py::gil_scoped_acquire hold;
@@ -72,27 +72,27 @@ assembly::Unknown unknown_of(const py::object& unknown) {
 
 using Array = py::array_t<Real, py::array::c_style | py::array::forcecast>;
 
-/// Memory as an array that must not be kept.
+/// Returns an array view of memory. Python code must not store the array.
 template <class T>
 py::array_t<Real> borrowed(const T* values, std::vector<py::ssize_t> shape) {
   const py::capsule nobody(values, [](void*) {});
   return py::array_t<Real>(std::move(shape), values, nobody);
 }
 
-/// One residual over one loop.
+/// Residual on one loop.
 struct Block {
   py::object python;
   Loop loop;
   std::vector<std::string> row_names, column_names;
-  std::vector<int> rows, columns;  ///< numbers of the fields
+  std::vector<int> rows, columns;  ///< field numbers
   std::vector<assembly::Stencil> row_stencils, column_stencils;
-  std::vector<LocalIndex> n_owned;                  ///< [row field] unknowns
+  std::vector<LocalIndex> n_owned;                  ///< [row field] number of owned unknowns
   std::vector<ConstView<LocalIndex***>> positions;  ///< [row * columns + column]
 
   int n_entities() const { return static_cast<int>(column_stencils.front().first.extent(0)); }
   static py::ssize_t size_of(const assembly::Stencil& stencil) { return stencil.first.extent(1) * stencil.width; }
 
-  /// Of each column field the unknowns of all entities, [entity, unknown of the entity].
+  /// Returns the unknowns of all entities for each column field, [entity, unknown of the entity].
   py::dict gather(const State& state) const {
     py::dict all;
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -197,7 +197,7 @@ class OwnModule final : public assembly::Module {
         d.unknowns.push_back(unknown_of(py::reinterpret_borrow<py::object>(unknown)));
       for (const auto& unknown : d.unknowns) {
         const auto& field = unknown.field;
-        if (field.entity == Entity::facet) continue;  // which files of fields have none of
+        if (field.entity == Entity::facet) continue;  // absent in result files
         assembly::Summary summary;
         if (field.entity == Entity::fracture_face)
           summary = {assembly::Summary::mean, field.name, field.n_components > 1 ? "local" : ""};
@@ -235,7 +235,7 @@ class OwnModule final : public assembly::Module {
       }
       for (const auto& item : python_.attr("histories").cast<py::dict>())
         history_names_.push_back(item.first.cast<std::string>());
-      std::sort(history_names_.begin(), history_names_.end());  // as declared
+      std::sort(history_names_.begin(), history_names_.end());  // in the order of the declaration
     });
   }
 
@@ -273,7 +273,7 @@ class OwnModule final : public assembly::Module {
   }
 
  private:
-  /// An own unknown on owned entities, or on all local nodes.
+  /// Returns the values of a field on owned entities, or on all local nodes.
   std::vector<Real> values(const State& state, const fields::Field& field) const {
     const auto& x = state.x[numbers_.at(field.name)];
     const bool on_nodes = field.entity == Entity::node;
@@ -285,7 +285,7 @@ class OwnModule final : public assembly::Module {
     return values;
   }
 
-  /// Runs work() unless something has failed before; remembers what fails.
+  /// Runs work() unless Python code has failed before. Saves the message of a failure.
   template <class Work>
   void attempt(const Work& work) const {
     if (!failure_->empty()) return;
@@ -296,7 +296,7 @@ class OwnModule final : public assembly::Module {
     }
   }
 
-  /// t, rate, and histories by names [owned entity, component].
+  /// Returns t, rate and the histories by name, [owned entity, component].
   py::object state_of(const State& state) const {
     py::dict histories;
     for (std::size_t k = 0; k < history_names_.size(); ++k) {
@@ -310,9 +310,9 @@ class OwnModule final : public assembly::Module {
   py::object python_;
   std::string name_;
   Failure failure_;
-  mutable std::vector<Block> blocks_;  // which keep positions once they are known
+  mutable std::vector<Block> blocks_;  // mutable: store positions after the first assembly
   RCP<const mesh::Mesh> mesh_;
-  std::map<std::string, int> numbers_;  // of own fields
+  std::map<std::string, int> numbers_;  // of the module's fields
   std::vector<std::string> history_names_;
 };
 

@@ -1,4 +1,4 @@
-// Modules that are written in Python.
+// Modules written in Python.
 #pragma once
 
 #include "bindings.hpp"
@@ -11,11 +11,11 @@ namespace sprekk::python {
 
 using MeshOf = py::dict (*)(const mesh::Mesh&);
 
-/// What went wrong first in Python on this rank, where others cannot know of it at once; empty: nothing.
+/// First message of a failure in Python on this rank, before other ranks are informed; empty: none.
 using Failure = std::shared_ptr<std::string>;
 
-/// What makes C++ modules of a list of sprekk.Module; nothing of an empty one. An exception in a residual goes to
-/// `failure`: the solver must then be stopped on all ranks.
+/// Returns a factory of C++ modules for a list of sprekk.Module; empty for an empty list. Exceptions in residuals are
+/// saved in `failure`. The solver must then be stopped on all ranks.
 model::ModuleFactory own_modules(const py::object& modules, MeshOf mesh_of, const Failure& failure);
 
 }  // namespace sprekk::python

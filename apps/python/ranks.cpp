@@ -20,7 +20,7 @@ std::recursive_mutex& library() {
   return mutex;
 }
 
-/// The first line that differs, of each text.
+/// Returns the first different line of each text.
 std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
   std::istringstream lines_of_a(a), lines_of_b(b);
   std::pair<std::string, std::string> lines;

@@ -1,4 +1,4 @@
-// Scenes, points of joints, and what is known of their entries.
+// Scenes, points of joints, and specifications of entries.
 #include "ranks.hpp"
 #include "scene_handle.hpp"
 
@@ -33,12 +33,13 @@ double number_of(const std::string& name, const py::handle& value) {
   throw Error(fmt::format("\"{}\" is an integer that no number holds, must be below 1.8e308 in size", name));
 }
 
-/// Whether it is an integer that an int can hold; larger ones are taken as doubles.
+/// Returns whether the value is an integer that fits an int; larger integers are read as doubles.
 bool is_int(const std::string& name, const py::handle& value) {
   return py::isinstance<py::int_>(value) && !py::isinstance<py::bool_>(value) && std::abs(number_of(name, value)) < 2e9;
 }
 
-/// A list of numbers, quantities ("1 mm") or words; numbers may stand among quantities.
+/// Sets a list of numbers, quantities ("1 mm") or texts. Numbers may be mixed with quantities. Throws a type_error for
+/// other types.
 void set_array(ParameterList& list, const std::string& name, const py::sequence& values) {
   bool integers = true, numbers = true;
   std::vector<std::string> texts;
@@ -155,7 +156,7 @@ py::dict described(const base::SectionSpecification& section) {
   return all;
 }
 
-/// [state, component], those of a path by the names that `sprekk point` prints.
+/// Returns the columns of a curve, [state], with the titles printed by `sprekk point`.
 py::dict columns_of(const model::PointCurve& curve) {
   std::ostringstream csv;
   model::write_csv(csv, {curve});
@@ -177,7 +178,7 @@ py::dict columns_of(const model::PointCurve& curve) {
   return all;
 }
 
-/// The scene of entries that are the same on all ranks.
+/// Returns the scene of entries. Throws an Error if they differ between ranks. Collective.
 model::Scene scene_of_all(const Comm& comm, const ParameterList& entries, const std::string& origin,
                           const std::string& folder, const std::vector<std::string>& overrides) {
   check_same(comm, origin, fmt::format("{}{}", base::to_xml(entries), fmt::join(overrides, "\n")));
@@ -264,7 +265,7 @@ void bind_scene(py::module_& m) {
         }
         py::list all;
         for (auto& curve : curves) {
-          const auto specimen = std::exchange(curve.specimen, "");  // a column of texts
+          const auto specimen = std::exchange(curve.specimen, "");  // column of texts
           all.append(py::make_tuple(specimen, columns_of(curve), curve.failure));
         }
         return all;

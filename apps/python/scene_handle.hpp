@@ -1,4 +1,4 @@
-// A scene between Python and models.
+// Scene shared by Python and models.
 #pragma once
 
 #include "bindings.hpp"
@@ -10,11 +10,11 @@ namespace sprekk::python {
 
 class SceneHandle {
  public:
-  /// Checks like model::read_scene. Collective on `comm`.
+  /// Checks the entries like model::read_scene; throws an Error likewise. Collective on `comm`.
   SceneHandle(Teuchos::ParameterList entries, std::string origin, std::string folder,
               const std::vector<std::string>& overrides, const Comm& comm);
 
-  const Teuchos::ParameterList& entries() const { return entries_; }  ///< overrides included
+  const Teuchos::ParameterList& entries() const { return entries_; }  ///< including overrides
   const std::string& origin() const { return origin_; }
   const std::string& folder() const { return folder_; }
   const model::Scene& scene() const { return scene_; }

@@ -14,11 +14,9 @@
 namespace sprekk::assembly {
 
 /// Dirichlet condition on one field. A component without a value is free. The condition applies either to nodes or
-/// facets
-/// on a boundary, or to cells or facets in a region. A facet is in a region if one of its two cells is in this region.
-/// On
-/// a fracture, both cells must be. Facets on the domain boundary are excluded: boundary conditions prescribe their
-/// fluxes.
+/// facets on a boundary, or to cells or facets in a region. A facet is in a region if one of its two cells is in this
+/// region. On a fracture, both cells must be. Facets on the domain boundary are excluded: boundary conditions prescribe
+/// their fluxes.
 struct DirichletCondition {
   std::string name;  ///< name in messages
   std::string field;
@@ -44,10 +42,8 @@ struct Held {
 };
 
 /// Returns the values of the entries at time t. If two conditions prescribe different values of one unknown, a message
-/// with
-/// both is appended to `conflicts`, one per pair of conditions and component. Throws an Error where an expression has
-/// no
-/// value.
+/// with both is appended to `conflicts`, one per pair of conditions and component. Throws an Error where an expression
+/// has no value.
 std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
                                     std::vector<std::string>& conflicts);
 
@@ -59,14 +55,12 @@ std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std:
 class Constraints {
  public:
   /// Finds the prescribed unknowns. Boundary conditions apply to the nodes of boundary faces. If a value jumps where a
-  /// fracture
-  /// ends on the boundary, each copy of the node has the value of its own side. `conditions` must be those on this
-  /// field.
+  /// fracture ends on the boundary, each copy of the node has the value of its own side. `conditions` must be those on
+  /// this field.
   Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions);
 
   /// Evaluates all values at time t. Throws an Error with the names of both conditions if two prescribe different
-  /// values of
-  /// one unknown. Local.
+  /// values of one unknown. Local.
   void evaluate(Real t);
 
   const std::vector<DirichletCondition>& conditions() const { return conditions_; }

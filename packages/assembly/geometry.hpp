@@ -26,8 +26,7 @@ inline ConstView<int*> material_numbers(const Geometry& geometry, const std::vec
 }
 
 /// Copies the coordinates of the first n nodes of a cell on the host, n = n_nodes(shape). In a mesh of order 2, a
-/// `shape` of
-/// order 1 selects the corners.
+/// `shape` of order 1 selects the corners.
 template <Shape shape>
 void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_nodes(shape)][mesh::dimension(shape)]) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -37,8 +36,7 @@ void gather_host(const mesh::Mesh& mesh, LocalIndex cell, Real (&X)[mesh::n_node
 }
 
 /// Calls visit(xi, volume, x) at the points of a quadrature rule, by default that of bubbles. xi is the reference
-/// point, x
-/// the position, and `volume` the weight of the point, m^3 (m^2 in 2D).
+/// point, x the position, and `volume` the weight of the point, m^3 (m^2 in 2D).
 template <Shape shape, class Straight = BubbleQuadrature<shape>, class Visit>
 void for_each_cell_point(const mesh::Mesh& mesh, LocalIndex cell, const Visit& visit) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);

@@ -16,10 +16,8 @@ struct JacobianError {
 
 /// Compares J d with central differences (r(x + h d) - r(x - h d))/(2 h) for each module and pair of blocks. The
 /// `n_directions` directions d are pseudo-random, with entries up to the kinematic scale of the block. For a pair
-/// without
-/// declared coupling, J = 0, and the error is relative to the residual scale of the row block. The distance of x from
-/// any
-/// change of contact state must exceed h. Collective; the result is the same on all ranks.
+/// without declared coupling, J = 0, and the error is relative to the residual scale of the row block. The distance of
+/// x from any change of contact state must exceed h. Collective; the result is the same on all ranks.
 std::vector<JacobianError> check_jacobian(System& system, const fields::BlockVector& x, Real h = 1e-4,
                                           int n_directions = 3);
 

@@ -8,12 +8,9 @@
 namespace sprekk::assembly {
 
 /// Returns the coefficients V of the layer volume, m^2 (m in 2D), [side of Loop::fracture_sides, node dim + dim + 1]. A
-/// layer
-/// of thickness h at zero displacement has the volume |f| (w_n + h) on a face f, with the mean normal jump w_n. The sum
-/// of
-/// V . (u [node of the side's cell, dim], beta [dim], h) over both sides of a face gives this volume. Each side
-/// contributes
-/// half of the thickness. Throws an Error if tips are enriched. Not collective.
+/// layer of thickness h at zero displacement has the volume |f| (w_n + h) on a face f, with the mean normal jump w_n.
+/// The sum of V . (u [node of the side's cell, dim], beta [dim], h) over both sides of a face gives this volume. Each
+/// side contributes half of the thickness. Throws an Error if tips are enriched. Not collective.
 template <Shape shape>
 View<Real**> layer_volumes(const mesh::Mesh& mesh) {
   SPREKK_CHECK(

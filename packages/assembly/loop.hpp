@@ -14,10 +14,8 @@
 namespace sprekk::assembly {
 
 /// Entities of a kernel loop. The owner of a fracture face evaluates its contact law (loop fracture_faces). Linear
-/// operators
-/// run over cells, fracture_cells and fracture_sides, including ghosts, and write owned rows only. Assembly therefore
-/// needs
-/// no communication.
+/// operators run over cells, fracture_cells and fracture_sides, including ghosts, and write owned rows only. Assembly
+/// therefore needs no communication.
 enum class Loop {
   cells,           ///< all local cells
   fracture_sides,  ///< sides of fracture faces with a local cell
@@ -61,14 +59,15 @@ class Writers {
 };
 
 /// Unknowns of one field touched by each entity of a loop, in groups of `width` adjacent unknowns. first(entity, group)
-/// is
-/// the local index of a group's first unknown, owned unknowns first, then ghosts.
+/// is the local index of a group's first unknown, owned unknowns first, then ghosts.
+///
 /// | loop                      | node field                           | fracture-face field                         |
 /// | cells, tip_cells          | the cell's nodes                     | -                                           |
 /// | fracture_sides, tip_sides | the nodes of the side's cell         | two-sided fields: the side's half; else all |
 /// | fracture_faces            | face nodes of side minus, then plus  | all components                              |
 /// | fracture_cells            | -                                    | all components                              |
 /// | boundary_faces            | the face's nodes                     | -                                           |
+///
 /// | loop                      | cell field     | facet field                                                       |
 /// | cells                     | the cell       | the cell's facets                                                 |
 /// | tip_cells                 | the cell       | -                                                                 |
@@ -77,10 +76,10 @@ class Writers {
 /// | fracture_faces            | -              | the fracture face                                                 |
 /// | fracture_cells            | -              | the fracture face, then its ridges                                |
 /// | neighbours                | both cells     | -                                                                 |
+///
 /// A two-sided field has 2 dim components per face: side minus, then side plus. A field on enriched nodes is absent
 /// (first = -1) on nodes without enrichment, and in fracture_faces on faces without a tip. Operators read zero for
-/// absent
-/// unknowns, and values written to absent rows are discarded.
+/// absent unknowns, and values written to absent rows are discarded.
 struct Stencil {
   ConstView<LocalIndex**> first;
   int width = 0;
@@ -111,8 +110,7 @@ class Stencils {
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns);
 
 /// Returns a zero matrix whose pattern contains each pair of groups in the stencils. All stencils of a row field must
-/// have
-/// the same width, else it throws an Error. Collective.
+/// have the same width, else it throws an Error. Collective.
 RCP<fields::CrsMatrix> make_matrix(const fields::Layout& row_layout, const fields::Layout& column_layout,
                                    const std::vector<std::pair<Stencil, Stencil>>& couplings);
 

@@ -9,10 +9,13 @@ namespace sprekk::assembly {
 /// edge from the tip. In quadrilaterals and hexahedra, nodes inside the faces and the cell follow the serendipity rule.
 /// The map of a cell is then quadratic in the distance from the tip, and its shape functions contain the square root of
 /// this distance (Barsoum 1976; Henshell and Shaw 1975). Copies of a node and tied nodes move alike, so cells and sides
-/// of fractures remain conforming. Two kinds of cells keep the nodes of all edges:
+/// of fractures remain conforming.
+///
+/// Two kinds of cells keep the nodes of all edges:
 /// - A face with only tips as corners (2D: an edge). The cell would collapse onto this face and have infinite strain
 ///   energy.
 /// - A map that is not one-to-one: its determinant changes sign at a point of CurvedQuadrature.
+///
 /// `mesh` must have split nodes. A mesh of order 1 remains unchanged. Not collective.
 void move_to_quarter_points(mesh::GlobalMesh& mesh);
 

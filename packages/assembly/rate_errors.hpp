@@ -20,9 +20,8 @@ namespace sprekk::assembly {
 ///   E = s E_1 + e,  tau = s tau_1 + dt,  s = min(1, |r|/|r_1|)
 /// Steps with the present accuracy would accumulate e tau/dt. The estimate is the geometric mean of E and e tau/dt.
 /// |.| is the root mean square over the block, divided by the largest change c of an unknown since the start. While c
-/// grows
-/// like t^p, its extrapolation c min(10, T/t)^min(p, 1/2) is used, with the end T. Otherwise, unknowns that start at
-/// zero would require too small steps.
+/// grows like t^p, its extrapolation c min(10, T/t)^min(p, 1/2) is used, with the end T. Otherwise, unknowns that start
+/// at zero would require too small steps.
 class RateErrors {
  public:
   RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& layouts, const std::vector<char>& balances,

@@ -6,6 +6,7 @@
 namespace sprekk::assembly {
 
 /// Coefficients of the rate dM/dt at the end of a step of length dt: now (M - M_old) - before (M_old - M_older).
+///
 /// implicit Euler: now = 1/dt, before = 0; first order
 /// bdf2: w = dt/dt_before, now = (1 + 2w)/(1 + w)/dt, before = w^2/(1 + w)/dt; second order (Hairer, Norsett and Wanner
 /// 1993, III.5). BDF2 is stable for w < 1 + sqrt(2). The first step, and steps that grow faster, use implicit Euler.

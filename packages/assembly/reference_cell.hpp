@@ -1,4 +1,5 @@
 // Shape functions, face bubbles and quadrature of the reference cells; device code.
+//
 // Simplices: {xi >= 0, sum xi <= 1}. Quadrilaterals and hexahedra: [-1, 1]^dim. Nodes and faces: see shape.hpp.
 #pragma once
 

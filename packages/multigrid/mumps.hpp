@@ -61,7 +61,7 @@ class Mumps {
   std::vector<int> counts_, starts_;    // [rank] number and start of values
   std::vector<Real> gathered_;          // values of all ranks
   std::vector<int> rows_, columns_;     // 1-based
-  std::vector<std::size_t> positions_;  // indices of the values passed to MUMPS, of the matrix or of all ranks; empty: all
+  std::vector<std::size_t> positions_;  // indices of the values passed to MUMPS; empty: all
   std::vector<double> values_;          // values of these entries
   RCP<fields::Import> to_root_, from_root_;
   RCP<Vector> at_root_;  // whole vector on rank 0

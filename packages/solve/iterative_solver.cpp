@@ -280,9 +280,9 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Solves from x = 0. Adds to the iterations, at most `most` unless this is 0. Returns false after too many
-  /// iterations, or if the preconditioner of an earlier matrix is not positive for this one. If this happens
-  /// with a new preconditioner, the matrix is indefinite: in hexahedra, quadrature may give single functions at crack
-  /// tips a small negative energy. GMRES then replaces conjugate gradients permanently.
+  /// iterations, or if the preconditioner of an earlier matrix is not positive for this one. If this happens with a new
+  /// preconditioner, the matrix is indefinite: in hexahedra, quadrature may give single functions at crack tips a small
+  /// negative energy. GMRES then replaces conjugate gradients permanently.
   bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
     const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
