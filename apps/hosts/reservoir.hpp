@@ -23,6 +23,7 @@ struct Grid {
     return in ? i - from_x[0] + (from_x[1] - from_x[0]) * (k - from_z[0]) : -1;
   }
   int at(double x, int axis) const { return static_cast<int>(std::floor(x / h[axis])); }
+  /// cell_at: number of the cell at x, m. face_at: number of the fracture face above or below x; -1: none.
   int cell_at(const std::array<double, 3>& x) const {
     return cell(at(x[0], 0), at(x[1], 1), n[2] > 1 ? at(x[2], 2) : 0);
   }

@@ -10,9 +10,10 @@ namespace sprekk::assembly {
 
 /// Applies a local operator to all entities of a loop. Op is copied into kernels. Its members:
 ///   using Columns = Slots<...>, Rows = Slots<...>;                 unknowns read, rows written, in local order
-///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;       device, overwrites r
-///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;  device,
-///   overwrites J
+///   void residual(int e, const Real (&x)[Columns::size], Real (&r)[Rows::size]) const;
+///     device code, overwrites r
+///   void jacobian(int e, const Real (&x)[Columns::size], Real (&J)[Rows::size][Columns::size]) const;
+///     device code, overwrites J
 ///   static constexpr bool couples(int row_slot, int column_slot);  optional; false: J is zero there and is not added
 template <class Op>
 class Assembler {

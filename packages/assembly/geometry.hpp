@@ -11,6 +11,7 @@
 
 namespace sprekk::assembly {
 
+/// Returns a copy of the values in device memory.
 template <class T>
 ConstView<T*> to_device(const std::vector<T>& from, const std::string& name) {
   View<T*> to(name, from.size());

@@ -86,12 +86,14 @@ struct Stencil {
   std::weak_ptr<std::shared_ptr<const Writers>> writers = {};  ///< shared cache of the writers, if there is one
 };
 
+/// Returns the stencil of a field in a loop. Throws an Error if the field has none there. Local.
 Stencil make_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Layout& layout);
 
 /// Stencils of the fields of a mesh, created on first use. Copies share their tables and writers.
 class Stencils {
  public:
   Stencils(RCP<const mesh::Mesh> mesh, const std::vector<fields::Layout>& layouts) : mesh_(mesh), layouts_(&layouts) {}
+  /// Returns the stencil of a field in a loop, see make_stencil(). Local.
   const Stencil& of(Loop loop, int field);
   /// Discards all writers. From now on they are computed on each use and not stored.
   void forget_writers();

@@ -193,7 +193,7 @@ class Module {
  public:
   virtual ~Module() = default;
   virtual std::string name() const = 0;
-  /// Returns the parameters, besides the scene, that must be equal when a checkpoint is restored. They are equal on all
+  /// Returns the parameters that, besides the scene, must be equal when a checkpoint is restored; the same on all
   /// ranks.
   virtual std::string fingerprint() const { return {}; }
   /// Informs the module of the fields of all modules. declare() is called before and after. The first call provides the
@@ -210,8 +210,8 @@ class Module {
   /// Adds the derivative of residual() to the blocks of owned rows. Local: no communication.
   virtual void jacobian(const State& state, fields::BlockMatrix& J) const = 0;
 
-  /// Returns whether the forces of the module may support bodies that boundary conditions leave free. Without it, free
-  /// bodies are an error.
+  /// Returns whether the forces of the module may support bodies that boundary conditions leave free. Free bodies are
+  /// an error if no module does.
   virtual bool holds_bodies() const { return false; }
   /// Returns the supported unknowns at local nodes. No value: unknown; floating blocks of rock are then not detected.
   virtual std::optional<std::vector<contact::Support>> supports() const { return std::nullopt; }

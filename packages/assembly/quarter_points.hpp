@@ -12,9 +12,9 @@ namespace sprekk::assembly {
 /// of fractures remain conforming.
 ///
 /// Two kinds of cells keep the nodes of all edges:
-/// - A face with only tips as corners (2D: an edge). The cell would collapse onto this face and have infinite strain
+/// - Cells with a face (2D: an edge) whose corners are all tips. They would collapse onto this face, with infinite
 ///   energy.
-/// - A map that is not one-to-one: its determinant changes sign at a point of CurvedQuadrature.
+/// - Cells whose map would not be one-to-one: its determinant would change sign at a point of CurvedQuadrature.
 ///
 /// `mesh` must have split nodes. A mesh of order 1 remains unchanged. Not collective.
 void move_to_quarter_points(mesh::GlobalMesh& mesh);

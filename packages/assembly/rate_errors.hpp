@@ -38,6 +38,7 @@ class RateErrors {
 
   /// Returns the rates, [entity, component], with their names.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;
+  /// Return and restore the numbers for a checkpoint. Numbers of other blocks restart the estimate. Local.
   std::vector<Real> memory() const;
   void resume(const std::vector<Real>& memory);
 

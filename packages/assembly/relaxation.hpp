@@ -10,9 +10,8 @@ namespace sprekk::assembly {
 /// Fixed-point iteration y -> g(y) for numbers whose g decreases with y, steeply in places. The method is a diagonal
 /// secant method with limited steps. Each number moves by (g - y)/(1 - s). s is the secant slope, or a fraction of the
 /// steepest slope so far if that is steeper. Where the residual g - y changes its sign, s becomes steeper, because
-/// numbers interact. After a few steps without convergence, groups of numbers oscillate together. Then the fraction
-/// grows with each change of sign, from 0.25 to 0.8. All steps are limited to 1, and steps of oscillating numbers to
-/// less.
+/// numbers interact. If a few steps do not converge, groups of numbers oscillate together. Then the fraction grows with
+/// each change of sign, from 0.25 to 0.8. All steps are limited to 1, and steps of oscillating numbers to less.
 class Relaxation {
  public:
   bool started() const { return !y_.empty(); }

@@ -22,8 +22,8 @@ using fields::MultiVector;
 
 namespace {
 
-/// Removes zero entries from off-diagonal blocks of linear modules alone, which never change. Diagonal blocks keep
-/// their zeros, so that the unknowns of a node stay together.
+/// Removes zero entries from off-diagonal blocks that only linear modules write, since these blocks never change.
+/// Diagonal blocks keep their zeros, so that the unknowns of a node stay together.
 void drop_zeros(BlockMatrix& linear, BlockMatrix& all) {
   for (int i = 0; i < all.n_blocks(); ++i)
     for (int j = 0; j < all.n_blocks(); ++j)

@@ -54,7 +54,7 @@ void find_nearest(Nodes& nodes);
 std::vector<Real> reach(const Nodes& nodes);
 
 /// Aggregates of nodes, by number; -1: not free. A node whose neighbours within reach all have no aggregate forms one
-/// with them. Remaining nodes join the neighbouring aggregate with most contacts (Vanek, Mandel and Brezina 1996). An
+/// with them. Remaining nodes join the neighbouring aggregate with most links (Vanek, Mandel and Brezina 1996). An
 /// aggregate with fewer nodes than `enough` also includes second neighbours, those with most links first. Aggregates do
 /// not cross ranks. Stored data.
 struct Aggregates {

@@ -28,7 +28,7 @@ struct OwnColumn {
 };
 
 /// Cursor that finds columns in a row. The row must contain each column that is searched, once. Missing columns are
-/// counted; find() then returns the begin of the row.
+/// counted; find() then returns the beginning of the row.
 struct RowCursor {
   const fields::NodeRows::Row row;
   const int width;
@@ -69,7 +69,7 @@ inline void check_found(int n_missing) {
 /// Sets J_ab to A_ab. Local.
 void start_from_bulk(const CondensedBlock& condensed);
 
-/// Returns the rows of prescribed unknowns, row_flags [owned row] != 0, and the rows with a column of one. Local.
+/// Returns the rows of prescribed unknowns, row_flags [owned row] != 0, and rows with such a column. Local.
 View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags);
 
 /// If J_aa stores A_aa of the r-th remaining block, saves the values that the local groups will change. Local.

@@ -80,7 +80,7 @@ struct CondensedBlock {
   View<LocalIndex*> bulk_column;           ///< [column of A_ab] column in J_ab
   std::shared_ptr<fields::KeptRows> kept;  ///< saved values of A_ab if J_ab stores it, or null
   View<LocalIndex*> rows;                  ///< if J_ab stores A_ab: rows that may differ from it; else all rows
-  View<LocalIndex*> held;                  ///< rows of prescribed unknowns, and rows with a column of one
+  View<LocalIndex*> held;                  ///< rows of prescribed unknowns, and rows with such a column
   View<char*> constrained;                 ///< [column] 1 for prescribed unknowns
 };
 

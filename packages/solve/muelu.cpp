@@ -195,7 +195,7 @@ class MueLuMultigrid : public Preconditioner {
     const auto matrix = matrix_.crs();  // changed by RaisedDiagonal only
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
-    // with advection, strong couplings depend on the values, and those of an earlier flow are useless
+    // with advection, strong couplings depend on the values: those of an earlier flow are outdated
     const bool anew =
         hierarchy_.is_null() || (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
     if (anew) {
