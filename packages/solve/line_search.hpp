@@ -16,7 +16,7 @@ namespace sprekk::solve {
 struct SearchReport {
   std::string failure;  ///< reason for a missing step
   std::string loose;    ///< floating bodies in the last iterate that had some, as text
-  /// Whether the iteration stagnates:
+  /// Stagnation of the iteration:
   /// - None of the last five merits is below half of the best earlier merit, from the tenth iterate on.
   /// - Problems with storage, also: the last four step lengths sum to less than 0.5.
   /// - Coefficients of fluxes that depend on x, instead of these: in ten iterates without lag, no state changed, and no

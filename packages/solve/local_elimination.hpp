@@ -9,8 +9,8 @@
 
 namespace sprekk::solve {
 
-/// Elimination for A dx = b with A = problem.matrix(), where rows of constrained unknowns are dx_i = b_i. z are the
-/// unknowns of the local groups, D the constrained unknowns, a and b the remaining blocks:
+/// Elimination for A dx = b with A = problem.matrix(). Rows of constrained unknowns are dx_i = b_i. The unknowns of the
+/// local groups are z, the constrained ones D. The remaining blocks are a and b:
 ///   J_ab = A_ab - A_az A_zz^-1 A_zb, rows and columns of D zero except for a positive diagonal
 ///   c_a  = s_a - A_az A_zz^-1 s_z, 0 in D, with s = b - A (0, b_D)
 ///   dx_b = (0, b_D) + J^-1 c,  dx_z = A_zz^-1 (b_z - A_zb dx_b)

@@ -62,10 +62,12 @@ class Preconditioner {
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
                                                     const std::vector<Block>& blocks);
 
-/// takes_muelu: whether MueLu is used, as requested or because Sprekk's multigrid is not available; it solves for one
-/// block. make_multigrid: multigrid for the first block, by its coordinates and near-null space, and for blocks that
-/// enrich it. Throws an Error if the requested type is not available.
+/// Returns whether MueLu replaces Sprekk's multigrid for a block, as requested or because there is no other. Throws an
+/// Error if the requested type is not available.
 bool takes_muelu(const BlockOptions& options, const Block& first);
+/// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it. MueLu
+/// solves
+/// for one block only.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Return methods for the matrix of one block, or of several joined blocks.
