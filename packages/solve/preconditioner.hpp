@@ -62,12 +62,11 @@ class Preconditioner {
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
                                                     const std::vector<Block>& blocks);
 
-/// Returns whether MueLu replaces Sprekk's multigrid for a block, as requested or because there is no other. Throws an
-/// Error if the requested type is not available.
+/// Returns whether MueLu replaces Sprekk's multigrid for a block: as requested, for advected blocks without multigrid
+/// options, and for node sizes without compiled code. Throws an Error if the requested type is not available.
 bool takes_muelu(const BlockOptions& options, const Block& first);
 /// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it. MueLu
-/// solves
-/// for one block only.
+/// solves for one block only.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Return methods for the matrix of one block, or of several joined blocks.
