@@ -11,8 +11,8 @@ using assembly::Loop;
 namespace {
 
 /// | symbol   | shape | unit         |                                                        |
-/// | x        | m + 1 + n | Pa, m, U | what the flow depends on [m], u of the entity and its ends |
-/// | r        | 1 + n | Q/s          | of energy W                                            |
+/// | x        | m + 1 + n | Pa, m, U | unknowns of the flow [m], u of the entity and its ends |
+/// | r        | 1 + n | Q/s          | for energy W                                           |
 /// | q        | n     | m^3/s        | outward flow through ends (2D: m^2/s)                  |
 /// | capacity |       | Q/(m^3 U)    | c                                                      |
 template <class Flow, class Carried>
@@ -50,8 +50,8 @@ struct Advection {
   }
 
  private:
-  /// What rounding leaves of a flow, as through a closed end, is none: it would carry what is on one side or on
-  /// the other, from iterate to iterate.
+  /// Computes the flows. Flows at the level of round-off, e.g. through a closed end, are set to zero. They would
+  /// otherwise transport the value of one side or the other, depending on the iterate.
   KOKKOS_INLINE_FUNCTION void find_flow(int e, const Real (&x)[m + 1 + n], Real (&q)[n], Real (&dq)[n][m]) const {
     constexpr Real rounding = 64 * 2.2e-16;
     Real drivers[m];
@@ -66,7 +66,7 @@ struct Advection {
   }
 };
 
-/// Of flow in cells.
+/// Flow in cells.
 template <Shape shape, bool changes>
 struct InCells {
   using Cell = HybridCell<shape>;
@@ -93,9 +93,9 @@ struct InCells {
   static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_cells(mesh); }
   static LocalIndex row(const mesh::Mesh&, LocalIndex cell) { return cell; }
   static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
-  /// Times the size, m^3 that store.
+  /// Storage volume per size of the entity, m^3.
   Real room(LocalIndex, const Real*, Real) const { return 1; }
-  /// Columns of the history "passed"; 0 without stabilisation.
+  /// Number of columns of the history "passed"; 0 without stabilisation.
   int n_passed() const { return stabilisation.softness.empty() ? 0 : 2 * Flow::n; }
   void bind(const assembly::Context& context) {
     cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
@@ -104,7 +104,7 @@ struct InCells {
     of_faces = std::make_unique<fields::Layout>(fields::Field{"passed", entity, n_passed(), ""}, *context.mesh());
     passed = View<Real**>("passed", context.mesh()->n_cells(), n_passed());
   }
-  /// Collective.
+  /// Copies the history to local cells. Collective.
   void start_step(const View<Real**>& kept) {
     const auto own = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
     std::vector<Real> owned;
@@ -116,7 +116,7 @@ struct InCells {
       for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
     Kokkos::deep_copy(passed, host);
   }
-  /// `anew`: the volume of the last step is set to zero, as at the start of a run.
+  /// Updates the history. `anew`: sets the volume of the last step to zero, as at the start of a run.
   template <class Assembler, class Op>
   void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
             bool anew) const {
@@ -142,7 +142,7 @@ struct InCells {
   }
 };
 
-/// Of flow along fracture faces.
+/// Flow along fracture faces.
 template <Shape shape, bool widens, bool changes>
 struct InFractures {
   static constexpr int n = FractureFaces<shape>::n;
@@ -166,7 +166,8 @@ struct InFractures {
     for (const auto& face : mesh.fracture_faces) areas.push_back(face.area);
     return areas;
   }
-  /// Times the size, m^3 at reference conditions; what the flow depends on begins with p_F and ends with the widening.
+  /// Storage volume at reference conditions per size of the face, m^3. The drivers of the flow start with p_F and end
+  /// with the widening.
   Real room(LocalIndex face, const Real* drivers, Real u) const {
     const Real aperture =
         parameters.faces[face].along.mechanical_aperture(widens ? drivers[Flow::Columns::size - 1] : 0);
@@ -250,7 +251,7 @@ class AdvectionModule final : public assembly::Module {
     keep_passed(state, false);
   }
 
-  /// What upwind flow has left out in the step.
+  /// Stores the flux correction of the step in the history.
   void commit_correction(const assembly::State& state) const {
     const View<Real**> found("found", assembler_->n_entities(), Op::Columns::size), flows("flows", found.extent(0), n);
     const auto op = at(state);
@@ -311,12 +312,12 @@ class AdvectionModule final : public assembly::Module {
   std::unique_ptr<Where> where_;
   Carried carried_;
   std::unique_ptr<Assembler> assembler_;
-  std::vector<Real> stored_;  // [local entity] per volume and u; with a correction, and the following
+  std::vector<Real> stored_;  // [local entity] per volume and unit of u; this and the following for Antidiffusion only
   std::vector<Real> sizes_;   // [local entity]
   std::unique_ptr<Antidiffusion> correction_;
-  int block_ = -1;              // of its rows
+  int block_ = -1;              // block of the corrected rows
   ConstView<LocalIndex*> row_;  // [owned entity]
-  ConstView<Real*> gains_;      // [owned entity] at the start of the step
+  ConstView<Real*> gains_;      // [owned entity] gains at the start of the step
 };
 
 template <class Where>

@@ -17,7 +17,7 @@ using mesh::operator*;
 
 namespace {
 
-/// `facet_of(entity, end)`: -1 for one that joins nothing.
+/// Finds the neighbours. `facet_of(number of the end)`: -1 for an end without a neighbour.
 template <class FacetOf>
 void join(EndGraph& graph, const FacetOf& facet_of) {
   const auto n = graph.centre.size() * graph.n_ends;
@@ -34,7 +34,8 @@ void join(EndGraph& graph, const FacetOf& facet_of) {
     }
 }
 
-/// g with (A + 1e-10 tr(A) I) g = b: of least size where A is singular, as in a plane.
+/// Solves (A + 1e-10 tr(A) I) g = b. If A is singular, e.g. for entities in a plane, g is close to the minimum-norm
+/// solution.
 Vector solve(Real (&A)[3][3], Vector b) {
   const Real shift = 1e-10 * (A[0][0] + A[1][1] + A[2][2]);
   for (int i = 0; i < 3; ++i) A[i][i] += shift;
@@ -85,7 +86,7 @@ Antidiffusion::Antidiffusion(const mesh::Mesh& mesh, fields::Entity entity, EndG
       of_ends_({"antidiffusion", entity, graph_.n_ends, ""}, mesh),
       of_bounds_({"bounds", entity, 2, ""}, mesh) {}
 
-/// Over neighbours, and over ends without one.
+/// Fits the gradient to the neighbours, and to the ends without a neighbour.
 Vector Antidiffusion::gradient(LocalIndex e, const std::vector<Real>& u, const std::vector<Real>& of_ends) const {
   Real A[3][3] = {};
   Vector b{};
@@ -102,7 +103,7 @@ Vector Antidiffusion::gradient(LocalIndex e, const std::vector<Real>& u, const s
   return solve(A, b);
 }
 
-/// Of the neighbour's distance from an end in that of both.
+/// Returns s_i: the distance of the neighbour from the end, divided by the sum of both distances.
 Real Antidiffusion::share(std::size_t k) const {
   const Real own = mesh::norm(graph_.away[k]),
              other = mesh::norm(graph_.away[graph_.neighbour[k] * graph_.n_ends + graph_.end[k]]);
@@ -113,7 +114,7 @@ void Antidiffusion::keep(const std::vector<Real>& u, const std::vector<Real>& of
                          const std::vector<Real>& stored, Real dt, const Kept& kept) const {
   const int n = graph_.n_ends;
   for (LocalIndex e = 0; e < static_cast<LocalIndex>(kept.extent(0)); ++e) {
-    const bool began = dt > 0 && kept(e, n + 3) > 0;  // else u_old is not known
+    const bool began = dt > 0 && kept(e, n + 3) > 0;  // otherwise u_old is unknown
     const Real late = (u[e] - kept(e, n)) / 2;
     const Vector G = began ? gradient(e, u, of_ends) : Vector{};
     Real largest = u[e], least = u[e];
@@ -140,7 +141,7 @@ std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
   for (LocalIndex e = 0; e < n_owned; ++e)
     for (int i = 0; i < n; ++i) own.push_back(kept(e, i));
   const auto f = with_ghosts(of_ends_, own);
-  const auto inflow = [&](LocalIndex e, int i) {  // of end i, less what leaves there
+  const auto inflow = [&](LocalIndex e, int i) {  // through end i, minus the outflow there
     const auto k = e * n + i;
     const LocalIndex other = graph_.neighbour[k];
     return other < 0 ? 0 : f[other * n + graph_.end[k]] - f[k];
@@ -155,7 +156,7 @@ std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
     shares.push_back(up > room ? room / up : 1);
     shares.push_back(down > depth ? depth / down : 1);
   }
-  const auto share = with_ghosts(of_bounds_, shares);  // of what may rise and fall
+  const auto share = with_ghosts(of_bounds_, shares);  // allowed fractions of gains and losses
   for (LocalIndex e = 0; e < n_owned; ++e)
     for (int i = 0; i < n; ++i) {
       const LocalIndex other = graph_.neighbour[e * n + i];

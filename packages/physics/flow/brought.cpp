@@ -6,9 +6,9 @@ namespace sprekk::physics {
 
 /// | symbol        | shape        | unit       |                                          |
 /// | row, face     | [connection] | -          | of p and u; fracture face, -1 for rock   |
-/// | held          | [connection] | -          | the well has a pressure, else a rate     |
+/// | held          | [connection] | -          | the pressure of the well is prescribed, else the rate |
 /// | brings        | [connection] | -          | v is known                               |
-/// | index         | [connection] | m^3/(Pa s) | W; over the transmissivity of conduits   |
+/// | index         | [connection] | m^3/(Pa s) | W; with conduits divided by the transmissivity |
 /// | driver        | [connection] | Pa or m^3/s | p_w or q                                |
 /// | value         | [connection] | U          | v                                        |
 struct Brought::Kernel {
@@ -105,7 +105,7 @@ void Brought::add_residual(const assembly::State& state, const assembly::Rows& r
       });
 }
 
-/// Columns of owned unknowns have the numbers of their rows.
+/// Assumes that columns of owned unknowns have the numbers of their rows.
 void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   const auto kernel = this->kernel(state);
   const Kokkos::RangePolicy<Execution> all(0, row_.extent(0));

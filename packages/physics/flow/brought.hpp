@@ -1,4 +1,4 @@
-// What wells bring of a quantity that their fluid carries, row by row.
+// Injection of transported quantities through wells, row by row.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -10,24 +10,24 @@
 
 namespace sprekk::physics {
 
-/// Where a well puts in q > 0 of fluid that has the value v of what is carried, adds c q (u - v) to the row of u, which
-/// is a difference as in make_advection(); where it takes out, nothing. q is given, or W (p_w - p), of a compressible
-/// fluid W (e_w - e)/c_f, of a fracture face that widens with W times its present transmissivity.
+/// Adds c q (u - v) to the row of u at each connection with an inflow q > 0. v is the value of u in the injected fluid.
+/// This is a difference as in make_advection(). Connections with outflow add nothing. q is prescribed, or W (p_w - p);
+/// for a compressible fluid W (e_w - e)/c_f. On faces with conduits W is the index times the present transmissivity.
 class Brought {
  public:
-  /// Adds a connection in a row; those that other ranks own are dropped. `face`: owned, needed with conduits.
+  /// Adds a connection to a row. Ignores rows of other ranks. `face`: owned fracture face, required with conduits.
   void add(LocalIndex row, Real index, bool by_pressure, LocalIndex face);
-  /// Once all are added. Blocks of pressures and of u in the same entities; `conduits` and `change` as in
-  /// Exchange::bind().
+  /// Completes the set-up after all connections have been added. `pressure`, `carried`: blocks of p and u on the same
+  /// entities. `conduits`, `change`: as in Exchange::bind().
   void bind(const assembly::Context& context, int pressure, int carried, const laws::Fluid& fluid, Real capacity,
             const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change);
-  /// Of one connection in a step.
+  /// Control of one connection in a step.
   struct Control {
-    Real driver;  ///< q, or the pressure in the well
+    Real driver;  ///< q, m^3/s, or the pressure in the well, Pa
     Real value;   ///< v
-    bool brings;  ///< else v is what is there
+    bool brings;  ///< false: the injected fluid has the u of its surroundings
   };
-  /// In the order in which they were added.
+  /// Sets the controls, in the order of add().
   void set(const std::vector<Control>& controls);
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const;

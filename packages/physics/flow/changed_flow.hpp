@@ -1,4 +1,4 @@
-// Flow of a fluid that is changed by a quantity which it carries.
+// Flow of a fluid whose properties depend on a transported field.
 #pragma once
 
 #include "laws/fluid_response.hpp"
@@ -13,10 +13,10 @@ struct Joined<assembly::Slots<A...>, assembly::Slots<B...>> {
   using Slots = assembly::Slots<A..., B...>;
 };
 
-/// The flow of `Flow`, of mass over rho_0, with u of the entity behind its unknowns:
-///   q = m d (q_p + d q_g)
-/// where q_p and q_g are what pressures and what weight drive, d = rho/rho_0 at reference pressure and m = mu_0/mu at
-/// u.
+/// Flow of `Flow`, mass divided by rho_0, with the field u of the entity as additional last unknown:
+///   q = m d (q_p + d q_g).
+/// q_p and q_g are the flows due to pressures and weight. d = rho/rho_0 at the reference pressure and m = mu_0/mu
+/// depend on u.
 template <class Flow>
 struct ChangedFlow {
   static constexpr int n_ends = Flow::n_ends, n = n_ends, m = Flow::Columns::size;

@@ -1,4 +1,4 @@
-// What scenes may ask of flow.
+// Checks of scenes with flow.
 #include "base/text.hpp"
 #include "physics/comparison.hpp"
 #include "physics/entry_of_place.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 bool no_flow(const Comparison& c) { return !c.scene().flow && c.is_absent("Flow"); }
 
-/// What is of a fluid in a scene without one.
+/// Reports entries for a fluid in a scene without one.
 void compare_without_flow(Comparison& c) {
   if (!no_flow(c)) return;
   const auto needs_flow = [&](const std::string& place) { c.fail(place, "needs the section \"Flow\""); };
@@ -42,7 +42,7 @@ void compare_fractures(Comparison& c) {
     if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
       c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
              "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
-    if (scene.flow && !Mechanics::is_in(scene))  // else mechanics asks for all
+    if (scene.flow && !Mechanics::is_in(scene))  // else mechanics reports all missing entries
       for (const auto& [entry, what] : joint->missing("hydraulic aperture"))
         c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry), what);
   }
@@ -67,7 +67,7 @@ bool gives_pressure(const BoundaryCondition& condition) {
   return condition.pressure && !(condition.conductance && is_zero(*condition.conductance));
 }
 
-/// Flow that no pressure and no storage ties to a level has none, or any.
+/// Reports a flow problem whose pressure is determined neither by a prescribed pressure nor by storage.
 void compare_level(Comparison& c) {
   const auto& scene = c.scene();
   const auto any = [](const auto& all, const auto& has) {
@@ -94,7 +94,7 @@ void compare_level(Comparison& c) {
            "\"compressibility\" of the fluid)");
 }
 
-/// What flows through a part of the boundary cannot be given where the pressure is.
+/// Reports fluxes or conductances where the pressure is prescribed.
 void compare_conditions(Comparison& c) {
   const auto overlap = [](const BoundaryCondition& held, const BoundaryCondition& other) {
     if (held.boundary != other.boundary) return false;

@@ -1,4 +1,4 @@
-// What scenes say of flow.
+// Scene entries of flow.
 #include "physics/flow/flow.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/tensor_entry.hpp"

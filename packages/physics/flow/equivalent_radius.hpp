@@ -1,4 +1,4 @@
-// At which distance from a well the pressure is that of the cell which the well is in.
+// Equivalent radius of a well: the distance at which the exact pressure equals the pressure of the cell.
 #pragma once
 
 #include "base/check.hpp"
@@ -11,13 +11,13 @@
 
 namespace sprekk::physics {
 
-/// Flow around a straight line in a homogeneous, anisotropic body: -ln(rho), rho^2 = x . N x, is a pressure around it
-/// that 2 pi times `conductance` flows from per length. In 2D the line is perpendicular to the plane.
+/// Radial flow around a straight line in a homogeneous, anisotropic body. The pressure is -ln(rho) with
+/// rho^2 = x . N x. The flow per length is 2 pi times `conductance`. In 2D the line is perpendicular to the plane.
 struct LineFlow {
-  std::array<Real, 3> point, along;  ///< on the line, and its direction, of length 1
+  std::array<Real, 3> point, along;  ///< point on the line; unit vector along the line
   Real N[3][3];                      ///< m^-1 - m^-1 t t^T m^-1/(t . m^-1 t) for the mobility m and the direction t
-  Real conductance;                  ///< sqrt(det(m) t . m^-1 t), m^2/(Pa s): m where it is isotropic
-  Real stretch;                      ///< mean of the half axes of the ellipse in rho that a circle around the line is
+  Real conductance;                  ///< sqrt(det(m) t . m^-1 t), m^2/(Pa s); equals m in isotropic rock
+  Real stretch;                      ///< mean half axis of the ellipse onto which rho maps a circle around the line
 
   LineFlow(int dim, laws::Mobility mobility, const std::array<Real, 3>& point, const std::array<Real, 3>& along)
       : point(point), along(along) {
@@ -51,27 +51,26 @@ struct LineFlow {
   }
 };
 
-/// One of the entities around a well: its flow matrix, what flows into it from the well, and its ends.
+/// Entity of a patch around a well: flow matrix, inflow from the well, and ends.
 struct WellPatchEntity {
   std::vector<Real> T;  ///< [end * n + end]
   Real source;
-  std::vector<LocalIndex> ends;  ///< numbers, the same for all entities that have the end
+  std::vector<LocalIndex> ends;  ///< numbers of the ends, the same in all entities of the patch
 };
 
-/// exp(-gamma)/4: of squares with two-point fluxes, over the root of the sum of the squares of their edges.
+/// Equivalent radius of squares with two-point fluxes, exp(-gamma)/4, relative to sqrt(a^2 + b^2) with edges a, b.
 constexpr Real two_point_radius = 0.140364870891722;
 
-/// What is too much in the logarithm, because the pressure is exact on the outer ends already; found on uniform meshes:
-/// 0.07 on squares, 0.06 on half squares, 0.04 on Delaunay triangles.
+/// Bias of the logarithm due to exact pressures on the outer ends of the patch, calibrated on uniform meshes. It is
+/// 0.07 on squares, 0.06 on half squares and 0.04 on Delaunay triangles.
 constexpr Real patch_bias = 0.05;
 
-/// The logarithm of the equivalent radius of a patch's first entity, the distance from the well at which the exact
-/// pressure is that of the entity. Where Peaceman (1978) solves for the pressures of all cells of a uniform mesh, this
-/// solves for those of the patch, with exact pressures on its outer ends: `outside(end)` tells their mean of ln(rho),
-/// or no number: nothing flows through the end.
+/// Logarithm of the equivalent radius of the first entity of a patch. Peaceman (1978) solves for the pressures of all
+/// cells of a uniform mesh. Here the unknowns are the pressures of the patch, and its outer ends have exact pressures.
+/// `outside(end)`: mean of ln(rho) on an outer end, or NaN for an impermeable end.
 template <class Outside>
 Real log_equivalent_radius(const std::vector<WellPatchEntity>& patch, const Outside& outside) {
-  std::map<LocalIndex, int> number;  // of ends between two entities
+  std::map<LocalIndex, int> number;  // ends between two entities
   for (const auto& entity : patch)
     for (const LocalIndex end : entity.ends) ++number[end];
   std::map<LocalIndex, Real> known;

@@ -1,4 +1,4 @@
-// Flow along one fracture face: the face as a cell of one dimension less.
+// Flow along one fracture face, treated as a cell of dimension d - 1.
 #pragma once
 
 #include "mesh/facets.hpp"
@@ -6,13 +6,13 @@
 
 namespace sprekk::physics {
 
-/// A fracture face in coordinates of its own, and the flow matrix for a transmissivity. In 2D a face is a line, and two
-/// points are exact for constant gradients.
+/// Fracture face in its own coordinates, with the flow matrix for a transmissivity. In 2D a face is a line, for which
+/// two-point fluxes are exact for constant gradients.
 template <Shape shape>
 class FacePlane {
  public:
   static constexpr int dim = mesh::dimension(shape), n = mesh::n_face_corners(shape);
-  Real T[n][n] = {}, d[n][3] = {};  // flow matrix; from the centre of the face to those of its ridges, m
+  Real T[n][n] = {}, d[n][3] = {};  // flow matrix; vectors from the face centre to the ridge centres, m
   Real area = 0;
 
   FacePlane(const mesh::Mesh& mesh, LocalIndex face, Real transmissivity, FluxScheme scheme) {

@@ -47,22 +47,22 @@ std::vector<Well> wells_in(const Scene& scene, int dim) {
   return wells;
 }
 
-/// How far apart the sides of a joint are at least under any compression, m. Slip back may close what keeps its
-/// dilation as a number by more than slip has opened it.
+/// Least distance of the sides of a joint under any compression, m. Dilation laws with a history have no bound, because
+/// reversed slip may close the joint further than slip has opened it.
 Real least_opening(const Material& joint, const std::array<Real, 3>& x) {
   constexpr Real any_compression = 1e100;  // Pa
-  const Real zero = 0;                     // all that laws have kept
+  const Real zero = 0;                     // all history variables
   const auto law = joint.joint(x).law;
   if (laws::n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
   return law.gap.initial + law.closure(laws::Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
 }
 
-/// Of the flow in and through a joint whose sides have moved apart by `opening`, m, without one if they cannot.
-/// Iterates of Newton's method may close it further than its law does, and cut off what is injected: flow sees no less
-/// than a part of what compression leaves.
+/// Hydraulic data of a joint with an opening, m; none: the joint cannot open. Newton iterates may close the joint
+/// further than its law and block an injection. The aperture is therefore at least a fraction of that under infinite
+/// compression.
 FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, const std::optional<Real>& opening,
                                         const std::array<Real, 3>& x) {
-  constexpr Real part = 0.9;  // below 1, so that apertures of solutions are above what iterates see
+  constexpr Real part = 0.9;  // below 1, so that all solutions have larger apertures than this bound
   const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
              residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
              a = std::max(aperture, residual),
@@ -85,7 +85,7 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, c
   return face;
 }
 
-/// Of local fracture faces under the initial stress. Collective.
+/// Openings of local fracture faces under the initial stress, m; none without mechanics. Collective.
 std::vector<std::optional<Real>> openings_of(const Setting& setting) {
   std::vector<std::optional<Real>> openings(setting.mesh.fracture_faces.size());
   if (Mechanics::is_in(setting.scene) && !setting.mesh.fracture_names.empty()) {
@@ -95,7 +95,7 @@ std::vector<std::optional<Real>> openings_of(const Setting& setting) {
   return openings;
 }
 
-/// Of local fracture faces. Collective.
+/// Hydraulic data of local fracture faces. Collective.
 std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   const auto& scene = setting.scene;
   const auto& mesh = setting.mesh;
@@ -112,7 +112,7 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   return faces;
 }
 
-/// What all physics of a scene have the fluid carry.
+/// Quantities that the fluid transports for all physics of a scene.
 std::vector<Carried> carried_in(const Scene& scene) {
   std::vector<Carried> all;
   for_each_physics([&](auto physics) {
@@ -165,7 +165,7 @@ FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
   return fractures;
 }
 
-/// Of the pores of local cells. Collective.
+/// Storage capacities of the pores in local cells. Collective.
 Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
   Properties<Capacity> result;
   base::collectively(*setting.mesh.comm, [&] {
@@ -176,14 +176,14 @@ Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
   return result;
 }
 
-/// What modules are made of, and the estimate of the error.
+/// Parameters of the modules and of the error estimate.
 struct Parts {
   HybridDiffusionParameters darcy;
   FractureFlowParameters fractures;
   WellsParameters wells;
 };
 
-/// Collective.
+/// Collects the parameters. Collective.
 Parts parts_of(const Setting& setting, const std::vector<Carried>& all_carried) {
   const auto& [scene, mesh, start] = setting;
   std::optional<FluidChange> change;
@@ -288,7 +288,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const bool denser = fluid.compressibility > 0 || change;
   const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
                                   [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
-  if (base::on_any_rank(*mesh.comm, stores))  // values are those of this rank's cells
+  if (base::on_any_rank(*mesh.comm, stores))  // values are those of local cells
     modules.push_back(make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;
   modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
@@ -334,7 +334,7 @@ std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::Sy
 
 namespace {
 
-/// Of joints that a compression of 1e-3 of the rock's Young's modulus closes by more than their initial aperture.
+/// Warns about joints that a compression of 1e-3 of Young's modulus closes by more than their initial aperture.
 void add_closure_warnings(const Setting& setting, std::vector<std::string>& warnings) {
   const auto& [scene, mesh, start] = setting;
   if (!Mechanics::is_in(scene)) return;
@@ -376,7 +376,7 @@ std::vector<std::string> Flow::warnings_of_state(const Setting& setting, const s
                                                  const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
-  std::array<Real, 2> here{};  // of a pressure below 0, of any: the largest
+  std::array<Real, 2> here{};  // largest value of -p, and of |p|
   for (const auto& output : outputs)
     for (const Real p : output.values)
       if (output.name == "pressure" || output.name == "fracture pressure") {

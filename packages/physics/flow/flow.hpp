@@ -1,4 +1,4 @@
-// Flow of a fluid through rock and fractures: its entries of a scene and its modules.
+// Flow of a fluid through rock and fractures: scene entries and modules.
 #pragma once
 
 #include "base/expression.hpp"
@@ -16,17 +16,17 @@
 
 namespace sprekk::physics {
 
-/// A line from which fluid flows into the rock, or back.
+/// Well: a line that injects or extracts fluid.
 struct WellSection {
-  std::vector<Real> points;  ///< 2D: one; 3D: of a polyline
+  std::vector<Real> points;  ///< 2D: one point; 3D: points of a polyline
   Real radius = 0, skin = 0;
-  std::optional<base::Expression> rate, pressure;  ///< exactly one
+  std::optional<base::Expression> rate, pressure;  ///< exactly one is given
   void describe(base::Section& section);
 };
 
-/// A fluid that flows through the rock.
+/// Fluid that flows through rock and fractures.
 struct FlowSection {
-  bool rigid_rock = false;  ///< the rock does not deform: no mechanics
+  bool rigid_rock = false;  ///< the rock does not deform; no mechanics
   Real viscosity = 1e-3, density = 1000, compressibility = 0, reference_pressure = 0;
   base::Expression source = 0, initial_pressure = 0;
   std::string scheme = "auto";
@@ -34,43 +34,43 @@ struct FlowSection {
   void describe(base::Section& section);
 };
 
-/// A fluid of a host's in the pores and fractures of rock that deforms, instead of FlowSection. Of materials, "Biot
-/// coefficient" counts, of joints the aperture.
+/// Fluid of a host program in the pores and fractures of deforming rock. It replaces FlowSection. The materials require
+/// only "Biot coefficient" and the aperture of joints.
 struct HostFluid {
-  /// The host's modules declare the unknowns "pressure" (cells) and "face pressure" (facets, see mesh::Facets) and
-  /// write their rows, the balance of volume per time; what displacements add to them, and they to momentum, is
-  /// Sprekk's, see physics::make_poroelastic_coupling(). If not, the host gives pressures:
+  /// True: modules of the host declare the unknowns "pressure" (cells) and "face pressure" (facets, see mesh::Facets)
+  /// and write their rows, the balance of volume per time. Sprekk adds the coupling of these rows and of momentum with
+  /// displacements, see physics::make_poroelastic_coupling(). False: the host prescribes pressures by
   /// set_fluid_pressure().
   bool unknown = false;
-  Real initial_pressure = 0;  ///< under which the initial state is one of rest, Pa
+  Real initial_pressure = 0;  ///< pressure at which the initial state is in equilibrium, Pa
 };
 
 struct Flow : Physics<Flow> {
   struct Rock : Physics::Rock {
-    std::vector<base::Expression> permeability;  ///< one value, or those of a tensor; of x, y, z
+    std::vector<base::Expression> permeability;  ///< one value, or tensor components; functions of x, y, z
     base::Expression porosity = 0;
-    /// Of the pores; Biot's modulus. At most one.
+    /// Compressibility of the pores; Biot's modulus. At most one is given.
     std::optional<Real> compressibility, biot_modulus;
     void describe(base::Section& section);
     void check(base::Section& section) const;
-    bool flows_uniformly() const;  ///< the permeability does not depend on the place
-    /// k/mu. Throws an Error where k is no positive definite tensor of that dimension.
+    bool flows_uniformly() const;  ///< the permeability is independent of the position
+    /// Mobility k/mu. Throws an Error if k is not a positive definite tensor of dimension `dim`.
     laws::Mobility mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const;
-    /// Of the pores at constant strain, where the fluid has this compressibility, 1/Pa. Throws an Error where pores and
-    /// fluid do not fit together.
+    /// Storage capacity of the pores at constant strain, for the fluid compressibility `of_fluid`, 1/Pa. Throws an
+    /// Error if pores and fluid are inconsistent.
     Capacity capacity(Real of_fluid, const std::array<Real, 3>& x) const;
-    bool may_store(Real of_fluid) const;  ///< somewhere
+    bool may_store(Real of_fluid) const;  ///< storage is possible somewhere
   };
 
   struct Joint : Physics::Joint {
     base::Expression residual_aperture = 0;
-    std::optional<base::Expression> tangential_permeability;  ///< absent: the cubic law
+    std::optional<base::Expression> tangential_permeability;  ///< absent: cubic law
     base::Expression normal_permeability = std::numeric_limits<Real>::infinity();
     void describe(base::Section& section);
   };
 
   struct Region : Physics::Region {
-    std::optional<base::Expression> pressure;  ///< at all times
+    std::optional<base::Expression> pressure;  ///< prescribed at all times
     void describe(base::Section& section);
     bool is_given() const { return pressure.has_value(); }
     std::vector<Prescribed> prescribed() const;
@@ -78,7 +78,7 @@ struct Flow : Physics<Flow> {
 
   struct Fracture : Physics::Fracture {
     base::Expression source = 0;
-    std::vector<std::string> cuts;  ///< names of fractures that its filling divides
+    std::vector<std::string> cuts;  ///< names of fractures that the filling of this fracture divides
     void describe(base::Section& section);
   };
 
@@ -101,7 +101,7 @@ struct Flow : Physics<Flow> {
 
   struct Sections : Physics::Sections {
     std::optional<FlowSection> flow;
-    std::optional<HostFluid> host_fluid;  ///< not an entry
+    std::optional<HostFluid> host_fluid;  ///< not a scene entry
     void describe(base::Section& section);
     void keep(const Sections& other) { host_fluid = other.host_fluid; }
   };
@@ -123,22 +123,23 @@ struct Flow : Physics<Flow> {
                                                     const std::vector<assembly::OutputField>& outputs);
 };
 
-/// A fluid that flows, or a host's.
+/// Returns whether the scene has a fluid: Flow, or the fluid of a host.
 bool has_fluid(const Scene& scene);
-/// Its pressure is an unknown.
+/// Returns whether the fluid pressure is an unknown.
 bool has_unknown_pressure(const Scene& scene);
-/// Of the fluid in rock and fractures; 0 without.
+/// Initial pressure of the fluid in rock and fractures, Pa; 0 without a fluid.
 base::Expression initial_pressure(const Scene& scene);
 
-/// The mechanical aperture (15) of a fracture face, m: at the start, without its lower bound, and that bound.
+/// Initial mechanical aperture (15) of a fracture face without its lower bound, and this bound (residual aperture), m.
 struct StartAperture {
   Real value, least;
 };
-/// Of local fracture faces. Collective.
+/// Initial apertures of local fracture faces. Collective.
 std::vector<StartAperture> start_apertures(const Setting& setting);
 
+/// Entry "scheme" of the flow section.
 SchemeEntry scheme_entry(const Scene& scene);
-/// Of local cells.
+/// Mobilities of local cells.
 Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -1,4 +1,4 @@
-// What estimates of errors need to know of the fluid's flow.
+// Data of the fluid flow for error estimates.
 #pragma once
 
 #include "laws/conduit.hpp"
@@ -15,7 +15,8 @@ struct FluidFlux {
   WellsParameters wells;
 };
 
-/// Of a scene with Flow whose fluid nothing changes. Error, on every rank: another scheme than rt0. Collective.
+/// Flow data of a scene with Flow and a fluid of constant properties. Throws an Error on every rank if the scheme is
+/// not rt0. Collective.
 FluidFlux fluid_flux(const Setting& setting);
 
 }  // namespace sprekk::physics

@@ -1,4 +1,4 @@
-// Flow along fracture faces, as local operators of a mesh.
+// Operators of the flow along fracture faces of a mesh.
 #pragma once
 
 #include "assembly/assembler.hpp"
@@ -14,12 +14,12 @@
 
 namespace sprekk::physics {
 
-/// Of a fracture face through its ridges: p_F, pressures on ridges.
+/// Flow of a fracture face through its ridges. Unknowns: p_F and the pressures on ridges.
 template <int n>
 using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
 
-/// The flow of `Base` where T is that of a transmissivity of 1, and the face's own follows from its widening, the last
-/// of x, m.
+/// Flow of `Base` times a transmissivity that depends on the widening of the face, m, the last unknown. The matrix T of
+/// `Base` is that of a unit transmissivity.
 template <class Base>
 struct WideningFace {
   static constexpr int n_ends = Base::n_ends, n = n_ends, m = Base::Columns::size;
@@ -59,8 +59,7 @@ struct WideningFace {
   }
 };
 
-/// The fields that flow along faces depends on, in the order of the unknowns of its operator: FractureFace, then
-/// ChangedFlow, then WideningFace.
+/// Fields on which the flow along faces depends, in the order of the unknowns: FractureFace, ChangedFlow, WideningFace.
 inline std::vector<std::string> drivers(const FractureFlowParameters& parameters, bool widens) {
   std::vector<std::string> fields = {"face pressure"};
   if (parameters.change) fields.push_back("face " + parameters.change->field);
@@ -68,14 +67,14 @@ inline std::vector<std::string> drivers(const FractureFlowParameters& parameters
   return fields;
 }
 
-/// The faces of a mesh, with what fractures that cut others resist at their ridges.
+/// Faces of a mesh, including the resistances of cutting fractures at their ridges.
 template <Shape shape>
 class FractureFaces {
  public:
   using Plane = FacePlane<shape>;
   static constexpr int dim = Plane::dim, n = Plane::n;
 
-  /// `facets`: the layout of pressures. `widens`: see WideningFace. Collective.
+  /// `facets`: layout of the pressures. `widens`: see WideningFace. Collective.
   FractureFaces(RCP<const mesh::Mesh> mesh, const fields::Layout& facets, const FractureFlowParameters& parameters,
                 bool widens)
       : mesh_(mesh), parameters_(&parameters), widens_(widens) {
@@ -99,8 +98,8 @@ class FractureFaces {
   }
 
  private:
-  /// Of each fracture that cuts others, what half of its width resists per area at its ridges, the mean over its faces
-  /// that end there. The owner of a ridge sees all of them.
+  /// Computes the resistance of half of the width of each cutting fracture, per area, at its ridges. It is the mean
+  /// over the faces that end there; the owner of a ridge has all of them.
   void find_fillings(const fields::Layout& facets) {
     fillings_.resize(parameters_->cut_by.size());
     for (const auto& all : parameters_->cut_by)
@@ -151,7 +150,7 @@ class FractureFaces {
   RCP<const mesh::Mesh> mesh_;
   const FractureFlowParameters* parameters_;
   bool widens_;
-  std::vector<std::vector<Real>> fillings_;  // [fracture][facet], Pa s/m; empty for those that cut none
+  std::vector<std::vector<Real>> fillings_;  // [fracture][facet] Pa s/m; empty: the fracture cuts none
   FractureFace<n> op_;
   ConstView<laws::Conduit*> conduits_;
 };

@@ -66,14 +66,14 @@ class FractureFlow final : public assembly::Module {
     flow_.add_jacobian(state, J);
     outflow_.add_jacobian(state, J);
   }
-  /// Hydraulic apertures.
+  /// Computes hydraulic apertures. `widest`: at least open_.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
     if (!widens_) return;
     const auto widening = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]);
     for (std::size_t f = 0; f < values.size(); ++f)
       values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
   }
-  /// Widening leaves pressures alone without symmetry, and coupled systems have none in any case.
+  /// Widening changes only couplings of blocks; the block of the pressures remains symmetric.
   bool symmetric(const assembly::State&) const override { return is_linear() || widens_; }
 
   bool constant_load() const override {
@@ -92,7 +92,7 @@ class FractureFlow final : public assembly::Module {
     loaded_ = true;
   }
 
-  /// What sources and prescribed flow make of pressure over the size of the domain.
+  /// Scale of the pressure: its difference over the domain due to sources and prescribed flow.
   assembly::Scales loads(Real t) const override {
     Real largest = outflow_.largest(t, true);
     const auto let = [&](Real flow, const laws::Conduit& conduit) {
@@ -179,8 +179,8 @@ class FractureFlow final : public assembly::Module {
     return values;
   }
 
-  /// p with p T = flow, T that of the conduit which p has opened, by bisection: without that a tight fracture would
-  /// make the pressure seem far higher than it can be.
+  /// Pressure p with p T = flow, where T is the transmissivity of a conduit opened by p, by bisection. The initial T of
+  /// a tight fracture would give a pressure that is far too high.
   Real pressure_for(Real flow, const laws::Conduit& conduit) const {
     Real low = 0, high = flow / conduit.transmissivity();
     for (int k = 0; k < 100 && parameters_.softness > 0; ++k) {
@@ -192,7 +192,7 @@ class FractureFlow final : public assembly::Module {
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && !parameters_.change; }
 
-  /// Calls visit(area, source) at the points of a face.
+  /// Calls visit(area, source) at the quadrature points of a face.
   template <class Visit>
   void for_each_source(LocalIndex f, Real t, const Visit& visit) const {
     const auto& face = mesh_->fracture_faces[f];
@@ -202,7 +202,7 @@ class FractureFlow final : public assembly::Module {
                                   [&](const auto&, Real area, const auto& x) { visit(area, source(x, t)); });
   }
 
-  /// Calls visit(condition, rim, length times aperture, x) for all ends of fractures with a condition.
+  /// Calls visit(condition, rim, length times aperture, x) for all fracture ends with a condition.
   template <class Visit>
   void for_each_end(const Visit& visit) const {
     for (std::size_t k = 0; k < outflow_.conditions().size(); ++k)
@@ -217,15 +217,15 @@ class FractureFlow final : public assembly::Module {
   }
 
   FractureFlowParameters parameters_;
-  bool widens_ = false;  // by "widening" of PoroelasticCoupling, which T then depends on
+  bool widens_ = false;  // by "widening" of PoroelasticCoupling, on which T depends
   RCP<const mesh::Mesh> mesh_;
-  int block_ = -1, widening_ = -1, carried_ = -1;  // face pressure, widening, what changes the fluid
+  int block_ = -1, widening_ = -1, carried_ = -1;  // face pressure, widening, field that changes the fluid
   Real size_ = 0;                                  // largest extent of the domain, m
-  Real open_ = 0;  // aperture of a fracture that lets the fluid on without a drop of pressure, m
+  Real open_ = 0;                                  // aperture of a fracture with negligible pressure drop, m
   bool loaded_ = false;
   std::unique_ptr<FractureFaces<shape>> faces_;
   assembly::Term flow_;
-  Outflow outflow_;      // through the ends
+  Outflow outflow_;      // through the ends of fractures
   assembly::Load load_;  // m^3/s
 };
 

@@ -1,4 +1,4 @@
-// Transmissivities of fracture faces that follow their apertures.
+// Transmissivities of fracture faces as functions of their apertures.
 #pragma once
 
 #include "base/types.hpp"
@@ -6,16 +6,16 @@
 
 namespace sprekk::physics {
 
-/// Of faces that widen, or by hydraulic apertures that are given: State::coefficients.
+/// Transmissivities of faces with a widening, or with given hydraulic apertures (State::coefficients).
 ///
-/// | conduit  | [face] |                               |
-/// | aperture | [face] | hydraulic, m; empty: by x     |
+/// | conduit  | [face] |                                      |
+/// | aperture | [face] | hydraulic, m; empty: by the widening |
 struct PresentConduits {
   ConstView<laws::Conduit*> conduit = {};
   ConstView<Real*> aperture = {};
 
   KOKKOS_INLINE_FUNCTION bool is_given() const { return aperture.extent(0) > 0; }
-  /// m^3/(Pa s), and its derivative in the widening, m.
+  /// Transmissivity, m^3/(Pa s), and its derivative by the widening, m.
   KOKKOS_INLINE_FUNCTION Real transmissivity(int face, Real widening) const {
     return is_given() ? conduit(face).transmissivity_of(aperture(face)) : conduit(face).transmissivity(widening);
   }

@@ -1,4 +1,4 @@
-// The flow that keeps pressures from oscillating in steps too short for drainage.
+// Stabilisation that prevents pressure oscillations in steps too short for drainage.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -10,16 +10,17 @@
 
 namespace sprekk::physics {
 
-/// The hybrid form of -div(beta grad dp/dt) in cells of rock, beta = softness S, S the mean of x x^T over the corners
-/// of a cell, seen from its centre: h^2/4 for an edge h (Aguilar, Gaspar, Lisbona and Rodrigo 2008). It vanishes with
-/// h^2. Nothing flows through faces of fractures.
+/// Hybrid form of -div(beta grad dp/dt) in rock cells, with beta = softness S. S is the mean of x x^T over the corners
+/// of a cell, relative to its centre, e.g. h^2/4 for a cube of edge h (Aguilar, Gaspar, Lisbona and Rodrigo 2008). It
+/// vanishes with h^2. Faces on fractures are impermeable.
 struct Stabilisation {
-  std::vector<Real> softness = {};      ///< [local cell] alpha^2/(lambda + 2G), 1/Pa; empty: no such flow
-  base::Expression initial = 0;         ///< pressure at the start, Pa, from which the volumes count
-  FluxScheme scheme = FluxScheme::rt0;  ///< that of the flow in rock
+  std::vector<Real> softness = {};      ///< [local cell] alpha^2/(lambda + 2G), 1/Pa; empty: no stabilisation
+  base::Expression initial = 0;         ///< initial pressure, Pa, with zero volumes
+  FluxScheme scheme = FluxScheme::rt0;  ///< scheme of the flow in rock
 };
 
-/// Volumes that have passed the faces of cells, outward, m^3 (2D: m^2); with KeptFlow::rate, flows. T is that of beta.
+/// Outward volumes through the faces of cells since the start, m^3 (2D: m^2); flows if multiplied by KeptFlow::rate. T
+/// is the matrix of beta.
 template <Shape shape>
 using StabilisingFlow =
     KeptFlow<mesh::n_faces(shape), assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<mesh::n_faces(shape), 1>>>;
@@ -62,14 +63,14 @@ StabilisingFlow<shape> stabilising_flow(const mesh::Mesh& mesh, const Stabilisat
   return {.T = T_device, .lift = lift_device};
 }
 
-/// The sum of `Flow` in cells and the stabilising flow:   q + rate (V(x) - V) - before G
-/// V: volumes that passed until the start of the step; G: their part in the step before.
+/// Sum of the flow `Flow` in cells and the stabilising flow: q + rate (V(x) - V) - before G. V: volumes until the start
+/// of the step. G: volumes of the previous step.
 template <class Flow, Shape shape>
 struct StabilisedFlow {
   static constexpr int n_ends = Flow::n_ends, n = n_ends, m = Flow::Columns::size;
   using Columns = typename Flow::Columns;
   Flow base;
-  StabilisingFlow<shape> volumes;  // without T: none
+  StabilisingFlow<shape> volumes;  // empty T: none
   ConstView<Real**> passed;        // [local cell] V of the faces, then G
   Real rate, before;
 

@@ -19,7 +19,7 @@ using mesh::operator*;
 
 namespace {
 
-/// A straight part of a well; in 2D a point, with the direction across the plane and the length 1.
+/// Straight part of a well. In 2D a point with the length 1, perpendicular to the plane.
 struct Segment {
   int well;
   Vector from, step, along;
@@ -44,7 +44,7 @@ class Finder {
  private:
   const Well& well(const WellConnection& c) const { return parameters_.wells[c.well]; }
 
-  /// Moved, so that no part lies in a face.
+  /// Collects the segments, shifted so that no segment lies in a face.
   void find_segments() {
     const Vector shift = 1e-9 * size_ * Vector{0.443, 0.571, dim == 2 ? 0 : 0.691};
     for (std::size_t w = 0; w < parameters_.wells.size(); ++w) {
@@ -67,8 +67,8 @@ class Finder {
     for (LocalIndex k = 0; k < mesh_->n_cells() * n; ++k) cells_of_node_[mesh_->cells[k]].push_back(k / n);
   }
 
-  /// The part of from + s step in a cell with plane faces, where it lies in [low, high], and through which faces it
-  /// enters and leaves (-1: through none); empty where low > high.
+  /// Part low <= s <= high of a segment from + s step in a cell with plane faces, with the faces through which it
+  /// enters and leaves (-1: none). Empty if low > high.
   struct Part {
     Real low, high;
     int enters = -1, leaves = -1;
@@ -108,7 +108,7 @@ class Finder {
 
   std::string find_connections() {
     const std::size_t n = parameters_.wells.size();
-    std::vector<Real> here(2 * n, 0);  // length in cells, crossed fractures
+    std::vector<Real> here(2 * n, 0);  // [well] length in cells; number of crossed fracture faces
     std::string failure;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for (const auto& segment : segments_)
@@ -132,7 +132,7 @@ class Finder {
                            dim == 2 ? "lies outside of the domain"
                                     : fmt::format("only {:.6g} of {:.6g} m are inside of the domain", all[w], length));
     }
-    if (dim == 2)  // what lies on a fracture feeds that alone
+    if (dim == 2)  // a well on a fracture is not connected to the rock
       connections_.erase(std::remove_if(connections_.begin() + static_cast<std::ptrdiff_t>(in_fractures),
                                         connections_.end(), [&](const auto& c) { return all[n + c.well] > 0; }),
                          connections_.end());
@@ -146,7 +146,7 @@ class Finder {
     return failure;
   }
 
-  /// 2 pi K over ln(r_0/r_w) + skin.
+  /// Returns 2 pi K/(ln(r_0/r_w) + skin).
   Real radial_index(int number, Real conductance, Real log_ratio) const {
     return 2 * M_PI * conductance / (log_ratio + parameters_.wells[number].skin);
   }
@@ -173,7 +173,8 @@ class Finder {
     return x;
   }
 
-  /// Peaceman (1983), of a parallelepiped: exp(-gamma)/4 sqrt(a^2 + b^2) with the edges a, b across the well.
+  /// Logarithm of the radius of Peaceman (1983) for a parallelepiped: exp(-gamma)/4 sqrt(a^2 + b^2) with the edges a, b
+  /// across the well.
   Real log_two_point_radius(LocalIndex cell, const LineFlow& line) const {
     Real X[mesh::n_nodes(shape)][dim], square = 0;
     assembly::gather_host<shape>(*mesh_, cell, X);
@@ -184,7 +185,7 @@ class Finder {
     return std::log(two_point_radius * std::sqrt(square));
   }
 
-  /// The cells that share a corner with this one.
+  /// Logarithm of the equivalent radius, from the patch of cells that share a corner with the cell.
   Real log_patch_radius(LocalIndex cell, const Segment& segment, const laws::Mobility& mobility,
                         const LineFlow& line) const {
     std::vector<LocalIndex> around = {cell};
@@ -192,8 +193,8 @@ class Finder {
       for (const LocalIndex other : cells_of_node_[mesh_->cells[cell * mesh_->nodes_per_cell() + k]])
         if (std::find(around.begin(), around.end(), other) == around.end()) around.push_back(other);
     std::vector<WellPatchEntity> patch;
-    std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // of ends: cell, face
-    std::set<LocalIndex> crossed;                           // ends
+    std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // [end] cell and face
+    std::set<LocalIndex> crossed;                           // ends crossed by the well
     const Real far = std::numeric_limits<Real>::infinity();
     for (const LocalIndex one : around) {
       Real X[mesh::n_nodes(shape)][dim];
@@ -212,13 +213,14 @@ class Finder {
       }
     }
     return log_equivalent_radius(patch, [&](LocalIndex end) {
-      if (crossed.count(end)) return std::numeric_limits<Real>::quiet_NaN();  // no flow along the well
+      if (crossed.count(end)) return std::numeric_limits<Real>::quiet_NaN();  // impermeable: no flow along the well
       return assembly::face_mean(*mesh_, where[end][0], where[end][1],
                                  [&](const auto&, const auto& at) { return line.log_distance(at); });
     });
   }
 
-  /// Whether a well crosses (2D: lies on) a fracture face, which is then connected.
+  /// Connects a fracture face if a well crosses it (2D: lies on it). Returns whether it does. Sets `failure` if the
+  /// well lies in the plane of the face (3D).
   bool cross(LocalIndex f, const Segment& segment, std::string& failure) {
     const auto& face = mesh_->fracture_faces[f];
     const Vector normal = face.frame[0];
@@ -256,7 +258,7 @@ class Finder {
     return x;
   }
 
-  /// Of a point in the plane of a fracture face.
+  /// Returns whether a point in the plane of a fracture face lies inside of the face.
   bool is_inside(LocalIndex f, const Vector& x) const {
     const auto& face = mesh_->fracture_faces[f];
     constexpr int n = mesh::n_face_corners(shape);
@@ -268,13 +270,13 @@ class Finder {
     return left == 0 || left == n;
   }
 
-  /// `slant`: how much longer than wide the cut of the well is.
+  /// Connects a crossed face. `slant`: ratio of length to width of the elliptic section of the well.
   void cross_face(LocalIndex f, const Segment& segment, const Vector& x, Real slant) {
     constexpr int n = mesh::n_face_corners(shape);
     const auto& face = mesh_->fracture_faces[f];
     const LineFlow line(dim, laws::Mobility::isotropic(1), x, face.frame[0]);
     std::vector<WellPatchEntity> patch;
-    std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // of ends: face, ridge
+    std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // [end] face and ridge
     const auto add = [&](LocalIndex one) {
       const FacePlane<shape> plane(*mesh_, one, 1, parameters_.scheme);
       patch.push_back({{}, one == f ? 2 * M_PI : 0, {}});

@@ -1,4 +1,4 @@
-// Where wells are connected to the rock and to fractures.
+// Connections of wells with rock and fractures.
 #pragma once
 
 #include "mesh/facets.hpp"
@@ -9,21 +9,22 @@
 
 namespace sprekk::physics {
 
-/// Where fluid flows between a well and the rock or a fracture.
+/// Connection of a well with a cell or a fracture face.
 struct WellConnection {
   int well, fracture;  ///< -1: rock
   LocalIndex row;      ///< cell, or facet
-  Real index;          ///< W, m^3/(Pa s); of a face over its transmissivity, -
-  mesh::Vector x;      ///< the centre of the cell or the face, where its pressure is
+  Real index;          ///< W, m^3/(Pa s); for faces W divided by the transmissivity, -
+  mesh::Vector x;      ///< centre of the cell or face, where its pressure is defined
   LocalIndex face;     ///< -1: rock
 };
 
-/// Those of this rank, and what is wrong with a well, empty: nothing; the same on every rank but for radii. The indices
-/// W are as make_wells() has them. Collective.
+/// Connections of this rank, and the error message of an invalid well (empty: none). Messages are the same on every
+/// rank, except those about radii. The indices W are defined at make_wells().
 struct WellConnections {
   std::vector<WellConnection> all;
   std::string failure;
 };
+/// Finds the connections. Collective.
 WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParameters& parameters);
 
 }  // namespace sprekk::physics

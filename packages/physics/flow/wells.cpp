@@ -122,7 +122,7 @@ class Wells final : public assembly::Module {
         KOKKOS_LAMBDA(int f) { kept(f, 0) = widening(f); });
   }
 
-  /// The pressure in wells, or what draws a rate.
+  /// Scales: the pressure in wells, or the pressure difference due to a rate.
   assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for (std::size_t w = 0; w < parameters_.wells.size(); ++w) {
@@ -181,15 +181,15 @@ class Wells final : public assembly::Module {
         const Real there = carried_at(state, j, c), u = product > 0 && control.brings ? control.value : there;
         totals[next++].value += share * u;
         totals[next++].value +=
-            parameters_.carried[j].capacity * (flow * there + product * (u - there));  // as in its row
+            parameters_.carried[j].capacity * (flow * there + product * (u - there));  // same expression as in the row
       }
     }
   }
 
  private:
-  /// The residual of rows with wells of given pressure, over the sum of W(connection) of these wells, Pa: of [rock,
-  /// fractures] by row. If W is large compared with the conductances around it, the pressure drop is near rounding, and
-  /// the balance of the row is more accurate than W times the drop.
+  /// Residual of rows with wells of prescribed pressure, divided by the sum of W(connection) of these wells, Pa: [rock,
+  /// fractures] by row. If W is large compared with the conductances around it, the pressure drop is near round-off.
+  /// The balance of the row is then more accurate than W times the drop.
   template <class Index>
   std::array<std::map<LocalIndex, Real>, 2> unbalanced_per_index(const assembly::State& state, const Index& W) const {
     std::array<std::map<LocalIndex, Real>, 2> sums;
@@ -204,7 +204,7 @@ class Wells final : public assembly::Module {
   }
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && parameters_.carried.empty(); }
 
-  /// Two for each that is carried: into rock, and into fractures.
+  /// Sets up the transported quantities: for each of them one Brought for rock and one for fractures.
   void bind_carried(const assembly::Context& context) {
     for (const auto& carried : parameters_.carried) {
       carried_units_.push_back(context.layout(context.field(carried.field)).field().unit);
@@ -221,7 +221,7 @@ class Wells final : public assembly::Module {
     }
   }
 
-  /// The carried quantity that changes the fluid, by the field of cells or of facets.
+  /// Transported field that changes the fluid, with the name of the field on cells or facets.
   std::optional<FluidChange> change(bool in_fractures) const {
     for (const auto& carried : parameters_.carried)
       if (auto change = carried.change) {
@@ -230,7 +230,7 @@ class Wells final : public assembly::Module {
       }
     return {};
   }
-  /// The density of the fluid in a well over rho_0: of what it puts in, else at u_0.
+  /// Density of the fluid in a well divided by rho_0. Uses u of the injected fluid if given, otherwise rho_0.
   Real heaviness(const Well& well, Real t) const {
     for (const auto& carried : parameters_.carried)
       if (const auto value = carried.in_wells.find(well.name); carried.change && value != carried.in_wells.end())
@@ -270,11 +270,11 @@ class Wells final : public assembly::Module {
   const Well& well(const WellConnection& c) const { return parameters_.wells[c.well]; }
   static const base::Expression& control(const Well& well) { return well.pressure ? *well.pressure : *well.rate; }
 
-  /// W.
+  /// Index W of a connection with its transmissivity.
   Real index(const WellConnection& c, Real widening = 0) const {
     return c.face < 0 ? c.index : c.index * parameters_.faces[c.face].transmissivity(widening);
   }
-  /// Of all connections of each well on all ranks, with widening(face). Collective.
+  /// [well] sum of W over all connections on all ranks, with widening(face). Collective.
   template <class Widening>
   std::vector<Real> sums(const Widening& widening) const {
     std::vector<Real> here(parameters_.wells.size(), 0);
@@ -291,27 +291,27 @@ class Wells final : public assembly::Module {
     for (int i = 0; i < mesh_->dim(); ++i) sum += parameters_.weight[i] * (c.x[i] - well(c).points[0][i]);
     return sum * heaviness(well(c), t);
   }
-  /// The pressure in the well where it is connected.
+  /// Pressure in the well at a connection.
   Real pressure(const WellConnection& c, Real t) const {
     const Real first = control(well(c))(well(c).points[0], t);
     return first + parameters_.fluid.head(first, lift(c, t));
   }
-  /// What of a pressure at a connection is due to the fluid between there and the first point.
+  /// Pressure difference between a connection with pressure p and the first point, due to the weight of the fluid.
   Real head(const WellConnection& c, Real p, Real t) const { return -parameters_.fluid.head(p, -lift(c, t)); }
 
   WellsParameters parameters_;
-  bool widens_ = false;  // fractures do
+  bool widens_ = false;  // apertures of fractures depend on "widening"
   RCP<const mesh::Mesh> mesh_;
   std::vector<WellConnection> connections_;  // of this rank
   std::vector<Real> start_;                  // [owned fracture face] widening at the start of the step; empty: none
-  std::vector<Real> sums_;                   // [well] sum of W over all ranks then
+  std::vector<Real> sums_;                   // [well] sum of W over all ranks at the start of the step
   std::array<int, 2> blocks_{};              // pressure, face pressure
   int widening_ = -1;
-  std::array<Exchange, 2> exchange_;        // of wells with a pressure
-  std::array<assembly::Load, 2> load_;      // [owned row] of wells with a rate, m^3/s
+  std::array<Exchange, 2> exchange_;        // wells with prescribed pressure
+  std::array<assembly::Load, 2> load_;      // [owned row] wells with prescribed rate, m^3/s
   std::vector<Brought> brought_;            // [2 carried + in fractures]
   std::vector<int> carried_;                // blocks of their rows
-  std::vector<std::string> carried_units_;  // [carried] of u
+  std::vector<std::string> carried_units_;  // [carried] unit of u
 };
 
 }  // namespace
